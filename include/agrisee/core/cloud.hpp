@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// @file
+/// AgriSEE's own cloud: points and, where known, their normals and the view each came from.
+#pragma once
+
+#include <agrisee/core/error.hpp>
+#include <agrisee/core/traits.hpp>
+
+#include <cmath>
+
+namespace agrisee {
+
+/// A cloud as a structure of arrays. `normals` and `views` are either empty or as long as `points`.
+template <typename S>
+struct PointCloud {
+  std::vector<Vector3<S>> points;   ///< metres, in one frame (world unless said otherwise)
+  std::vector<Vector3<S>> normals;  ///< unit normals towards the side the surface was seen from; zero = unknown
+  std::vector<int> views;           ///< index of the view that observed the point, -1 = unknown
+
+  std::size_t size() const { return points.size(); }
+  bool empty() const { return points.empty(); }
+};
+
+template <typename S>
+struct CloudTraits<PointCloud<S>> {
+  using Scalar = S;
+  static std::size_t size(const PointCloud<S>& c) { return c.points.size(); }
+  static const Vector3<S>& point(const PointCloud<S>& c, std::size_t i) { return c.points[i]; }
+};
+
+/// The cloud type of the pipeline: single precision keeps 0.1 um at arm's length and halves the memory traffic.
+using Cloud = PointCloud<float>;
+
+/// True when all three coordinates are finite.
+template <typename V>
+bool is_finite(const V& p) {
+  return std::isfinite(p.x()) && std::isfinite(p.y()) && std::isfinite(p.z());
+}
+
+/// Indices of the points whose coordinates are all finite, ascending. O(n).
+template <typename C>
+Indices finite_indices(const C& cloud) {
+  Indices kept;
+  kept.reserve(size(cloud));
+  for (std::size_t i = 0; i < size(cloud); ++i)
+    if (is_finite(point(cloud, i))) kept.push_back(static_cast<Index>(i));
+  return kept;
+}
+
+/// The points `indices` of any cloud, as our own cloud (points only).
+template <typename C>
+PointCloud<scalar_t<C>> select(const C& cloud, const Indices& indices) {
+  PointCloud<scalar_t<C>> out;
+  out.points.reserve(indices.size());
+  for (Index i : indices) out.points.push_back(point(cloud, static_cast<std::size_t>(i)));
+  return out;
+}
+
+/// The points `indices` of our own cloud with whatever is known of them.
+template <typename S>
+PointCloud<S> select(const PointCloud<S>& cloud, const Indices& indices) {
+  PointCloud<S> out;
+  out.points.reserve(indices.size());
+  if (!cloud.normals.empty()) out.normals.reserve(indices.size());
+  if (!cloud.views.empty()) out.views.reserve(indices.size());
+  for (Index index : indices) {
+    const auto i = static_cast<std::size_t>(index);
+    out.points.push_back(cloud.points[i]);
+    if (!cloud.normals.empty()) out.normals.push_back(cloud.normals[i]);
+    if (!cloud.views.empty()) out.views.push_back(cloud.views[i]);
+  }
+  return out;
+}
+
+}  // namespace agrisee

@@ -1,0 +1,229 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// @file
+/// Neighbour search by a uniform grid (cell list): points sorted by cell, x fastest, so that the cells of a row lie
+/// side by side in memory and a query reads a few runs. Fastest for radii near the cell size. Build O(n), or
+/// O(n log n) where the cells are too many for a table (far outliers); memory about 20 bytes a point and the table.
+#pragma once
+
+#include <agrisee/core/cloud.hpp>
+#include <agrisee/core/neighbors.hpp>
+
+#include <array>
+#include <cmath>
+
+namespace agrisee {
+
+/// A cell list over the finite points of a cloud; see neighbors.hpp for the interface.
+template <typename S>
+class Grid {
+ public:
+  /// @param cell edge length of a cell (m), > 0; half to one times the usual query radius serves best
+  /// @throws ParameterError when `cell` is not positive and finite
+  template <typename C>
+  Grid(const C& cloud, S cell) : size_(agrisee::size(cloud)) {
+    check_parameter(std::isfinite(cell) && cell > 0, "grid cell", "positive and finite", cell);
+    min_.setConstant(std::numeric_limits<double>::infinity());
+    Eigen::Vector3d max = -min_;
+    std::size_t n = 0;
+    for (std::size_t i = 0; i < size_; ++i) {
+      const Vector3<S> p = point(cloud, i);
+      if (!is_finite(p)) continue;
+      const Eigen::Vector3d d = p.template cast<double>();
+      min_ = min_.cwiseMin(d);
+      max = max.cwiseMax(d);
+      ++n;
+    }
+    if (n == 0) {
+      min_.setZero();
+      max.setZero();
+    }
+    const double longest = (max - min_).maxCoeff();
+    cell_ = std::max(static_cast<double>(cell), longest / kMaxCells);
+    inverse_ = 1.0 / cell_;
+    for (int a = 0; a < 3; ++a) dims_[a] = static_cast<int>((max[a] - min_[a]) * inverse_) + 1;
+    const double cells = double(dims_[0]) * double(dims_[1]) * double(dims_[2]);
+    dense_ = cells <= 16.0 * static_cast<double>(n) + 262144.0;
+    dense_ ? build_dense(cloud, n, static_cast<std::size_t>(cells)) : build_sparse(cloud, n);
+  }
+
+  std::size_t size() const { return size_; }
+
+  void radius(const Vector3<S>& q, S r, Neighbors<S>& out) const {
+    out.clear();
+    visit(q, r, [&](Index i, S d_sq) { out.push_back({i, d_sq}); });
+    std::sort(out.begin(), out.end(), detail::Nearest<S>::before);
+    for (Neighbor<S>& n : out) n.distance = std::sqrt(n.distance);
+  }
+
+  std::size_t count(const Vector3<S>& q, S r, std::size_t cap = kNoCap) const {
+    if (!(r >= 0) || cap == 0) return 0;
+    std::size_t found = 0;
+    const S r_sq = r * r;
+    rows(q, r, [&](std::size_t begin, std::size_t end) {
+      unsigned in = 0;
+      for (std::size_t j = begin; j < end; ++j) in += distance_sq<S>(points_[j], q) <= r_sq ? 1u : 0u;
+      found += in;
+      return found < cap;
+    });
+    return std::min(found, cap);
+  }
+
+  template <typename F>
+  void visit(const Vector3<S>& q, S r, F&& f) const {
+    if (!(r >= 0)) return;
+    const S r_sq = r * r;
+    rows(q, r, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t j = begin; j < end; ++j) {
+        const S d_sq = distance_sq<S>(points_[j], q);
+        if (d_sq <= r_sq) f(ids_[j], d_sq);
+      }
+      return true;
+    });
+  }
+
+  void knn(const Vector3<S>& q, std::size_t k, Neighbors<S>& out) const {
+    k = std::min(k, points_.size());
+    detail::Nearest<S> nearest(out, k);
+    if (k > 0 && is_finite(q)) {
+      // Boxes of growing size around q; once the k-th is nearer than the box's border, nothing outside can enter.
+      // Doubling re-reads a few cells, and is bounded where q is far away or the cloud is thin.
+      const Eigen::Vector3d d = q.template cast<double>();
+      Eigen::Vector3d outside = (min_ - d).cwiseMax(d - (min_ + cell_ * dims_vector())).cwiseMax(0.0);
+      for (double reach = outside.norm() + cell_;; reach *= 2.0) {
+        out.clear();
+        rows(q, static_cast<S>(reach), [&](std::size_t begin, std::size_t end) {
+          for (std::size_t j = begin; j < end; ++j) nearest.offer(distance_sq<S>(points_[j], q), ids_[j]);
+          return true;
+        });
+        if (nearest.full() && std::sqrt(static_cast<double>(nearest.worst_sq())) <= reach) break;
+        if (reach > outside.norm() + 2.0 * cell_ * dims_vector().norm()) break;  // everything has been seen
+      }
+    }
+    nearest.finish();
+  }
+
+ private:
+  static constexpr double kMaxCells = 1 << 30;
+  using Cell = std::array<int, 3>;  // z, y, x: the order of the points
+
+  Eigen::Vector3d dims_vector() const { return {double(dims_[0]), double(dims_[1]), double(dims_[2])}; }
+
+  int clamp_cell(double x, int axis) const {
+    const double c = std::floor((x - min_[axis]) * inverse_);
+    return c <= 0.0 ? 0 : c >= double(dims_[axis]) ? dims_[axis] - 1 : static_cast<int>(c);
+  }
+  Cell cell_of(const Vector3<S>& p) const {
+    return {clamp_cell(double(p.z()), 2), clamp_cell(double(p.y()), 1), clamp_cell(double(p.x()), 0)};
+  }
+  std::size_t key(int x, int y, int z) const {
+    return (std::size_t(z) * std::size_t(dims_[1]) + std::size_t(y)) * std::size_t(dims_[0]) + std::size_t(x);
+  }
+
+  template <typename C>
+  void build_dense(const C& cloud, std::size_t n, std::size_t cells) {
+    starts_.assign(cells + 1, 0);
+    std::vector<std::uint32_t> keys(size_);
+    for (std::size_t i = 0; i < size_; ++i) {
+      const Vector3<S> p = point(cloud, i);
+      if (!is_finite(p)) continue;
+      const Cell c = cell_of(p);
+      keys[i] = static_cast<std::uint32_t>(key(c[2], c[1], c[0]));
+      ++starts_[keys[i] + 1];
+    }
+    for (std::size_t c = 0; c < cells; ++c) starts_[c + 1] += starts_[c];
+    points_.resize(n);
+    ids_.resize(n);
+    std::vector<std::uint32_t> at(starts_.begin(), starts_.end() - 1);
+    for (std::size_t i = 0; i < size_; ++i) {
+      const Vector3<S> p = point(cloud, i);
+      if (!is_finite(p)) continue;
+      const std::uint32_t j = at[keys[i]]++;
+      points_[j] = p;
+      ids_[j] = static_cast<Index>(i);
+    }
+  }
+
+  template <typename C>
+  void build_sparse(const C& cloud, std::size_t n) {
+    std::vector<std::pair<Cell, Index>> order;
+    order.reserve(n);
+    for (std::size_t i = 0; i < size_; ++i) {
+      const Vector3<S> p = point(cloud, i);
+      if (is_finite(p)) order.emplace_back(cell_of(p), static_cast<Index>(i));
+    }
+    std::sort(order.begin(), order.end());
+    points_.reserve(n);
+    ids_.reserve(n);
+    for (const auto& [cell, i] : order) {
+      if (cells_.empty() || cells_.back() != cell) {
+        cells_.push_back(cell);
+        starts_.push_back(static_cast<std::uint32_t>(points_.size()));
+      }
+      points_.push_back(point(cloud, static_cast<std::size_t>(i)));
+      ids_.push_back(i);
+    }
+    starts_.push_back(static_cast<std::uint32_t>(points_.size()));
+  }
+
+  /// body(begin, end) for each run of stored points that may lie within r of q, until it returns false.
+  template <typename Body>
+  void rows(const Vector3<S>& q, S r, Body&& body) const {
+    if (points_.empty() || !is_finite(q)) return;
+    const Eigen::Vector3d d = q.template cast<double>();
+    // A margin for the rounding of q - p in S.
+    const double reach =
+        double(r) + 4.0 * double(std::numeric_limits<S>::epsilon()) * (d.cwiseAbs().maxCoeff() + double(r));
+    const double reach_sq = reach * reach;
+    Eigen::Vector3i lo, hi;
+    for (int a = 0; a < 3; ++a) {
+      if (d[a] + reach < min_[a] || d[a] - reach > min_[a] + cell_ * double(dims_[a])) return;
+      lo[a] = clamp_cell(d[a] - reach, a);
+      hi[a] = clamp_cell(d[a] + reach, a);
+    }
+    const auto gap = [&](int c, int a) {  // distance along axis a from q to the slab of cells c
+      const double low = min_[a] + cell_ * double(c), high = low + cell_;
+      const double slack = 1e-9 * cell_;
+      return std::max({low - slack - d[a], d[a] - high - slack, 0.0});
+    };
+    const auto try_row = [&](int y, int z) {
+      const auto [begin, end] = row(lo[0], hi[0], y, z);
+      return begin == end || body(begin, end);
+    };
+    if (!dense_ && double(hi[1] - lo[1] + 1) * double(hi[2] - lo[2] + 1) > double(cells_.size())) {
+      for (std::size_t c = 0; c < cells_.size(); ++c)  // fewer cells than rows: read them all
+        if (!body(starts_[c], starts_[c + 1])) return;
+      return;
+    }
+    for (int z = lo[2]; z <= hi[2]; ++z) {
+      const double gz = gap(z, 2);
+      for (int y = lo[1]; y <= hi[1]; ++y) {
+        const double gy = gap(y, 1);
+        if (gz * gz + gy * gy > reach_sq) continue;
+        if (!try_row(y, z)) return;
+      }
+    }
+  }
+
+  std::pair<std::size_t, std::size_t> row(int x0, int x1, int y, int z) const {
+    if (dense_) return {starts_[key(x0, y, z)], starts_[key(x1, y, z) + 1]};
+    const auto first = std::lower_bound(cells_.begin(), cells_.end(), Cell{z, y, x0});
+    const auto last = std::upper_bound(first, cells_.end(), Cell{z, y, x1});
+    return {starts_[static_cast<std::size_t>(first - cells_.begin())],
+            starts_[static_cast<std::size_t>(last - cells_.begin())]};
+  }
+
+  std::vector<Vector3<S>> points_;     // sorted by cell, then by index
+  std::vector<Index> ids_;             // index in the cloud of points_[j]
+  std::vector<std::uint32_t> starts_;  // first stored point of each cell, and the end
+  std::vector<Cell> cells_;            // the occupied cells, where there is no table
+  Eigen::Vector3d min_;
+  double cell_ = 1.0, inverse_ = 1.0;
+  std::array<int, 3> dims_{1, 1, 1};
+  std::size_t size_ = 0;
+  bool dense_ = true;
+};
+
+template <typename C, typename T>
+Grid(const C&, T) -> Grid<scalar_t<C>>;
+
+}  // namespace agrisee

@@ -1,0 +1,153 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// @file
+/// Neighbour search by kd-tree: the one place that names nanoflann. For k-nearest queries and radii of all sizes.
+/// Distances are metres at this boundary (nanoflann's are squared). Build O(n log n), query O(log n + answer).
+#pragma once
+
+#include <agrisee/core/cloud.hpp>
+#include <agrisee/core/neighbors.hpp>
+
+#include <cmath>
+#include <memory>
+#include <nanoflann.hpp>
+
+namespace agrisee {
+
+/// A kd-tree over the finite points of a cloud; see neighbors.hpp for the interface.
+template <typename S>
+class KdTree {
+ public:
+  template <typename C>
+  explicit KdTree(const C& cloud) : data_(std::make_unique<Data>()), size_(agrisee::size(cloud)) {
+    data_->points.reserve(size_);
+    for (std::size_t i = 0; i < size_; ++i) {
+      const Vector3<S> p = point(cloud, i);
+      if (is_finite(p)) {
+        if (data_->points.size() != i || !data_->ids.empty()) {
+          if (data_->ids.empty())
+            for (std::size_t j = 0; j < data_->points.size(); ++j) data_->ids.push_back(static_cast<Index>(j));
+          data_->ids.push_back(static_cast<Index>(i));
+        }
+        data_->points.push_back(p);
+      }
+    }
+    index_ = std::make_unique<Tree>(3, *data_, nanoflann::KDTreeSingleIndexAdaptorParams(10));
+#if NANOFLANN_VERSION < 0x150  // later versions build in the constructor
+    index_->buildIndex();
+#endif
+  }
+
+  std::size_t size() const { return size_; }
+
+  void knn(const Vector3<S>& q, std::size_t k, Neighbors<S>& out) const {
+    KnnResult result{detail::Nearest<S>(out, std::min(k, data_->points.size())), data_->ids};
+    if (k > 0 && searchable(q)) search(result, q);
+    result.nearest.finish();
+  }
+
+  void radius(const Vector3<S>& q, S r, Neighbors<S>& out) const {
+    out.clear();
+    visit(q, r, [&](Index i, S d_sq) { out.push_back({i, d_sq}); });
+    std::sort(out.begin(), out.end(), detail::Nearest<S>::before);
+    for (Neighbor<S>& n : out) n.distance = std::sqrt(n.distance);
+  }
+
+  std::size_t count(const Vector3<S>& q, S r, std::size_t cap = kNoCap) const {
+    if (!(r >= 0) || cap == 0 || !searchable(q)) return 0;
+    CountResult result{r * r, 0, cap};
+    search(result, q);
+    return result.found;
+  }
+
+  template <typename F>
+  void visit(const Vector3<S>& q, S r, F&& f) const {
+    if (!(r >= 0) || !searchable(q)) return;
+    VisitResult<F> result{r * r, f, data_->ids, 0};
+    search(result, q);
+  }
+
+ private:
+  struct Data {
+    std::vector<Vector3<S>> points;
+    std::vector<Index> ids;  // index in the cloud of points[i]; empty when they are the same
+    std::size_t kdtree_get_point_count() const { return points.size(); }
+    S kdtree_get_pt(std::size_t i, std::size_t d) const { return points[i][static_cast<Eigen::Index>(d)]; }
+    template <typename Box>
+    bool kdtree_get_bbox(Box&) const {
+      return false;
+    }
+  };
+  using Tree = nanoflann::KDTreeSingleIndexAdaptor<nanoflann::L2_Simple_Adaptor<S, Data>, Data, 3>;
+
+  // nanoflann prunes with bounds that carry rounding errors; a slightly larger "worst" keeps exact ties in.
+  static S padded(S d_sq) { return d_sq * (S(1) + S(64) * std::numeric_limits<S>::epsilon()) + std::numeric_limits<S>::min(); }
+
+  struct KnnResult {
+    detail::Nearest<S> nearest;
+    const std::vector<Index>& ids;
+    bool full() const { return nearest.full(); }
+    S worstDist() const { return padded(nearest.worst_sq()); }
+    std::size_t size() const { return 0; }
+    bool empty() const { return false; }
+    void sort() {}
+    template <typename I>
+    bool addPoint(S d_sq, I i) {
+      nearest.offer(d_sq, ids.empty() ? static_cast<Index>(i) : ids[static_cast<std::size_t>(i)]);
+      return true;
+    }
+  };
+  struct CountResult {
+    S r_sq;
+    std::size_t found, cap;
+    bool full() const { return true; }
+    S worstDist() const { return padded(r_sq); }
+    std::size_t size() const { return found; }
+    bool empty() const { return found == 0; }
+    void sort() {}
+    template <typename I>
+    bool addPoint(S d_sq, I) {
+      if (d_sq <= r_sq) ++found;
+      return found < cap;
+    }
+  };
+  template <typename F>
+  struct VisitResult {
+    S r_sq;
+    F& f;
+    const std::vector<Index>& ids;
+    std::size_t found;
+    bool full() const { return true; }
+    S worstDist() const { return padded(r_sq); }
+    std::size_t size() const { return found; }
+    bool empty() const { return found == 0; }
+    void sort() {}
+    template <typename I>
+    bool addPoint(S d_sq, I i) {
+      if (d_sq <= r_sq) {
+        ++found;
+        f(ids.empty() ? static_cast<Index>(i) : ids[static_cast<std::size_t>(i)], d_sq);
+      }
+      return true;
+    }
+  };
+
+  bool searchable(const Vector3<S>& q) const { return !data_->points.empty() && is_finite(q); }
+
+  template <typename Result>
+  void search(Result& result, const Vector3<S>& q) const {
+#if NANOFLANN_VERSION < 0x150
+    index_->findNeighbors(result, q.data(), nanoflann::SearchParams());
+#else
+    index_->findNeighbors(result, q.data(), nanoflann::SearchParameters());
+#endif
+  }
+
+  std::unique_ptr<Data> data_;  // behind pointers, so that a KdTree can be moved
+  std::unique_ptr<Tree> index_;
+  std::size_t size_;
+};
+
+template <typename C>
+KdTree(const C&) -> KdTree<scalar_t<C>>;
+
+}  // namespace agrisee

@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// @file
+/// Rigid poses. `a_T_b` takes coordinates in frame b to frame a.
+#pragma once
+
+#include <agrisee/core/error.hpp>
+#include <agrisee/core/types.hpp>
+
+#include <cmath>
+
+namespace agrisee {
+
+/// A rigid transform in double precision.
+using Pose = Eigen::Isometry3d;
+
+/// Pose from a translation (m) and URDF's roll, pitch, yaw (rad; rotations about the fixed axes x, y, z in turn).
+inline Pose pose_from_xyz_rpy(const Eigen::Vector3d& xyz, const Eigen::Vector3d& rpy) {
+  Pose pose = Pose::Identity();
+  pose.linear() = (Eigen::AngleAxisd(rpy.z(), Eigen::Vector3d::UnitZ()) *
+                   Eigen::AngleAxisd(rpy.y(), Eigen::Vector3d::UnitY()) *
+                   Eigen::AngleAxisd(rpy.x(), Eigen::Vector3d::UnitX()))
+                      .toRotationMatrix();
+  pose.translation() = xyz;
+  return pose;
+}
+
+/// A unit vector at right angles to the unit vector `n`; a continuous function of `n` but for n = -z.
+/// Duff et al., "Building an Orthonormal Basis, Revisited", JCGT 6(1), 2017.
+template <typename S>
+Vector3<S> any_orthogonal(const Vector3<S>& n) {
+  const S sign = std::copysign(S(1), n.z());
+  const S a = S(-1) / (sign + n.z());
+  return Vector3<S>(S(1) + sign * n.x() * n.x() * a, sign * n.x() * n.y() * a, -sign * n.x());
+}
+
+/// `world_T_optical` of a sensor at `position` that looks along `direction` (need not be unit length).
+///
+/// The optical frame is REP-103's: z forward, x right, y down. With `roll` = 0 the image's y axis points down
+/// (towards -z of world); `roll` (rad) turns the camera about its own z axis. Looking straight up or down, x is world's x.
+/// @throws InputError when `direction` is zero or not finite
+inline Pose look_along(const Eigen::Vector3d& position, const Eigen::Vector3d& direction, double roll = 0.0) {
+  const double length = direction.norm();
+  check_input(std::isfinite(length) && length > 0.0, "look_along: the viewing direction is zero or not finite");
+  const Eigen::Vector3d z = direction / length;
+  Eigen::Vector3d x = z.cross(Eigen::Vector3d::UnitZ());
+  if (x.norm() < 1e-9)
+    x = Eigen::Vector3d::UnitX();
+  else
+    x.normalize();
+  Pose pose = Pose::Identity();
+  pose.linear().col(0) = x;
+  pose.linear().col(1) = z.cross(x);
+  pose.linear().col(2) = z;
+  pose.translation() = position;
+  if (roll != 0.0) pose.rotate(Eigen::AngleAxisd(roll, Eigen::Vector3d::UnitZ()));
+  return pose;
+}
+
+/// True when the rotation is a rotation (orthonormal, right-handed, to 1e-6) and everything is finite.
+inline bool is_rigid(const Pose& pose) {
+  return pose.matrix().allFinite() &&
+         (pose.linear() * pose.linear().transpose() - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff() < 1e-6 &&
+         pose.linear().determinant() > 0.0;
+}
+
+/// The rotation as a unit quaternion with w >= 0, so that equal rotations print alike.
+inline Eigen::Quaterniond quaternion(const Eigen::Matrix3d& rotation) {
+  Eigen::Quaterniond q(rotation);
+  q.normalize();
+  if (q.w() < 0.0) q.coeffs() = -q.coeffs();
+  return q;
+}
+
+}  // namespace agrisee

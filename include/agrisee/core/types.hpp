@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// @file
+/// The few types that every module shares. Units are metres, radians and seconds throughout the library.
+#pragma once
+
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace agrisee {
+
+template <typename S>
+using Vector3 = Eigen::Matrix<S, 3, 1>;
+template <typename S>
+using Matrix3 = Eigen::Matrix<S, 3, 3>;
+
+/// Index of a point in a cloud.
+using Index = std::int32_t;
+/// Indices of points in a cloud, ascending unless a function says otherwise.
+using Indices = std::vector<Index>;
+/// One label per point of a cloud; instances count from 1, 0 is "none".
+using Labels = std::vector<int>;
+
+/// Joint angles (rad) of a six-axis arm in the controller's convention, shoulder pan to wrist 3.
+using Joints = Eigen::Matrix<double, 6, 1>;
+
+constexpr double kPi = 3.14159265358979323846;
+constexpr double kTwoPi = 2.0 * kPi;
+
+/// Degrees to radians.
+constexpr double deg(double degrees) { return degrees * (kPi / 180.0); }
+
+}  // namespace agrisee

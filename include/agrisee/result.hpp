@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// @file
+/// What a scan reports: views, stop reasons, fruit. All poses are in world (the UR3's base frame {M}) unless named otherwise.
+#pragma once
+
+#include <agrisee/core/cloud.hpp>
+#include <agrisee/core/pose.hpp>
+
+#include <optional>
+#include <string>
+
+namespace agrisee {
+
+/// Why a scan ended.
+enum class StopReason {
+  not_stopped,        ///< it has not ended
+  no_frontier,        ///< nothing is left that is worth seeing
+  no_reachable_view,  ///< what is left cannot be seen from where the arm can go
+  low_gain,           ///< the best reachable view promises less than the threshold
+  max_views,          ///< the view budget is used up
+  nothing_seen        ///< the first views returned no point inside the scan volume
+};
+
+inline const char* to_string(StopReason reason) {
+  switch (reason) {
+    case StopReason::not_stopped: return "not_stopped";
+    case StopReason::no_frontier: return "no_frontier";
+    case StopReason::no_reachable_view: return "no_reachable_view";
+    case StopReason::low_gain: return "low_gain";
+    case StopReason::max_views: return "max_views";
+    case StopReason::nothing_seen: return "nothing_seen";
+  }
+  return "unknown";
+}
+
+/// A view that was taken.
+struct View {
+  Pose world_T_optical = Pose::Identity();  ///< as reported by the robot
+  Eigen::Vector3d target = Eigen::Vector3d::Zero();  ///< observed point on the optical axis
+  std::optional<Joints> joints;             ///< absent without an arm
+  std::size_t points_in = 0;                ///< points returned inside the scan volume
+  std::size_t points_new = 0;               ///< points that the merged cloud kept
+  double plan_seconds = 0.0;                ///< time it took to choose this view
+};
+
+/// A body fitted to a fruit: an ellipsoid.
+struct Body {
+  Eigen::Vector3d center = Eigen::Vector3d::Zero();     ///< m, world
+  Eigen::Vector3d radii = Eigen::Vector3d::Zero();      ///< semi-axes (m), largest first
+  Eigen::Matrix3d axes = Eigen::Matrix3d::Identity();   ///< columns: directions of the semi-axes, right-handed
+  Eigen::Matrix3d center_covariance = Eigen::Matrix3d::Zero();  ///< m2
+  double rms = 0.0;                                     ///< root mean square distance of its points (m)
+  double completeness = 0.0;                            ///< share of its surface that was observed, 0..1
+  double confidence = 0.0;                              ///< 0..1
+};
+
+/// A located fruit.
+struct Fruit {
+  int id = 0;                                 ///< from 1; the label of its points
+  std::size_t points = 0;                     ///< number of its points
+  std::string found_by;                       ///< `region_growing`, `dbscan` or a further method's name
+  Eigen::Vector3d centroid = Eigen::Vector3d::Zero();          ///< mean of its points, world
+  Eigen::Vector3d centroid_cluster = Eigen::Vector3d::Zero();  ///< the same in the cluster frame {R}
+  Eigen::Vector3d sigma = Eigen::Vector3d::Zero();             ///< standard deviation of its points per world axis (m)
+  Eigen::Matrix3d orientation = Eigen::Matrix3d::Identity();   ///< the pose frame's axes in world
+  std::optional<Body> body;                   ///< where one was fitted
+
+  /// The pose frame in world: origin at the centroid.
+  Pose pose() const {
+    Pose p = Pose::Identity();
+    p.linear() = orientation;
+    p.translation() = centroid;
+    return p;
+  }
+};
+
+/// Seconds of computing per stage. `total` is all of it but the simulated sensor's `capture`.
+struct Timing {
+  double capture = 0.0, plan = 0.0, fuse = 0.0, filter = 0.0, normals = 0.0, segment = 0.0, locate = 0.0, total = 0.0;
+};
+
+/// Everything that a scan, or the processing of a ready cloud, leaves behind.
+struct ScanResult {
+  std::vector<View> views;
+  StopReason stop_reason = StopReason::not_stopped;
+  Cloud raw;           ///< the merged cloud before any filtering; `views` filled
+  Cloud cloud;         ///< the consolidated cloud: points, normals, views (world)
+  Labels labels;       ///< one per point of `cloud`: the fruit's id, or 0
+  std::vector<Fruit> fruits;
+  Timing seconds;
+};
+
+}  // namespace agrisee

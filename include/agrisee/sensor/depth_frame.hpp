@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// @file
+/// An organised depth image.
+#pragma once
+
+#include <agrisee/sensor/intrinsics.hpp>
+
+namespace agrisee::sensor {
+
+/// A depth image in the optical frame (z forward, x right, y down).
+struct DepthFrame {
+  Intrinsics intrinsics;
+  std::vector<float> depth;  ///< z (m) of each pixel, row by row; 0, negative or not finite = no return
+
+  float at(int u, int v) const {
+    return depth[static_cast<std::size_t>(v) * static_cast<std::size_t>(intrinsics.width) + static_cast<std::size_t>(u)];
+  }
+  /// True when a depth counts as a return.
+  static bool valid(float z) { return z > 0.0f && std::isfinite(z); }
+  /// The point (m, optical frame) of a pixel; meaningful where valid(at(u, v)).
+  Eigen::Vector3f point(int u, int v) const { return (intrinsics.ray(u, v) * double(at(u, v))).cast<float>(); }
+};
+
+/// @throws InputError when the depth image is not as large as its intrinsics say, or these are not usable
+inline void check(const DepthFrame& frame) {
+  const Intrinsics& k = frame.intrinsics;
+  check_input(k.width > 0 && k.height > 0 && std::isfinite(k.fx) && std::isfinite(k.fy) && k.fx > 0 && k.fy > 0 &&
+                  std::isfinite(k.cx) && std::isfinite(k.cy),
+              "depth frame: unusable intrinsics");
+  check_input(frame.depth.size() == k.size(), "depth frame: the image size differs from its intrinsics");
+}
+
+}  // namespace agrisee::sensor

@@ -1,0 +1,6 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// @file
+/// The version of the library, stated here once; CMake and the packages read it from this line.
+#pragma once
+
+#define AGRISEE_VERSION "0.1.0"

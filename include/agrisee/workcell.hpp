@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// @file
+/// Where a scan takes place: the arm and its mounting, the sensor, the volume to scan and the space to keep out of.
+#pragma once
+
+#include <agrisee/core/pose.hpp>
+#include <agrisee/geometry/aabb.hpp>
+#include <agrisee/geometry/primitives.hpp>
+#include <agrisee/sensor/l515.hpp>
+
+#include <string>
+#include <vector>
+
+namespace agrisee {
+
+/// Everything of a scene file but its objects; see the scene format.
+struct Workcell {
+  std::string name;
+  Pose world_T_base = Pose::Identity();  ///< the UR3's base_link in world
+  Pose tool0_T_optical = pose_from_xyz_rpy({0.0, 0.0, 0.03}, Eigen::Vector3d::Zero());  ///< hand-eye transform
+  Joints start = (Joints() << 0.0, -1.57, 1.57, -1.57, -1.57, 0.0).finished();  ///< joints before the first move (rad)
+  sensor::L515 sensor;
+  Aabb scan_volume;                      ///< world
+  std::vector<KeepOut> keep_out;         ///< neither arm nor sensor may enter
+};
+
+}  // namespace agrisee
