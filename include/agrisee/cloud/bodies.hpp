@@ -1,0 +1,265 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// @file
+/// Decides which round bodies a cloud holds: candidates compete for its points.
+///
+/// Regions, clusters and voted centres each propose bodies. Every proposal is fitted (fit.hpp) and judged by the share of its
+/// surface that points cover, less what contradicts it: points inside it, and sight lines that went through it. The best is
+/// taken with its points, the rest are judged anew on what is left, until nothing is worth taking. Bodies may touch but not
+/// interpenetrate. Flat or ridge-like supports (leaves, stems) are told from round ones by their two curvatures.
+/// Lengths scale with the radius of the body; metres. Cost: linear in the points near each candidate.
+#pragma once
+
+#include <agrisee/cloud/fit.hpp>
+#include <agrisee/core/grid.hpp>
+#include <agrisee/geometry/direction_bins.hpp>
+
+#include <bitset>
+#include <functional>
+#include <string>
+
+namespace agrisee {
+
+/// Parameters of the competition.
+struct BodyParameters {
+  double radius_min = 0.020;      ///< smallest expected radius of a fruit (m)
+  double radius_max = 0.050;      ///< largest expected radius of a fruit (m)
+  double tolerance = 0.08;        ///< points within this share of the radius belong to the body's surface
+  double max_angle = deg(35);     ///< and their normals within this angle of the body's (rad)
+  double min_coverage = 0.05;     ///< share of the surface that must be covered, contradictions taken off
+  double min_roundness = 0.35;    ///< smaller over larger principal curvature of the support
+  double max_overlap = 0.30;      ///< deepest interpenetration of two bodies, as a share of the smaller radius
+  FitParameters fit;
+
+  /// @throws ParameterError
+  void check() const {
+    check_parameter(radius_min > 0, "bodies.radius_min", "positive", radius_min);
+    check_parameter(radius_max >= radius_min && std::isfinite(radius_max), "bodies.radius_max", ">= radius_min", radius_max);
+    check_parameter(tolerance > 0 && tolerance < 1, "bodies.tolerance", "in (0, 1)", tolerance);
+    check_parameter(max_angle > 0 && max_angle < kPi, "bodies.max_angle", "in (0, pi)", max_angle);
+    check_parameter(min_coverage > 0 && min_coverage < 1, "bodies.min_coverage", "in (0, 1)", min_coverage);
+    check_parameter(min_roundness >= 0 && min_roundness <= 1, "bodies.min_roundness", "in [0, 1]", min_roundness);
+    check_parameter(max_overlap >= 0, "bodies.max_overlap", ">= 0", max_overlap);
+    fit.check();
+  }
+  template <typename P, typename F>
+  static void fields(P& p, F&& f) {
+    f("radius_min", p.radius_min);
+    f("radius_max", p.radius_max);
+    f("tolerance", p.tolerance);
+    f("max_angle", p.max_angle);
+    f("min_coverage", p.min_coverage);
+    f("min_roundness", p.min_roundness);
+    f("max_overlap", p.max_overlap);
+    f("fit", p.fit);
+  }
+};
+
+/// A proposal of a body and what proposed it.
+struct BodyCandidate {
+  Ellipsoid body;
+  std::string found_by;
+};
+
+/// A body that won.
+struct FoundBody {
+  EllipsoidFit fit;
+  std::string found_by;
+  double coverage = 0.0;  ///< share of its surface covered by its points
+  double score = 0.0;     ///< coverage less contradictions
+};
+
+/// Share (0..1) of a body's surface that sight lines have gone through; see plan/free_space.hpp. May be empty: unknown.
+using SeenThrough = std::function<double(const Ellipsoid&)>;
+
+namespace detail {
+
+/// How a body fares against the points that are still free.
+struct Verdict {
+  double coverage = 0.0, inside = 0.0, seen_through = 0.0, roundness = 0.0;
+  Indices support;
+  double score() const { return coverage - 2.0 * inside - 1.5 * seen_through; }
+};
+
+template <typename S>
+Verdict judge(const PointCloud<S>& cloud, const Grid<S>& grid, const std::vector<char>& taken, const Ellipsoid& body,
+              const BodyParameters& parameters, const SeenThrough& seen_through) {
+  Verdict v;
+  const double r = body.mean_radius();
+  const double near = parameters.tolerance * r;
+  const double cos_max = std::cos(parameters.max_angle), cos_loose = std::cos(std::min(kPi / 2, 1.6 * parameters.max_angle));
+  std::bitset<DirectionBins::kCount> covered, filled;
+  Eigen::Vector3d p_mean = Eigen::Vector3d::Zero(), n_mean = Eigen::Vector3d::Zero();
+  Indices loose;
+  grid.visit(body.center.cast<S>(), static_cast<S>(1.35 * r), [&](Index index, S) {
+    const auto i = static_cast<std::size_t>(index);
+    const Eigen::Vector3d p = cloud.points[i].template cast<double>();
+    const double d = body.distance(p);
+    const double cosine = body.normal(p).dot(cloud.normals[i].template cast<double>());
+    if (d < -std::max(0.2 * r, 2.0 * near)) {
+      filled.set(static_cast<std::size_t>(DirectionBins::bin(p - body.center)));
+      return;
+    }
+    if (taken[i] || std::abs(d) > 2.0 * near) return;
+    if (cosine >= cos_loose) {
+      loose.push_back(index);
+      p_mean += p;
+      n_mean += cloud.normals[i].template cast<double>();
+    }
+    if (std::abs(d) <= near && cosine >= cos_max) {
+      covered.set(static_cast<std::size_t>(DirectionBins::bin(p - body.center)));
+      v.support.push_back(index);
+    }
+  });
+  std::sort(v.support.begin(), v.support.end());
+  for (std::size_t b = 0; b < DirectionBins::kCount; ++b) {
+    if (covered[b]) v.coverage += DirectionBins::shares()[b];
+    if (filled[b]) v.inside += DirectionBins::shares()[b];
+  }
+  if (v.support.size() < 8) return v;
+  // Principal curvatures: normals as a linear function of position, in the plane of the support's two longest directions.
+  const auto n = static_cast<double>(loose.size());
+  std::sort(loose.begin(), loose.end());
+  p_mean /= n;
+  n_mean /= n;
+  Eigen::Matrix3d pp = Eigen::Matrix3d::Zero(), np = Eigen::Matrix3d::Zero();
+  for (Index index : loose) {
+    const auto i = static_cast<std::size_t>(index);
+    const Eigen::Vector3d dp = cloud.points[i].template cast<double>() - p_mean;
+    pp.noalias() += dp * dp.transpose();
+    np.noalias() += (cloud.normals[i].template cast<double>() - n_mean) * dp.transpose();
+  }
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes(pp);
+  const Eigen::Matrix<double, 3, 2> plane = axes.eigenvectors().rightCols<2>();
+  const Eigen::Matrix2d spread = plane.transpose() * pp * plane;
+  Eigen::Matrix2d curvature = plane.transpose() * np * plane * (spread + 1e-12 * Eigen::Matrix2d::Identity()).inverse();
+  curvature = 0.5 * (curvature + curvature.transpose()).eval();
+  const Eigen::Vector2d k = Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d>(curvature).eigenvalues();
+  v.roundness = k[1] > 0.0 ? std::max(k[0], 0.0) / k[1] : 0.0;
+  if (seen_through) v.seen_through = seen_through(body);
+  return v;
+}
+
+/// How deep two bodies go into each other along the line of their centres (m); negative when apart.
+inline double overlap(const Ellipsoid& a, const Ellipsoid& b) {
+  const Eigen::Vector3d d = b.center - a.center;
+  const double length = d.norm();
+  if (!(length > 1e-9)) return a.mean_radius() + b.mean_radius();
+  const Eigen::Vector3d u = d / length;
+  return (a.surface(u) - a.center).norm() + (b.surface(-u) - b.center).norm() - length;
+}
+
+}  // namespace detail
+
+/// Let candidates compete for the points of a cloud with outward normals.
+///
+/// @param candidates in the order that decides ties
+/// @param seen_through evidence of free space, or empty
+/// @return the bodies that won, best first; their points are those that `assign_to_bodies` gives them
+/// @throws ParameterError; InputError when the cloud has no normals
+template <typename S>
+std::vector<FoundBody> find_bodies(const PointCloud<S>& cloud, const std::vector<BodyCandidate>& candidates,
+                                   const BodyParameters& parameters = {}, const SeenThrough& seen_through = {}) {
+  parameters.check();
+  check_input(cloud.normals.size() == cloud.points.size(), "find_bodies: the cloud has no normals");
+  const Grid<S> grid(cloud, static_cast<S>(0.5 * parameters.radius_min));
+  std::vector<char> taken(cloud.size(), 0);
+  const auto plausible = [&](double r) { return r >= 0.85 * parameters.radius_min && r <= 1.15 * parameters.radius_max; };
+  const auto refine = [&](const Ellipsoid& start) -> std::optional<EllipsoidFit> {
+    Indices near;
+    grid.visit(start.center.cast<S>(), static_cast<S>(1.35 * start.mean_radius()), [&](Index i, S) {
+      if (!taken[static_cast<std::size_t>(i)]) near.push_back(i);
+    });
+    std::sort(near.begin(), near.end());
+    return fit_ellipsoid(cloud, near, start, parameters.fit);
+  };
+
+  struct Entry {
+    EllipsoidFit fit;
+    const std::string* found_by;
+    detail::Verdict verdict;
+    bool alive = true;
+  };
+  const auto assess = [&](Entry& e) {
+    e.verdict = detail::judge(cloud, grid, taken, e.fit.body, parameters, seen_through);
+    e.alive = plausible(e.fit.body.mean_radius()) && e.verdict.score() >= parameters.min_coverage &&
+              e.verdict.roundness >= parameters.min_roundness;
+  };
+  std::vector<Entry> entries;
+  for (const BodyCandidate& c : candidates) {
+    if (!plausible(c.body.mean_radius())) continue;
+    const auto fit = refine(c.body);
+    if (!fit) continue;
+    Entry e{*fit, &c.found_by, {}, true};
+    assess(e);
+    if (e.alive) entries.push_back(std::move(e));
+  }
+  std::vector<FoundBody> found;
+  const auto area = [](const Entry& e) {
+    const double r = e.fit.body.mean_radius();
+    return e.verdict.score() * r * r;
+  };
+  while (true) {
+    Entry* best = nullptr;
+    for (Entry& e : entries)
+      if (e.alive && (!best || area(e) > area(*best))) best = &e;
+    if (!best) break;
+    best->alive = false;
+    const bool clashes = std::any_of(found.begin(), found.end(), [&](const FoundBody& f) {
+      const double smaller = std::min(f.fit.body.mean_radius(), best->fit.body.mean_radius());
+      return detail::overlap(f.fit.body, best->fit.body) > parameters.max_overlap * smaller;
+    });
+    if (clashes) continue;
+    found.push_back({best->fit, *best->found_by, best->verdict.coverage, best->verdict.score()});
+    // What the new body explains is no longer free, its calyx end and a margin included.
+    const Ellipsoid& body = best->fit.body;
+    const double near = 1.5 * parameters.tolerance * body.mean_radius();
+    const double cos_loose = std::cos(std::min(kPi / 2, 1.6 * parameters.max_angle));
+    grid.visit(body.center.cast<S>(), static_cast<S>(1.35 * body.mean_radius()), [&](Index index, S) {
+      const auto i = static_cast<std::size_t>(index);
+      const Eigen::Vector3d p = cloud.points[i].template cast<double>();
+      const double d = body.distance(p);
+      if (d < near && (d < -near || body.normal(p).dot(cloud.normals[i].template cast<double>()) >= cos_loose)) taken[i] = 1;
+    });
+    for (Entry& e : entries) {
+      if (!e.alive) continue;
+      const double gap = (e.fit.body.center - body.center).norm() - e.fit.body.mean_radius() - body.mean_radius();
+      if (gap > 0.5 * body.mean_radius()) continue;
+      const auto again = refine(e.fit.body);
+      if (!again) {
+        e.alive = false;
+        continue;
+      }
+      e.fit = *again;
+      assess(e);
+    }
+  }
+  return found;
+}
+
+/// Label each point with the body (counted from 1) on whose surface it lies, 0 for none: the nearest body within
+/// `tolerance` of its radius whose normal agrees to within 1.6 `max_angle`.
+template <typename S>
+Labels assign_to_bodies(const PointCloud<S>& cloud, const std::vector<FoundBody>& bodies,
+                        const BodyParameters& parameters = {}) {
+  Labels labels(cloud.size(), 0);
+  if (bodies.empty()) return labels;
+  const Grid<S> grid(cloud, static_cast<S>(0.5 * parameters.radius_min));
+  std::vector<float> best(cloud.size(), std::numeric_limits<float>::infinity());
+  const double cos_loose = std::cos(std::min(kPi / 2, 1.6 * parameters.max_angle));
+  for (std::size_t b = 0; b < bodies.size(); ++b) {
+    const Ellipsoid& body = bodies[b].fit.body;
+    const double r = body.mean_radius();
+    grid.visit(body.center.cast<S>(), static_cast<S>(1.4 * r), [&](Index index, S) {
+      const auto i = static_cast<std::size_t>(index);
+      const Eigen::Vector3d p = cloud.points[i].template cast<double>();
+      const double d = std::abs(body.distance(p));
+      if (d > parameters.tolerance * r || d >= double(best[i])) return;
+      if (body.normal(p).dot(cloud.normals[i].template cast<double>()) < cos_loose) return;
+      best[i] = static_cast<float>(d);
+      labels[i] = static_cast<int>(b) + 1;
+    });
+  }
+  return labels;
+}
+
+}  // namespace agrisee

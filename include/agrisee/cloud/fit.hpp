@@ -1,0 +1,214 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// @file
+/// Fits spheres and ellipsoids to points with normals, robustly.
+///
+/// An ellipsoid is { p : |A (p - c)| = 1 } with A symmetric positive definite; its distance from a point is taken to first
+/// order, (g - 1) g / |A A (p - c)| with g = |A (p - c)| (Taubin, PAMI 1991). Gauss-Newton with Tukey's biweight; where the
+/// data do not tell, a prior pulls towards a sphere, so that a crescent yields a sphere and a whole fruit its own shape.
+/// Units: metres. Cost: linear in the points per iteration.
+#pragma once
+
+#include <agrisee/core/cloud.hpp>
+#include <agrisee/core/error.hpp>
+
+#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+namespace agrisee {
+
+/// A sphere (m).
+struct Sphere {
+  Eigen::Vector3d center = Eigen::Vector3d::Zero();
+  double radius = 0.0;
+};
+
+/// An ellipsoid in the form that the fit works with.
+struct Ellipsoid {
+  Eigen::Vector3d center = Eigen::Vector3d::Zero();
+  Eigen::Matrix3d A = Eigen::Matrix3d::Identity();  ///< symmetric; its eigenvalues are the inverse semi-axes (1/m)
+
+  Ellipsoid() = default;
+  explicit Ellipsoid(const Sphere& s) : center(s.center), A(Eigen::Matrix3d::Identity() / s.radius) {}
+  /// Signed distance (m) to first order, negative inside.
+  double distance(const Eigen::Vector3d& p) const {
+    const Eigen::Vector3d a = A * (p - center);
+    const double g = a.norm();
+    const double slope = (A * a).norm();
+    return slope > 0.0 ? (g - 1.0) * g / slope : -mean_radius();
+  }
+  /// Unit outward normal at the foot of p.
+  Eigen::Vector3d normal(const Eigen::Vector3d& p) const {
+    const Eigen::Vector3d n = A * (A * (p - center));
+    const double length = n.norm();
+    return length > 0.0 ? Eigen::Vector3d(n / length) : Eigen::Vector3d::UnitZ();
+  }
+  /// Radius of the sphere whose inverse is the mean of the inverse semi-axes (m).
+  double mean_radius() const { return 3.0 / A.trace(); }
+  /// Point of the surface in direction `d` (unit) from the centre.
+  Eigen::Vector3d surface(const Eigen::Vector3d& d) const { return center + d / (A * d).norm(); }
+};
+
+/// Semi-axes (m, largest first) and their directions (columns, right-handed).
+inline std::pair<Eigen::Vector3d, Eigen::Matrix3d> semi_axes(const Ellipsoid& e) {
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(e.A);  // ascending: smallest inverse first
+  Eigen::Matrix3d axes = solver.eigenvectors();
+  for (int i = 0; i < 2; ++i) {  // signs by a rule, so that equal bodies print alike
+    Eigen::Index largest;
+    axes.col(i).cwiseAbs().maxCoeff(&largest);
+    if (axes(largest, i) < 0.0) axes.col(i) *= -1.0;
+  }
+  axes.col(2) = axes.col(0).cross(axes.col(1));
+  return {solver.eigenvalues().cwiseInverse(), axes};
+}
+
+/// Parameters of fit_ellipsoid.
+struct FitParameters {
+  double noise = 0.001;        ///< expected standard deviation of points about a fruit's ellipsoid, its lobes included (m)
+  double shape_prior = 0.04;   ///< standard deviation of the relative semi-axes about a sphere
+  double max_angle = deg(50);  ///< points whose normals differ by more from the body's do not count (rad)
+  int independent = 150;       ///< points above this number add no certainty: neighbours err together
+  int iterations = 12;
+
+  /// @throws ParameterError
+  void check() const {
+    check_parameter(noise > 0, "fit.noise", "positive", noise);
+    check_parameter(shape_prior > 0, "fit.shape_prior", "positive", shape_prior);
+    check_parameter(max_angle > 0 && max_angle <= kPi, "fit.max_angle", "in (0, pi]", max_angle);
+    check_parameter(independent >= 1, "fit.independent", ">= 1", independent);
+    check_parameter(iterations >= 1, "fit.iterations", ">= 1", iterations);
+  }
+  template <typename P, typename F>
+  static void fields(P& p, F&& f) {
+    f("noise", p.noise);
+    f("shape_prior", p.shape_prior);
+    f("max_angle", p.max_angle);
+    f("independent", p.independent);
+    f("iterations", p.iterations);
+  }
+};
+
+/// What a fit found.
+struct EllipsoidFit {
+  Ellipsoid body;
+  Eigen::Matrix3d center_covariance = Eigen::Matrix3d::Zero();  ///< m2
+  double rms = 0.0;           ///< of the inliers (m)
+  std::size_t inliers = 0;    ///< points within three noises whose normals agree
+};
+
+/// The sphere through points with outward normals: p = c + r n is linear in c and r, so r is the regression of points on
+/// normals. Empty for fewer than 4 points or normals that hardly differ.
+template <typename S>
+std::optional<Sphere> sphere_from_normals(const PointCloud<S>& cloud, const Indices& indices) {
+  if (indices.size() < 4) return std::nullopt;
+  Eigen::Vector3d p_mean = Eigen::Vector3d::Zero(), n_mean = Eigen::Vector3d::Zero();
+  for (Index i : indices) {
+    p_mean += cloud.points[static_cast<std::size_t>(i)].template cast<double>();
+    n_mean += cloud.normals[static_cast<std::size_t>(i)].template cast<double>();
+  }
+  const auto n = static_cast<double>(indices.size());
+  p_mean /= n;
+  n_mean /= n;
+  double pn = 0.0, nn = 0.0;
+  for (Index i : indices) {
+    const Eigen::Vector3d dn = cloud.normals[static_cast<std::size_t>(i)].template cast<double>() - n_mean;
+    pn += dn.dot(cloud.points[static_cast<std::size_t>(i)].template cast<double>() - p_mean);
+    nn += dn.squaredNorm();
+  }
+  if (!(nn > 1e-6 * n)) return std::nullopt;
+  const double r = pn / nn;
+  return Sphere{p_mean - r * n_mean, r};
+}
+
+/// Fit an ellipsoid to the points `indices` of a cloud with normals, starting from `start`.
+///
+/// Empty when fewer than `parameters.independent / 10 + 4` points support it or the fit degenerates.
+/// @throws InputError when the cloud has no normals; ParameterError
+template <typename S>
+std::optional<EllipsoidFit> fit_ellipsoid(const PointCloud<S>& cloud, const Indices& indices, const Ellipsoid& start,
+                                          const FitParameters& parameters = {}) {
+  parameters.check();
+  check_input(cloud.normals.size() == cloud.points.size(), "fit_ellipsoid: the cloud has no normals");
+  const std::size_t least = static_cast<std::size_t>(parameters.independent / 10 + 4);
+  if (indices.size() < least) return std::nullopt;
+  const double cos_max = std::cos(parameters.max_angle);
+  using Vector9 = Eigen::Matrix<double, 9, 1>;
+  using Matrix9 = Eigen::Matrix<double, 9, 9>;
+
+  EllipsoidFit fit;
+  fit.body = start;
+  const double size = start.mean_radius();
+  double gate = std::max(6.0 * parameters.noise, 0.12 * size);
+  for (int iteration = 0; iteration < parameters.iterations; ++iteration) {
+    // Unknowns: the centre in units of `size`, and B = A * size - I as (xx, yy, zz, xy, xz, yz).
+    Matrix9 normal_matrix = Matrix9::Zero();
+    Vector9 rhs = Vector9::Zero();
+    double weights = 0.0, squares = 0.0;
+    std::size_t inliers = 0;
+    const Eigen::Matrix3d& A = fit.body.A;
+    for (Index index : indices) {
+      const auto i = static_cast<std::size_t>(index);
+      const Eigen::Vector3d d = cloud.points[i].template cast<double>() - fit.body.center;
+      const Eigen::Vector3d a = A * d;
+      const double g = a.norm();
+      const Eigen::Vector3d slope = A * a;
+      const double steep = slope.norm();
+      if (!(g > 1e-9) || !(steep > 1e-9)) continue;
+      if (slope.dot(cloud.normals[i].template cast<double>()) < cos_max * steep) continue;
+      const double scale = g / steep;
+      const double residual = (g - 1.0) * scale;
+      const double t = residual / gate;
+      if (std::abs(t) >= 1.0) continue;
+      const double w = (1.0 - t * t) * (1.0 - t * t);
+      Vector9 j;
+      j.head<3>() = -slope * (scale / g) * size;
+      const double s = scale / (g * size);
+      j.tail<6>() << a.x() * d.x(), a.y() * d.y(), a.z() * d.z(), a.x() * d.y() + a.y() * d.x(),
+          a.x() * d.z() + a.z() * d.x(), a.y() * d.z() + a.z() * d.y();
+      j.tail<6>() *= s;
+      normal_matrix.noalias() += w * j * j.transpose();
+      rhs -= w * residual * j;
+      weights += w;
+      if (std::abs(residual) < 3.0 * std::max(parameters.noise, 0.01 * size)) ++inliers, squares += residual * residual;
+    }
+    if (weights < 0.3 * static_cast<double>(least)) return std::nullopt;
+    const double certainty = std::min(1.0, parameters.independent / weights) / (parameters.noise * parameters.noise);
+    normal_matrix *= certainty;
+    rhs *= certainty;
+    // The prior: the deviatoric part of B is small.
+    const Eigen::Matrix3d B = A * size - Eigen::Matrix3d::Identity();
+    const double relative = A.trace() * size / 3.0;  // mean of the inverse semi-axes, in units of 1 / size
+    Matrix9 prior = Matrix9::Zero();
+    prior.block<3, 3>(3, 3) = Eigen::Matrix3d::Identity() - Eigen::Matrix3d::Constant(1.0 / 3.0);
+    prior.diagonal().tail<3>().setConstant(2.0);
+    prior /= parameters.shape_prior * parameters.shape_prior * relative * relative;
+    Vector9 b = Vector9::Zero();
+    b.tail<6>() << B(0, 0), B(1, 1), B(2, 2), B(0, 1), B(0, 2), B(1, 2);
+    rhs -= prior * b;
+    normal_matrix += prior;
+    normal_matrix.diagonal().array() += 1e-9 * normal_matrix.diagonal().maxCoeff();
+    const Eigen::LDLT<Matrix9> solver(normal_matrix);
+    const Vector9 step = solver.solve(rhs);
+    if (!step.allFinite()) return std::nullopt;
+    const double longest = std::max(step.head<3>().norm(), step.tail<6>().cwiseAbs().maxCoeff());
+    const double damp = longest > 0.3 ? 0.3 / longest : 1.0;
+    fit.body.center += damp * size * step.head<3>();
+    Eigen::Matrix3d dA;
+    dA << step[3], step[6], step[7], step[6], step[4], step[8], step[7], step[8], step[5];
+    fit.body.A += damp * dA / size;
+    const Eigen::Vector3d inverse_axes = Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(fit.body.A).eigenvalues();
+    if (!(inverse_axes[0] > 0.2 / size) || !(inverse_axes[2] < 5.0 / size)) return std::nullopt;
+    fit.inliers = inliers;
+    fit.rms = inliers ? std::sqrt(squares / static_cast<double>(inliers)) : 0.0;
+    fit.center_covariance = solver.solve(Matrix9::Identity()).topLeftCorner<3, 3>() * size * size;
+    gate = std::max(0.7 * gate, std::max(4.0 * parameters.noise, 0.05 * size));
+    if (iteration > 4 && longest < 1e-5) break;
+  }
+  if (fit.inliers < least / 2) return std::nullopt;
+  return fit;
+}
+
+}  // namespace agrisee

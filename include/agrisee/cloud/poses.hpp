@@ -1,0 +1,136 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// @file
+/// Where each fruit is and how it hangs: centroids, deviations and pose frames (paper, "Localization").
+/// Metres, world frame. Cost: linear in the points.
+#pragma once
+
+#include <agrisee/cloud/fit.hpp>
+#include <agrisee/core/grid.hpp>
+#include <agrisee/core/pose.hpp>
+
+namespace agrisee {
+
+/// Mean and standard deviation per axis of some points (m).
+struct Centroid {
+  Eigen::Vector3d mean = Eigen::Vector3d::Zero();
+  Eigen::Vector3d sigma = Eigen::Vector3d::Zero();  ///< divided by n
+};
+
+/// Of the points `indices` of a cloud; zero when there are none.
+template <typename C>
+Centroid centroid(const C& cloud, const Indices& indices) {
+  Centroid out;
+  if (indices.empty()) return out;
+  const Eigen::Vector3d origin = point(cloud, static_cast<std::size_t>(indices[0])).template cast<double>();
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero(), squares = Eigen::Vector3d::Zero();
+  for (Index i : indices) {
+    const Eigen::Vector3d d = point(cloud, static_cast<std::size_t>(i)).template cast<double>() - origin;
+    sum += d;
+    squares += d.cwiseAbs2();
+  }
+  const double n = static_cast<double>(indices.size());
+  out.mean = origin + sum / n;
+  out.sigma = (squares / n - (sum / n).cwiseAbs2()).cwiseMax(0.0).cwiseSqrt();
+  return out;
+}
+
+/// Indices of the points of each label 1..count; element 0 holds label 1.
+inline std::vector<Indices> indices_by_label(const Labels& labels) {
+  std::vector<Indices> out;
+  for (std::size_t i = 0; i < labels.size(); ++i) {
+    if (labels[i] <= 0) continue;
+    const auto l = static_cast<std::size_t>(labels[i]);
+    if (out.size() < l) out.resize(l);
+    out[l - 1].push_back(static_cast<Index>(i));
+  }
+  return out;
+}
+
+/// Index of the highest point (largest z in world; ties: the first), or -1 for an empty cloud.
+template <typename C>
+Index highest_point(const C& cloud) {
+  Index best = -1;
+  for (std::size_t i = 0; i < size(cloud); ++i)
+    if (is_finite(point(cloud, i)) && (best < 0 || point(cloud, i).z() > point(cloud, static_cast<std::size_t>(best)).z()))
+      best = static_cast<Index>(i);
+  return best;
+}
+
+/// The axes (columns x, y, z) of a frame whose z points along `z` and whose x points towards `x_hint`, made orthogonal to z;
+/// y completes a right-handed frame. Directions of no length fall back: z to up, x to any direction at right angles.
+inline Eigen::Matrix3d frame_from_z_and_x(Eigen::Vector3d z, const Eigen::Vector3d& x_hint) {
+  z = z.norm() > 1e-12 ? z.normalized() : Eigen::Vector3d(Eigen::Vector3d::UnitZ());
+  Eigen::Vector3d x = x_hint - z * z.dot(x_hint);
+  x = x.norm() > 1e-9 * std::max(1.0, x_hint.norm()) ? x.normalized() : any_orthogonal<double>(z);
+  Eigen::Matrix3d frame;
+  frame << x, z.cross(x), z;
+  return frame;
+}
+
+/// The densest part of some points: the one with the most others of them within `radius` (m; ties: the lowest index).
+template <typename S>
+Eigen::Vector3d densest_point(const PointCloud<S>& cloud, const Indices& indices, double radius) {
+  if (indices.empty()) return Eigen::Vector3d::Zero();
+  const PointCloud<S> part = select(cloud, indices);
+  const Grid<S> grid(part, static_cast<S>(radius));
+  std::size_t best = 0, most = 0;
+  for (std::size_t i = 0; i < part.size(); ++i) {
+    const std::size_t count = grid.count(part.points[i], static_cast<S>(radius));
+    if (count > most) {
+      most = count;
+      best = i;
+    }
+  }
+  return part.points[best].template cast<double>();
+}
+
+/// The paper's pose frame: origin at the centroid (not returned), z towards the highest point of the whole cloud, x towards
+/// the densest part (within `radius`, m) of the fruit's points, y completing a right-handed frame.
+template <typename S>
+Eigen::Matrix3d paper_pose_frame(const PointCloud<S>& cloud, const Indices& indices, const Eigen::Vector3d& mean,
+                                 double radius = 0.006) {
+  const Index top = highest_point(cloud);
+  const Eigen::Vector3d z =
+      top < 0 ? Eigen::Vector3d(Eigen::Vector3d::UnitZ()) : Eigen::Vector3d(cloud.points[static_cast<std::size_t>(top)].template cast<double>() - mean);
+  return frame_from_z_and_x(z, densest_point(cloud, indices, radius) - mean);
+}
+
+/// Parameters of growth_axis.
+struct GrowthAxisParameters {
+  double shell = 0.45;      ///< points outside a fruit within this share of its radius may be its calyx and pedicel
+  double up_weight = 0.35;  ///< weight of "fruit hang below their stem" against the evidence
+
+  template <typename P, typename F>
+  static void fields(P& p, F&& f) {
+    f("shell", p.shell);
+    f("up_weight", p.up_weight);
+  }
+};
+
+/// Direction (unit, world) from a fruit's centre towards its calyx, from what can be measured: the points that belong to no
+/// fruit and lie just outside the body (calyx, pedicel) weigh by their nearness; gravity is a weak prior, and so is the
+/// body's shortest axis, about which a fruit is round.
+template <typename S>
+Eigen::Vector3d growth_axis(const PointCloud<S>& cloud, const Labels& labels, const Ellipsoid& body,
+                            const GrowthAxisParameters& parameters = {}) {
+  const double r = body.mean_radius();
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  double weights = 0.0;
+  for (std::size_t i = 0; i < cloud.size(); ++i) {
+    if (labels[i] != 0) continue;
+    const Eigen::Vector3d p = cloud.points[i].template cast<double>();
+    if ((p - body.center).squaredNorm() > 4.0 * r * r) continue;
+    const double d = body.distance(p);
+    if (d < -0.3 * r || d > parameters.shell * r) continue;
+    const double near = 1.0 - std::max(d, 0.0) / (parameters.shell * r);
+    const Eigen::Vector3d u = (p - body.center).normalized();
+    const double w = near * near * (1.0 + 0.8 * u.z());  // what hangs, hangs from above
+    sum += w * u;
+    weights += w;
+  }
+  Eigen::Vector3d axis = parameters.up_weight * Eigen::Vector3d::UnitZ();
+  if (weights > 0.0) axis += std::min(1.0, weights / 10.0) * sum / weights;
+  return axis.norm() > 1e-9 ? Eigen::Vector3d(axis.normalized()) : Eigen::Vector3d(Eigen::Vector3d::UnitZ());
+}
+
+}  // namespace agrisee

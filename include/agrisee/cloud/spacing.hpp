@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// @file
+/// What a cloud says of itself: how far apart its points are. Parameters are derived from it instead of fixed millimetres.
+#pragma once
+
+#include <agrisee/core/kdtree.hpp>
+
+#include <algorithm>
+
+namespace agrisee {
+
+/// Typical distance (m) between neighbouring points: the square root of the area that a point stands for on a locally flat
+/// surface, from the median distance to the 8th neighbour (pi d8^2 holds 9 points). 0 for fewer than two distinct points.
+/// At most `samples` points are asked, evenly spread in index order.
+template <typename C, typename Search>
+double estimate_spacing(const C& cloud, const Search& search, std::size_t samples = 1000) {
+  using S = scalar_t<C>;
+  const std::size_t n = size(cloud);
+  if (n < 2) return 0.0;
+  std::vector<double> spacing;
+  Neighbors<S> found;
+  const std::size_t step = std::max<std::size_t>(1, n / samples);
+  for (std::size_t i = 0; i < n; i += step) {
+    const Vector3<S> p = point(cloud, i);
+    if (!is_finite(p)) continue;
+    search.knn(p, 9, found);
+    if (found.size() < 2) continue;
+    spacing.push_back(double(found.back().distance) * std::sqrt(kPi / double(found.size())));
+  }
+  if (spacing.empty()) return 0.0;
+  const auto mid = spacing.begin() + static_cast<std::ptrdiff_t>(spacing.size() / 2);
+  std::nth_element(spacing.begin(), mid, spacing.end());
+  return *mid;
+}
+
+/// The same with a search made for the purpose.
+template <typename C>
+double estimate_spacing(const C& cloud) {
+  return estimate_spacing(cloud, KdTree<scalar_t<C>>(cloud));
+}
+
+}  // namespace agrisee

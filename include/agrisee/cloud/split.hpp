@@ -1,0 +1,186 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// @file
+/// From a cloud with normals to fruit: region growing, DBSCAN on the residual and, unless only the paper's two stages are
+/// wanted, bodies that compete for the points (paper, "Segmentation"; bodies.hpp).
+///
+/// The paper's stages alone give a label a region or cluster. With bodies, regions, clusters and voted centres propose, the
+/// bodies that best explain the cloud win, and points are labelled by the body on which they lie. Metres, any frame.
+#pragma once
+
+#include <agrisee/cloud/bodies.hpp>
+#include <agrisee/cloud/dbscan.hpp>
+#include <agrisee/cloud/poses.hpp>
+#include <agrisee/cloud/region_growing.hpp>
+#include <agrisee/cloud/spacing.hpp>
+#include <agrisee/cloud/sphere_voting.hpp>
+
+namespace agrisee {
+
+/// Parameters of split.
+struct SplitParameters {
+  bool adaptive = true;             ///< derive the lengths and sizes below from the cloud's spacing and `bodies.radius_min`
+  RegionGrowingParameters growing;  ///< as given when not adaptive; otherwise its radius and min_size are derived
+  DbscanParameters clustering;      ///< as given when not adaptive; otherwise derived
+  double growing_reach = 2.2;       ///< adaptive: growth radius in spacings
+  double clustering_reach = 2.5;    ///< adaptive: DBSCAN's eps in spacings
+  double min_region = 0.03;         ///< adaptive: least region or cluster, as a share of the smallest fruit's surface
+  int min_residual = 350;           ///< DBSCAN runs when the residual holds more points than this (not adaptive)
+  bool fit_bodies = true;           ///< let bodies compete; off: the paper's two stages alone
+  BodyParameters bodies;
+
+  /// The paper's values and stages.
+  static SplitParameters paper() {
+    SplitParameters p;
+    p.adaptive = false;
+    p.growing = RegionGrowingParameters::paper();
+    p.clustering = DbscanParameters::paper();
+    p.fit_bodies = false;
+    return p;
+  }
+  /// @throws ParameterError
+  void check() const {
+    growing.check();
+    clustering.check();
+    bodies.check();
+    check_parameter(growing_reach > 0, "split.growing_reach", "positive", growing_reach);
+    check_parameter(clustering_reach > 0, "split.clustering_reach", "positive", clustering_reach);
+    check_parameter(min_region > 0 && min_region < 1, "split.min_region", "in (0, 1)", min_region);
+    check_parameter(min_residual >= 0, "split.min_residual", ">= 0", min_residual);
+  }
+  template <typename P, typename F>
+  static void fields(P& p, F&& f) {
+    f("adaptive", p.adaptive);
+    f("growing", p.growing);
+    f("clustering", p.clustering);
+    f("growing_reach", p.growing_reach);
+    f("clustering_reach", p.clustering_reach);
+    f("min_region", p.min_region);
+    f("min_residual", p.min_residual);
+    f("fit_bodies", p.fit_bodies);
+    f("bodies", p.bodies);
+  }
+};
+
+/// What the split found. `labels` count from 1 in the order of `found`.
+struct Split {
+  Labels labels;                   ///< one per point: the fruit, 0 = none
+  std::vector<FoundBody> found;    ///< one per fruit; without bodies only `found_by` is set
+  Labels regions;                  ///< what region growing alone found
+  std::size_t residual = 0;        ///< points that region growing left to DBSCAN
+  int regions_found = 0, clusters_found = 0;  ///< instances from either of the paper's stages
+};
+
+namespace detail {
+
+/// Who found a body: the stage one of whose segments is mostly this body, and makes up most of it.
+inline std::string found_by(const Indices& points, const Labels& segments, const std::vector<std::size_t>& sizes,
+                            int first_cluster) {
+  std::vector<std::size_t> votes(sizes.size(), 0);
+  for (Index i : points) ++votes[static_cast<std::size_t>(segments[static_cast<std::size_t>(i)])];
+  std::size_t best = 0;
+  for (std::size_t s = 1; s < votes.size(); ++s)
+    if (best == 0 || votes[s] > votes[best]) best = s;
+  if (best == 0 || 2 * votes[best] < points.size() || 2 * votes[best] < sizes[best]) return "sphere_voting";
+  return static_cast<int>(best) < first_cluster ? "region_growing" : "dbscan";
+}
+
+}  // namespace detail
+
+/// Split a cloud with normals (facing outwards) into fruit.
+/// @param seen_through evidence of free space for the competition, or empty
+/// @throws ParameterError; InputError when the cloud has no normals
+template <typename S>
+Split split(const PointCloud<S>& cloud, const SplitParameters& parameters = {}, const SeenThrough& seen_through = {}) {
+  parameters.check();
+  check_input(cloud.normals.size() == cloud.points.size(), "split: the cloud has no normals");
+  Split out;
+  out.labels.assign(cloud.size(), 0);
+  out.regions.assign(cloud.size(), 0);
+  if (cloud.empty()) return out;
+
+  RegionGrowingParameters growing = parameters.growing;
+  DbscanParameters clustering = parameters.clustering;
+  auto min_residual = static_cast<std::size_t>(parameters.min_residual);
+  if (parameters.adaptive) {
+    const double spacing = estimate_spacing(cloud);
+    if (!(spacing > 0.0)) return out;
+    const double smallest = 4.0 * kPi * parameters.bodies.radius_min * parameters.bodies.radius_min;
+    growing.radius = parameters.growing_reach * spacing;
+    growing.min_size = std::max(12, static_cast<int>(parameters.min_region * smallest / (spacing * spacing)));
+    clustering.eps = parameters.clustering_reach * spacing;
+    clustering.min_points = 8;
+    min_residual = static_cast<std::size_t>(growing.min_size);
+  }
+
+  // Region growing, then DBSCAN on what it leaves.
+  const Grid<S> grid(cloud, static_cast<S>(growing.radius));
+  out.regions = grow_regions(cloud, cloud.normals, growing, grid);
+  out.regions_found = *std::max_element(out.regions.begin(), out.regions.end());
+  const Indices rest = residual(out.regions);
+  out.residual = rest.size();
+  Labels segments = out.regions;
+  if (rest.size() > min_residual) {
+    const PointCloud<S> part = select(cloud, rest);
+    const Labels clusters = dbscan(part, clustering);
+    std::vector<int> sizes;
+    for (int c : clusters) {
+      if (static_cast<std::size_t>(c) >= sizes.size()) sizes.resize(static_cast<std::size_t>(c) + 1, 0);
+      ++sizes[static_cast<std::size_t>(c)];
+    }
+    // Every cluster counts for the paper; bodies are proposed by those that could be a fruit.
+    std::vector<int> renumbered(sizes.size(), 0);
+    for (std::size_t c = 1; c < sizes.size(); ++c)
+      if (!parameters.adaptive || sizes[c] >= growing.min_size) renumbered[c] = out.regions_found + ++out.clusters_found;
+    for (std::size_t i = 0; i < rest.size(); ++i)
+      segments[static_cast<std::size_t>(rest[i])] = renumbered[static_cast<std::size_t>(clusters[i])];
+  }
+  const int first_cluster = out.regions_found + 1;
+  const auto members = indices_by_label(segments);
+  if (!parameters.fit_bodies) {
+    out.labels = segments;
+    for (std::size_t s = 0; s < members.size(); ++s) {
+      FoundBody found;
+      found.found_by = static_cast<int>(s) + 1 < first_cluster ? "region_growing" : "dbscan";
+      out.found.push_back(std::move(found));
+    }
+    return out;
+  }
+
+  // Segments and voted centres propose bodies; the best explanation wins.
+  const BodyParameters& bodies = parameters.bodies;
+  std::vector<BodyCandidate> candidates;
+  const auto propose = [&](Sphere s, const char* by) {
+    if (!(s.radius > 0.5 * bodies.radius_min && s.radius < 2.0 * bodies.radius_max)) return;
+    s.radius = std::clamp(s.radius, bodies.radius_min, bodies.radius_max);
+    candidates.push_back({Ellipsoid(s), by});
+  };
+  for (std::size_t s = 0; s < members.size(); ++s)
+    if (const auto sphere = sphere_from_normals(cloud, members[s]))
+      propose(*sphere, static_cast<int>(s) + 1 < first_cluster ? "region_growing" : "dbscan");
+  for (const VotedCenter& v :
+       vote_for_centers(cloud, bodies.radius_min, bodies.radius_max, 0.5 * static_cast<double>(growing.min_size))) {
+    propose({v.center, 0.5 * (bodies.radius_min + bodies.radius_max)}, "sphere_voting");
+    propose({v.center, bodies.radius_min}, "sphere_voting");
+  }
+  out.found = find_bodies(cloud, candidates, bodies, seen_through);
+  out.labels = assign_to_bodies(cloud, out.found, bodies);
+
+  // Each body is fitted once more to the points that are its own, and the points are assigned anew.
+  for (int round = 0; round < 2; ++round) {
+    auto own = indices_by_label(out.labels);
+    own.resize(out.found.size());
+    for (std::size_t b = 0; b < out.found.size(); ++b)
+      if (const auto fit = fit_ellipsoid(cloud, own[b], out.found[b].fit.body, bodies.fit)) out.found[b].fit = *fit;
+    out.labels = assign_to_bodies(cloud, out.found, bodies);
+  }
+
+  std::vector<std::size_t> sizes(members.size() + 1, 0);
+  for (int s : segments) ++sizes[static_cast<std::size_t>(s)];
+  auto own = indices_by_label(out.labels);
+  own.resize(out.found.size());
+  for (std::size_t b = 0; b < out.found.size(); ++b)
+    out.found[b].found_by = detail::found_by(own[b], segments, sizes, first_cluster);
+  return out;
+}
+
+}  // namespace agrisee

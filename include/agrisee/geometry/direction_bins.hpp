@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// @file
+/// Divides the directions around a centre into bins of nearly equal solid angle, to tell how much of a body has been seen.
+#pragma once
+
+#include <agrisee/core/types.hpp>
+
+#include <array>
+#include <cmath>
+
+namespace agrisee {
+
+/// 6 x 6 bins on each face of a cube, spaced by equal angles.
+struct DirectionBins {
+  static constexpr int kSide = 6;
+  static constexpr int kCount = 6 * kSide * kSide;
+
+  /// Bin of a direction (need not be unit length; not zero).
+  static int bin(const Eigen::Vector3d& d) {
+    Eigen::Index axis;
+    const double largest = d.cwiseAbs().maxCoeff(&axis);
+    const int face = static_cast<int>(axis) * 2 + (d[axis] < 0.0 ? 1 : 0);
+    const auto cell = [&](double x) {
+      const double a = std::atan(x / largest) * (4.0 / kPi);  // -1 .. 1
+      const int c = static_cast<int>((a + 1.0) * 0.5 * kSide);
+      return c < 0 ? 0 : c >= kSide ? kSide - 1 : c;
+    };
+    return (face * kSide + cell(d[(axis + 1) % 3])) * kSide + cell(d[(axis + 2) % 3]);
+  }
+
+  /// Central direction (unit) of each bin.
+  static const std::array<Eigen::Vector3d, kCount>& directions() {
+    static const std::array<Eigen::Vector3d, kCount> table = [] {
+      std::array<Eigen::Vector3d, kCount> t;
+      for (int b = 0; b < kCount; ++b) t[static_cast<std::size_t>(b)] = at(b, 0.5, 0.5);
+      return t;
+    }();
+    return table;
+  }
+
+  /// Solid angle of each bin as a share of the sphere; they sum to 1.
+  static const std::array<double, kCount>& shares() {
+    static const std::array<double, kCount> table = [] {
+      std::array<double, kCount> t{};
+      double sum = 0.0;
+      constexpr int kFine = 8;
+      for (int b = 0; b < kCount; ++b)
+        for (int i = 0; i < kFine; ++i)
+          for (int j = 0; j < kFine; ++j) {
+            const double a0 = double(i) / kFine, a1 = double(i + 1) / kFine;
+            const double b0 = double(j) / kFine, b1 = double(j + 1) / kFine;
+            const Eigen::Vector3d p = at(b, a0, b0), q = at(b, a1, b0), r = at(b, a1, b1), s = at(b, a0, b1);
+            t[static_cast<std::size_t>(b)] += 0.5 * ((q - p).cross(r - p).norm() + (r - p).cross(s - p).norm());
+          }
+      for (double x : t) sum += x;
+      for (double& x : t) x /= sum;
+      return t;
+    }();
+    return table;
+  }
+
+ private:
+  static Eigen::Vector3d at(int b, double fu, double fv) {
+    const int face = b / (kSide * kSide), u = (b / kSide) % kSide, v = b % kSide;
+    const int axis = face / 2;
+    Eigen::Vector3d d;
+    d[axis] = face % 2 ? -1.0 : 1.0;
+    d[(axis + 1) % 3] = std::tan(((u + fu) / kSide * 2.0 - 1.0) * kPi / 4.0);
+    d[(axis + 2) % 3] = std::tan(((v + fv) / kSide * 2.0 - 1.0) * kPi / 4.0);
+    return d.normalized();
+  }
+};
+
+}  // namespace agrisee

@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// @file
+/// What the sight lines of past views say about space: a place through which the sensor looked holds no surface.
+///
+/// Each view's cells keep the raw depth. A sight line that ends well behind a place went through it; where nearly every
+/// pixel on a surface returns, one that returned nothing went through too. Metres, world. Cost: one projection a view.
+#pragma once
+
+#include <agrisee/cloud/fit.hpp>
+#include <agrisee/geometry/direction_bins.hpp>
+#include <agrisee/sensor/surface_image.hpp>
+
+namespace agrisee::plan {
+
+/// Parameters of the free-space tests.
+struct FreeSpaceParameters {
+  double margin = 0.006;       ///< a sight line must end this much behind a place to have gone through it (m)
+  double min_fill = 0.85;      ///< cells without return are evidence when surfaces return at least this share of pixels
+  double max_incidence = deg(50);  ///< bodies are tested where a surface would be seen at less than this (rad)
+  int min_refuting = 2;        ///< a surfel goes when this many views looked through it and no more than half saw it
+
+  /// @throws ParameterError
+  void check() const {
+    check_parameter(margin > 0, "free_space.margin", "positive", margin);
+    check_parameter(min_fill >= 0, "free_space.min_fill", ">= 0", min_fill);
+    check_parameter(max_incidence > 0 && max_incidence < kPi / 2, "free_space.max_incidence", "in (0, pi/2)", max_incidence);
+    check_parameter(min_refuting >= 1, "free_space.min_refuting", ">= 1", min_refuting);
+  }
+  template <typename P, typename F>
+  static void fields(P& p, F&& f) {
+    f("margin", p.margin);
+    f("min_fill", p.min_fill);
+    f("max_incidence", p.max_incidence);
+    f("min_refuting", p.min_refuting);
+  }
+};
+
+/// What one view says of a place.
+enum class Sight {
+  unknown,   ///< outside the image, or hidden behind something
+  surface,   ///< the sight line ends there
+  through    ///< it goes on behind
+};
+
+/// What `view` says of the point p (m, world).
+inline Sight sight(const sensor::SurfaceImage& view, const Eigen::Vector3d& p, const FreeSpaceParameters& parameters) {
+  double z = 0.0;
+  const std::ptrdiff_t c = view.cell(p, &z);
+  if (c < 0) return Sight::unknown;
+  const double measured = double(view.depth[static_cast<std::size_t>(c)]);
+  const double margin = std::max(parameters.margin, 3.0 * view.noise);
+  if (!(measured > 0.0)) return view.fill >= parameters.min_fill ? Sight::through : Sight::unknown;
+  if (measured > z + margin) return Sight::through;
+  return measured > z - margin ? Sight::surface : Sight::unknown;
+}
+
+/// Share (0..1) of a body's surface through which some view looked, where no view saw it.
+inline double seen_through(const std::vector<sensor::SurfaceImage>& views, const Ellipsoid& body,
+                           const FreeSpaceParameters& parameters = {}) {
+  const auto& directions = DirectionBins::directions();
+  const auto& shares = DirectionBins::shares();
+  const double cos_max = std::cos(parameters.max_incidence);
+  double share = 0.0;
+  for (std::size_t b = 0; b < directions.size(); ++b) {
+    const Eigen::Vector3d p = body.surface(directions[b]);
+    const Eigen::Vector3d n = body.normal(p);
+    int through = 0, surface = 0;
+    for (const auto& view : views) {
+      const Eigen::Vector3d ray = (p - view.world_T_optical.translation()).normalized();
+      if (-ray.dot(n) < cos_max) continue;
+      const Sight s = sight(view, p, parameters);
+      through += s == Sight::through;
+      surface += s == Sight::surface;
+    }
+    if (through > surface) share += shares[b];
+  }
+  return share;
+}
+
+}  // namespace agrisee::plan

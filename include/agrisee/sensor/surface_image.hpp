@@ -1,0 +1,299 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// @file
+/// From a noisy depth image to the surface behind it: cells of a few pixels, each with depth, normal and uncertainty.
+///
+/// A depth sensor measures far more densely (0.5 mm at arm's length) than a fruit's surface needs, and its error lies along
+/// the ray. So the image is first divided into blocks of b x b pixels of about the wanted spacing; each block keeps the mean
+/// of those of its pixels that agree with its median. A paraboloid is then fitted around each block, over a window that
+/// grows with the noise that the blocks show among themselves, with weights that leave out what lies beyond a depth edge
+/// (iteratively reweighted least squares, Tukey's biweight). The fit's value, slope and covariance at the block are its
+/// depth, normal and sigma. Cost: linear in the pixels, and in the blocks times the window.
+#pragma once
+
+#include <agrisee/core/parallel.hpp>
+#include <agrisee/core/pose.hpp>
+#include <agrisee/geometry/aabb.hpp>
+#include <agrisee/sensor/depth_frame.hpp>
+
+#include <Eigen/Cholesky>
+
+#include <algorithm>
+
+namespace agrisee::sensor {
+
+/// Parameters of reconstruct_surface.
+struct SurfaceParameters {
+  double spacing = 0.0022;          ///< wanted distance between cells on the object (m)
+  int max_block = 8;                ///< largest block edge (pixels)
+  double target_sigma = 0.0004;     ///< windows grow until a cell's standard deviation should reach this (m)
+  int max_window = 6;               ///< largest half width of a window (cells)
+  double smallest_radius = 0.012;   ///< smallest radius of curvature to be kept (m)
+  double max_incidence = deg(76);   ///< cells seen at more than this angle are dropped (rad)
+
+  /// @throws ParameterError
+  void check() const {
+    check_parameter(spacing > 0, "surface.spacing", "positive", spacing);
+    check_parameter(max_block >= 1 && max_block <= 64, "surface.max_block", "in [1, 64]", max_block);
+    check_parameter(target_sigma > 0, "surface.target_sigma", "positive", target_sigma);
+    check_parameter(max_window >= 1 && max_window <= 20, "surface.max_window", "in [1, 20]", max_window);
+    check_parameter(smallest_radius > 0, "surface.smallest_radius", "positive", smallest_radius);
+    check_parameter(max_incidence > 0 && max_incidence < kPi / 2, "surface.max_incidence", "in (0, pi/2)", max_incidence);
+  }
+  template <typename P, typename F>
+  static void fields(P& p, F&& f) {
+    f("spacing", p.spacing);
+    f("max_block", p.max_block);
+    f("target_sigma", p.target_sigma);
+    f("max_window", p.max_window);
+    f("smallest_radius", p.smallest_radius);
+    f("max_incidence", p.max_incidence);
+  }
+};
+
+/// The surface seen in one frame, as an image of cells; vectors have `intrinsics.size()` entries, row by row.
+struct SurfaceImage {
+  Intrinsics intrinsics;                   ///< of the cells: pixel (u, v) is cell (u, v)
+  Pose world_T_optical = Pose::Identity();
+  std::vector<float> depth;                ///< raw depth z of each cell (m), 0 = no return; inside the volume and out
+  std::vector<Eigen::Vector3f> points;     ///< surface point of each kept cell (m, world)
+  std::vector<Eigen::Vector3f> normals;    ///< its unit normal, towards the sensor (world)
+  std::vector<float> sigma;                ///< standard deviation of the point along the ray (m); 0 = cell not kept
+  std::size_t points_in = 0;               ///< pixels that returned a point inside the volume
+  double noise = 0.0;                      ///< standard deviation of the pixels about their blocks (m)
+  double fill = 0.0;                       ///< median share of valid pixels in cells with any
+
+  /// Cell at which a point in world is seen, or -1 when it is outside the image or behind the sensor.
+  std::ptrdiff_t cell(const Eigen::Vector3d& p_world, double* z = nullptr) const {
+    const Eigen::Vector3d p = world_T_optical.inverse(Eigen::Isometry) * p_world;
+    if (!(p.z() > 0.0)) return -1;
+    const Eigen::Vector2d uv = intrinsics.project(p);
+    const double u = std::floor(uv.x() + 0.5), v = std::floor(uv.y() + 0.5);
+    if (!(u >= 0 && v >= 0 && u < intrinsics.width && v < intrinsics.height)) return -1;
+    if (z) *z = p.z();
+    return static_cast<std::ptrdiff_t>(v) * intrinsics.width + static_cast<std::ptrdiff_t>(u);
+  }
+};
+
+namespace detail {
+
+/// Median of v (reordered); 0 when empty.
+inline float median(std::vector<float>& v) {
+  if (v.empty()) return 0.0f;
+  const auto mid = v.begin() + static_cast<std::ptrdiff_t>(v.size() / 2);
+  std::nth_element(v.begin(), mid, v.end());
+  return *mid;
+}
+
+/// Robust standard deviation of an image's noise from second differences at distance `lag` along rows (MAD scaled to a
+/// Gaussian). Differences across invalid pixels are left out.
+inline double image_noise(const std::vector<float>& z, int width, int height, int lag, int row_step) {
+  std::vector<float> d;
+  for (int v = 0; v < height; v += row_step)
+    for (int u = lag; u + lag < width; ++u) {
+      const float* c = &z[static_cast<std::size_t>(v) * static_cast<std::size_t>(width) + static_cast<std::size_t>(u)];
+      if (c[-lag] > 0.0f && c[0] > 0.0f && c[lag] > 0.0f) d.push_back(std::abs(c[-lag] - 2.0f * c[0] + c[lag]));
+    }
+  return 1.4826 * static_cast<double>(median(d)) / std::sqrt(6.0);
+}
+
+struct Block {
+  float u = 0.0f, v = 0.0f, z = 0.0f;  // mean pixel (in cell units) and depth of its agreeing pixels; z = 0: none
+};
+
+}  // namespace detail
+
+/// The surface of a depth image inside `volume` (world).
+///
+/// Pixels outside the volume, invalid ones, and cells without support are left out of `points`; `depth` keeps what lies
+/// outside too, as evidence of free space.
+/// @param world_T_optical pose of the sensor when the frame was taken
+/// @throws InputError for a frame whose size disagrees with its intrinsics or a pose that is not rigid; ParameterError
+inline SurfaceImage reconstruct_surface(const DepthFrame& frame, const Pose& world_T_optical, const Aabb& volume,
+                                        const SurfaceParameters& parameters = {}, int threads = 1) {
+  check(frame);
+  parameters.check();
+  check_input(is_rigid(world_T_optical), "reconstruct_surface: the sensor pose is not a rigid transform");
+  const Intrinsics& k = frame.intrinsics;
+  const std::size_t width = static_cast<std::size_t>(k.width);
+
+  // Pixels inside the volume, and their typical distance.
+  std::vector<float> inside(k.size(), 0.0f);
+  const Eigen::Matrix3d rotation = world_T_optical.linear();
+  const Eigen::Vector3d origin = world_T_optical.translation();
+  SurfaceImage out;
+  out.world_T_optical = world_T_optical;
+  std::vector<float> depths;
+  for (int v = 0; v < k.height; ++v)
+    for (int u = 0; u < k.width; ++u) {
+      const std::size_t i = static_cast<std::size_t>(v) * width + static_cast<std::size_t>(u);
+      const float z = frame.depth[i];
+      if (!DepthFrame::valid(z)) continue;
+      if (!volume.contains(Eigen::Vector3d(origin + rotation * (k.ray(u, v) * double(z))))) continue;
+      inside[i] = z;
+      depths.push_back(z);
+    }
+  out.points_in = depths.size();
+  const double typical = out.points_in ? static_cast<double>(detail::median(depths)) : 1.0;
+  const int b = std::clamp(static_cast<int>(std::lround(parameters.spacing * k.fx / typical)), 1, parameters.max_block);
+  Intrinsics cells;
+  cells.width = (k.width + b - 1) / b;
+  cells.height = (k.height + b - 1) / b;
+  cells.fx = k.fx / b;
+  cells.fy = k.fy / b;
+  cells.cx = (k.cx + 0.5) / b - 0.5;
+  cells.cy = (k.cy + 0.5) / b - 0.5;
+  out.intrinsics = cells;
+  const std::size_t n = cells.size();
+  out.depth.assign(n, 0.0f);
+  out.points.assign(n, Eigen::Vector3f::Zero());
+  out.normals.assign(n, Eigen::Vector3f::Zero());
+  out.sigma.assign(n, 0.0f);
+
+  // Blocks: the mean of the pixels that agree with the block's median.
+  out.noise = detail::image_noise(inside, k.width, k.height, std::max(1, b), 1);
+  const float agree = static_cast<float>(std::max(3.0 * out.noise, 0.6 * parameters.spacing));
+  std::vector<detail::Block> blocks(n);
+  std::vector<float> fill(n, 0.0f);
+  const auto make_block = [&](std::size_t c) {
+    const int u0 = static_cast<int>(c % static_cast<std::size_t>(cells.width)) * b;
+    const int v0 = static_cast<int>(c / static_cast<std::size_t>(cells.width)) * b;
+    float in[64 * 64], any[64 * 64];
+    int n_in = 0, n_any = 0;
+    const int u1 = std::min(u0 + b, k.width), v1 = std::min(v0 + b, k.height);
+    for (int v = v0; v < v1; ++v)
+      for (int u = u0; u < u1; ++u) {
+        const std::size_t i = static_cast<std::size_t>(v) * width + static_cast<std::size_t>(u);
+        if (inside[i] > 0.0f) in[n_in++] = inside[i];
+        if (DepthFrame::valid(frame.depth[i])) any[n_any++] = frame.depth[i];
+      }
+    if (n_any == 0) return;
+    fill[c] = static_cast<float>(n_any) / static_cast<float>((u1 - u0) * (v1 - v0));
+    std::nth_element(any, any + n_any / 2, any + n_any);
+    out.depth[c] = any[n_any / 2];
+    if (n_in == 0) return;
+    std::nth_element(in, in + n_in / 2, in + n_in);
+    const float middle = in[n_in / 2];
+    double su = 0.0, sv = 0.0, sz = 0.0, s1 = 0.0;
+    for (int v = v0; v < v1; ++v)
+      for (int u = u0; u < u1; ++u) {
+        const float z = inside[static_cast<std::size_t>(v) * width + static_cast<std::size_t>(u)];
+        if (z > 0.0f && std::abs(z - middle) <= agree) su += u, sv += v, sz += double(z), s1 += 1.0;
+      }
+    blocks[c].u = static_cast<float>((su / s1 + 0.5) / b - 0.5);
+    blocks[c].v = static_cast<float>((sv / s1 + 0.5) / b - 0.5);
+    blocks[c].z = static_cast<float>(sz / s1);
+  };
+  parallel_for(n, threads, make_block, 1024);
+  std::vector<float> some, block_z(n);
+  for (std::size_t c = 0; c < n; ++c) {
+    if (fill[c] > 0.0f) some.push_back(fill[c]);
+    block_z[c] = blocks[c].z;
+  }
+  out.fill = static_cast<double>(detail::median(some));
+
+  // The noise that is left between blocks decides how far to smooth.
+  const double pitch = typical / cells.fx;
+  const double block_noise =
+      std::max(detail::image_noise(block_z, cells.width, cells.height, 1, 1), 0.02 * parameters.target_sigma);
+  const double wanted = 4.0 * block_noise * block_noise / (parameters.target_sigma * parameters.target_sigma);
+  const int w = std::clamp(static_cast<int>(std::ceil(0.5 * (std::sqrt(wanted) - 1.0))), std::min(2, parameters.max_window),
+                           parameters.max_window);
+  const double steepest = std::tan(parameters.max_incidence);
+  const double bend = pitch * pitch / (2.0 * parameters.smallest_radius);
+
+  const auto fit_cell = [&](std::size_t c) {
+    const detail::Block& center = blocks[c];
+    if (!(center.z > 0.0f)) return;
+    const int cu = static_cast<int>(c % static_cast<std::size_t>(cells.width));
+    const int cv = static_cast<int>(c / static_cast<std::size_t>(cells.width));
+    // The first slope: medians of the differences to the neighbours that no steepest surface would exceed.
+    const double step = steepest * pitch + 4.0 * block_noise;
+    std::vector<float> along[2];
+    const int reach = std::min(w, 1 + static_cast<int>(block_noise / 0.001));
+    for (int dv = -reach; dv <= reach; ++dv)
+      for (int du = -reach; du <= reach; ++du) {
+        const int u = cu + du, v = cv + dv;
+        if (u < 0 || v < 0 || u >= cells.width || v >= cells.height) continue;
+        const detail::Block& a = blocks[static_cast<std::size_t>(v) * static_cast<std::size_t>(cells.width) + static_cast<std::size_t>(u)];
+        if (!(a.z > 0.0f)) continue;
+        for (int axis = 0; axis < 2; ++axis) {
+          const int u2 = u + (axis == 0), v2 = v + (axis == 1);
+          if (u2 > cu + reach || v2 > cv + reach || u2 >= cells.width || v2 >= cells.height) continue;
+          const detail::Block& e = blocks[static_cast<std::size_t>(v2) * static_cast<std::size_t>(cells.width) + static_cast<std::size_t>(u2)];
+          if (e.z > 0.0f && std::abs(e.z - a.z) < static_cast<float>(step)) along[axis].push_back(e.z - a.z);
+        }
+      }
+    const double slope_u = static_cast<double>(detail::median(along[0]));
+    const double slope_v = static_cast<double>(detail::median(along[1]));
+
+    Eigen::Matrix<double, 6, 1> x;
+    x << double(center.z), slope_u, slope_v, 0.0, 0.0, 0.0;
+    double scale = block_noise;
+    Eigen::Matrix<double, 6, 6> normal_matrix;
+    double support = 0.0, variance = 0.0;
+    int window_cells = 0;
+    bool quadratic = false;
+    for (int iteration = 0; iteration < 3; ++iteration) {
+      normal_matrix.setZero();
+      Eigen::Matrix<double, 6, 1> rhs = Eigen::Matrix<double, 6, 1>::Zero();
+      support = 0.0;
+      double squares = 0.0;
+      window_cells = 0;
+      for (int v = std::max(cv - w, 0); v <= std::min(cv + w, cells.height - 1); ++v)
+        for (int u = std::max(cu - w, 0); u <= std::min(cu + w, cells.width - 1); ++u) {
+          const int r_sq = (u - cu) * (u - cu) + (v - cv) * (v - cv);
+          if (r_sq > w * w + 1) continue;
+          ++window_cells;
+          const detail::Block& q = blocks[static_cast<std::size_t>(v) * static_cast<std::size_t>(cells.width) + static_cast<std::size_t>(u)];
+          if (!(q.z > 0.0f)) continue;
+          const double du = double(q.u - center.u), dv = double(q.v - center.v);
+          Eigen::Matrix<double, 6, 1> a;
+          a << 1.0, du, dv, du * du, du * dv, dv * dv;
+          const double residual = double(q.z) - a.dot(x);
+          // Before the curvature is known it may explain this much.
+          const double slack = iteration == 0 ? bend * (1.0 + slope_u * slope_u / (pitch * pitch)) * double(r_sq) : 0.0;
+          const double gate = 4.0 * scale + 0.2 * pitch + slack;
+          const double t = residual / gate;
+          if (std::abs(t) >= 1.0) continue;
+          const double tukey = (1.0 - t * t) * (1.0 - t * t);
+          const double weight = tukey * std::exp(-1.0 * double(r_sq) / double(w * w + 1));
+          normal_matrix.noalias() += weight * a * a.transpose();
+          rhs += weight * double(q.z) * a;
+          support += weight;
+          squares += weight * residual * residual;
+        }
+      if (support < 2.5) return;
+      quadratic = support > 7.0;
+      const int m = quadratic ? 6 : 3;
+      Eigen::MatrixXd damped = normal_matrix.topLeftCorner(m, m);
+      damped.diagonal().array() += 1e-9 * support;
+      const Eigen::LDLT<Eigen::MatrixXd> solver(damped);
+      const Eigen::VectorXd solution = solver.solve(rhs.head(m));
+      if (!solution.allFinite()) return;
+      x.setZero();
+      x.head(m) = solution;
+      variance = solver.solve(Eigen::VectorXd::Unit(m, 0))[0];
+      if (iteration > 0) scale = std::max(block_noise, 0.5 * std::sqrt(squares / support));
+    }
+    // Cells without neighbours on their own surface are flying pixels.
+    if (support < 0.2 * 0.63 * double(window_cells)) return;
+    const Eigen::Vector3d ray = cells.ray(double(center.u), double(center.v));
+    const double z = x[0];
+    if (std::abs(z - double(center.z)) > 4.0 * block_noise + 0.5 * pitch) return;
+    const Eigen::Vector3d along_u = Eigen::Vector3d(z / cells.fx, 0.0, 0.0) + ray * x[1];
+    const Eigen::Vector3d along_v = Eigen::Vector3d(0.0, z / cells.fy, 0.0) + ray * x[2];
+    Eigen::Vector3d normal = along_v.cross(along_u);
+    if (!(normal.norm() > 0.0)) return;
+    normal.normalize();
+    const double cosine = -normal.dot(ray.normalized());
+    if (!(cosine > std::cos(parameters.max_incidence))) return;
+    const double spread = std::max(scale, block_noise);
+    out.points[c] = (world_T_optical * Eigen::Vector3d(ray * z)).cast<float>();
+    out.normals[c] = (rotation * normal).cast<float>();
+    out.sigma[c] = static_cast<float>(std::max(spread * std::sqrt(std::max(variance, 0.0)) * ray.norm(), 1e-5));
+  };
+  parallel_for(n, threads, fit_cell, 256);
+  return out;
+}
+
+}  // namespace agrisee::sensor
