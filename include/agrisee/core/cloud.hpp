@@ -41,8 +41,8 @@ bool is_finite(const V& p) {
 template <typename C>
 Indices finite_indices(const C& cloud) {
   Indices kept;
-  kept.reserve(size(cloud));
-  for (std::size_t i = 0; i < size(cloud); ++i)
+  kept.reserve(agrisee::size(cloud));
+  for (std::size_t i = 0; i < agrisee::size(cloud); ++i)
     if (is_finite(point(cloud, i))) kept.push_back(static_cast<Index>(i));
   return kept;
 }

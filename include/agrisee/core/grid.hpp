@@ -106,7 +106,7 @@ class Grid {
   static constexpr double kMaxCells = 1 << 30;
   using Cell = std::array<int, 3>;  // z, y, x: the order of the points
 
-  Eigen::Vector3d dims_vector() const { return {double(dims_[0]), double(dims_[1]), double(dims_[2])}; }
+  Eigen::Vector3d dims_vector() const { return dims_.cast<double>(); }
 
   int clamp_cell(double x, int axis) const {
     const double c = std::floor((x - min_[axis]) * inverse_);
@@ -218,7 +218,7 @@ class Grid {
   std::vector<Cell> cells_;            // the occupied cells, where there is no table
   Eigen::Vector3d min_;
   double cell_ = 1.0, inverse_ = 1.0;
-  std::array<int, 3> dims_{1, 1, 1};
+  Eigen::Vector3i dims_ = Eigen::Vector3i::Ones();
   std::size_t size_ = 0;
   bool dense_ = true;
 };

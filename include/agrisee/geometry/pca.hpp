@@ -41,26 +41,50 @@ PrincipalAxes<S> principal_axes(const Vector3<S>& mean, const Matrix3<S>& covari
   return out;
 }
 
-/// Principal axes of the points `indices` of a cloud (any range of integers). Sums are taken relative to the first point, so
-/// that clouds far from the origin lose nothing. No points: zero mean and variance.
+/// Mean and covariance (divided by n) of points as they come, in double. Sums are taken relative to an origin that should
+/// lie among the points, so that clouds far from zero lose nothing.
+class Moments {
+ public:
+  Moments() { reset(Eigen::Vector3d::Zero()); }
+  void reset(const Eigen::Vector3d& origin) {
+    origin_ = origin;
+    n_ = x_ = y_ = z_ = xx_ = xy_ = xz_ = yy_ = yz_ = zz_ = 0.0;
+  }
+  void add(const Eigen::Vector3d& p) {
+    const double x = p.x() - origin_.x(), y = p.y() - origin_.y(), z = p.z() - origin_.z();
+    n_ += 1.0;
+    x_ += x, y_ += y, z_ += z;
+    xx_ += x * x, xy_ += x * y, xz_ += x * z, yy_ += y * y, yz_ += y * z, zz_ += z * z;
+  }
+  double count() const { return n_; }
+  /// The origin without points.
+  Eigen::Vector3d mean() const { return n_ > 0.0 ? Eigen::Vector3d(origin_ + offset()) : origin_; }
+  /// Zero without points.
+  Eigen::Matrix3d covariance() const {
+    Eigen::Matrix3d c = Eigen::Matrix3d::Zero();
+    if (n_ == 0.0) return c;
+    c << xx_, xy_, xz_, xy_, yy_, yz_, xz_, yz_, zz_;
+    return c / n_ - offset() * offset().transpose();
+  }
+
+ private:
+  Eigen::Vector3d offset() const { return Eigen::Vector3d(x_, y_, z_) / n_; }
+  Eigen::Vector3d origin_;
+  double n_, x_, y_, z_, xx_, xy_, xz_, yy_, yz_, zz_;
+};
+
+/// Principal axes of the points `indices` of a cloud (any range of integers). No points: zero mean and variance.
 template <typename C, typename Range>
 PrincipalAxes<scalar_t<C>> principal_axes(const C& cloud, const Range& indices) {
   using S = scalar_t<C>;
-  double n = 0.0;
-  Eigen::Vector3d origin = Eigen::Vector3d::Zero(), sum = Eigen::Vector3d::Zero();
-  Eigen::Matrix3d squares = Eigen::Matrix3d::Zero();
+  Moments moments;
   for (const auto i : indices) {
     const Eigen::Vector3d p = point(cloud, static_cast<std::size_t>(i)).template cast<double>();
-    if (n == 0.0) origin = p;
-    const Eigen::Vector3d d = p - origin;
-    sum += d;
-    squares.noalias() += d * d.transpose();
-    n += 1.0;
+    if (moments.count() == 0.0) moments.reset(p);
+    moments.add(p);
   }
-  if (n == 0.0) return {};
-  const Eigen::Vector3d mean = sum / n;
-  const Eigen::Matrix3d covariance = squares / n - mean * mean.transpose();
-  return principal_axes<S>(Vector3<S>((origin + mean).template cast<S>()), Matrix3<S>(covariance.template cast<S>()));
+  const PrincipalAxes<double> axes = principal_axes<double>(moments.mean(), moments.covariance());
+  return {axes.mean.template cast<S>(), axes.variance.template cast<S>(), axes.axes.template cast<S>()};
 }
 
 }  // namespace agrisee

@@ -1,0 +1,161 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// @file
+/// Surface normals: the axis of least variance of the nearest points within a radius (Hoppe et al., SIGGRAPH 1992;
+/// paper, "Segmentation via Region Growing": r_n, k_n), turned to the view that saw each point or to one viewpoint.
+/// Where neither is known, orient_normals.hpp makes them agree with their neighbours.
+///
+/// Any frame, metres. Cost: a grid, one visit of the neighbours and one 3 x 3 eigenproblem a point.
+#pragma once
+
+#include <agrisee/core/grid.hpp>
+#include <agrisee/core/parallel.hpp>
+#include <agrisee/geometry/pca.hpp>
+
+namespace agrisee {
+
+/// Parameters of estimate_normals.
+struct NormalParameters {
+  double radius = 0.006;   ///< r_n: neighbours are at most this far (m)
+  int max_neighbors = 25;  ///< k_n: of those, at most this many, the nearest; the point itself counts
+
+  /// The paper's values (table of parameters): r_n = 6 mm, k_n = 25.
+  static NormalParameters paper() { return {}; }
+
+  /// @throws ParameterError naming the field that is out of range
+  void check() const {
+    check_parameter(std::isfinite(radius) && radius > 0, "radius", "positive and finite", radius);
+    check_parameter(max_neighbors >= 3, "max_neighbors", "at least 3", max_neighbors);
+  }
+
+  /// f(name, field) for every field.
+  template <typename P, typename F>
+  static void fields(P& p, F&& f) {
+    f("radius", p.radius);
+    f("max_neighbors", p.max_neighbors);
+  }
+};
+
+namespace detail {
+
+/// The k nearest points within a radius, found by first trying the radius that held k points at the query before:
+/// density changes little from point to point, so that a dense neighbourhood is not read whole. The answer is exact.
+template <typename S>
+class HybridQuery {
+ public:
+  HybridQuery(S radius, std::size_t k) : radius_(radius), k_(k), trial_(radius) {}
+
+  /// Neighbours of q, in no particular order; their `distance` is squared.
+  template <typename Search>
+  const Neighbors<S>& operator()(const Search& search, const Vector3<S>& q) {
+    gather(search, q, trial_);  // NaN finds nothing
+    if (found_.size() < k_ && trial_ < radius_) gather(search, q, radius_);
+    if (found_.size() > k_) {
+      const auto last = found_.begin() + static_cast<std::ptrdiff_t>(k_) - 1;
+      std::nth_element(found_.begin(), last, found_.end(), Nearest<S>::before);
+      found_.resize(k_);
+    }
+    if (found_.size() == k_) {
+      S worst_sq = 0;
+      for (const auto& n : found_) worst_sq = std::max(worst_sq, n.distance);
+      trial_ = std::min(radius_, S(1.25) * std::sqrt(worst_sq));
+    } else {
+      trial_ = radius_;
+    }
+    return found_;
+  }
+
+ private:
+  template <typename Search>
+  void gather(const Search& search, const Vector3<S>& q, S r) {
+    found_.clear();
+    search.visit(q, r, [&](Index i, S d_sq) { found_.push_back({i, d_sq}); });
+  }
+
+  S radius_;
+  std::size_t k_;
+  S trial_;
+  Neighbors<S> found_;
+};
+
+}  // namespace detail
+
+/// One unit normal a point, its sign arbitrary; zero where the normal is unknown: fewer than three neighbours, all of
+/// them on a line or at one place (within the rounding of the coordinates), or a point that is not finite.
+/// @param search a KdTree or Grid over `cloud`
+/// @param curvatures if given, receives one surface variation (0 to 1/3; 0 where the normal is unknown) a point
+/// @throws ParameterError for a bad parameter, InputError when the search is over a cloud of another size
+template <typename C, typename Search>
+std::vector<Vector3<scalar_t<C>>> estimate_normals(const C& cloud, const NormalParameters& params, const Search& search,
+                                                   int threads = 1, std::vector<scalar_t<C>>* curvatures = nullptr) {
+  using S = scalar_t<C>;
+  params.check();
+  const std::size_t n = agrisee::size(cloud);
+  check_input(search.size() == n, "the search and the cloud differ in size");
+  std::vector<Vector3<S>> normals(n, Vector3<S>::Zero());
+  if (curvatures) curvatures->assign(n, S(0));
+  parallel_chunks(n, threads, 512, [&](std::size_t begin, std::size_t end) {
+    detail::HybridQuery<S> query(static_cast<S>(params.radius), static_cast<std::size_t>(params.max_neighbors));
+    Moments moments;
+    for (std::size_t i = begin; i < end; ++i) {
+      const Vector3<S> p = point(cloud, i);
+      const auto& neighbors = query(search, p);
+      if (neighbors.size() < 3) continue;
+      moments.reset(p.template cast<double>());
+      for (const auto& neighbor : neighbors)
+        moments.add(point(cloud, static_cast<std::size_t>(neighbor.index)).template cast<double>());
+      const PrincipalAxes<double> axes = principal_axes<double>(moments.mean(), moments.covariance());
+      const double rounding = 4.0 * double(std::numeric_limits<S>::epsilon()) * axes.mean.cwiseAbs().maxCoeff();
+      if (axes.variance[1] <= 1e-8 * axes.variance[2] + rounding * rounding) continue;
+      normals[i] = axes.axes.col(0).template cast<S>();
+      if (curvatures) (*curvatures)[i] = static_cast<S>(axes.curvature());
+    }
+  });
+  return normals;
+}
+
+/// The same with a search built for the call.
+template <typename C>
+std::vector<Vector3<scalar_t<C>>> estimate_normals(const C& cloud, const NormalParameters& params = {}, int threads = 1,
+                                                   std::vector<scalar_t<C>>* curvatures = nullptr) {
+  params.check();
+  using S = scalar_t<C>;
+  return estimate_normals(cloud, params, Grid<S>(cloud, static_cast<S>(0.5 * params.radius)), threads, curvatures);
+}
+
+/// The normals, each turned so that it faces `viewpoint` (m, the cloud's frame).
+/// @throws InputError when the sizes disagree
+template <typename C>
+std::vector<Vector3<scalar_t<C>>> orient_normals_to_viewpoint(std::vector<Vector3<scalar_t<C>>> normals, const C& cloud,
+                                                              const Eigen::Vector3d& viewpoint) {
+  check_input(normals.size() == agrisee::size(cloud), "orienting normals needs one a point");
+  for (std::size_t i = 0; i < normals.size(); ++i) {
+    const Eigen::Vector3d sight = viewpoint - point(cloud, i).template cast<double>();
+    if (normals[i].template cast<double>().dot(sight) < 0.0) normals[i] = -normals[i];
+  }
+  return normals;
+}
+
+/// The normals, each turned so that it faces the sensor that saw its point; those of points without a view (-1) are
+/// zero, since nothing is known of their side.
+/// @param views one index into `sensors` a point, or -1
+/// @param sensors sensor positions (m, the cloud's frame), one a view
+/// @throws InputError when sizes disagree or a view has no sensor position
+template <typename C>
+std::vector<Vector3<scalar_t<C>>> orient_normals_to_views(std::vector<Vector3<scalar_t<C>>> normals, const C& cloud,
+                                                          const std::vector<int>& views,
+                                                          const std::vector<Eigen::Vector3d>& sensors) {
+  check_input(normals.size() == agrisee::size(cloud) && views.size() == normals.size(),
+              "orienting normals needs one, and one view, a point");
+  for (std::size_t i = 0; i < normals.size(); ++i) {
+    if (views[i] < 0) {
+      normals[i].setZero();
+      continue;
+    }
+    check_input(static_cast<std::size_t>(views[i]) < sensors.size(), "a point's view has no sensor position");
+    const Eigen::Vector3d sight = sensors[static_cast<std::size_t>(views[i])] - point(cloud, i).template cast<double>();
+    if (normals[i].template cast<double>().dot(sight) < 0.0) normals[i] = -normals[i];
+  }
+  return normals;
+}
+
+}  // namespace agrisee

@@ -1,0 +1,161 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// @file
+/// Region growing on normals (paper, "Segmentation via Region Growing" and its algorithm): from a seed, a region takes
+/// every neighbour nearer than r_v whose normal makes an angle below theta_th with the normal of the point that grows.
+///
+/// Any frame, metres, radians. Cost: a grid and one visit of each point's neighbours, O(n neighbours).
+///
+/// With the paper's rule the regions are the connected parts of a graph, so the order of growth does not matter.
+/// Options give the rule of PCL's RegionGrowing (Rabbani et al., 2006): k nearest neighbours (a directed graph, in
+/// which earlier seeds win), seeds by rising curvature, unsigned normals, and growth only from points of low curvature.
+#pragma once
+
+#include <agrisee/core/grid.hpp>
+
+#include <numeric>
+
+namespace agrisee {
+
+/// Parameters of grow_regions.
+struct RegionGrowingParameters {
+  double radius = 0.006;            ///< r_v: neighbours are nearer than this (m)
+  double smoothness = deg(12.0);    ///< theta_th: their normals differ by less than this (rad)
+  int min_size = 350;               ///< N_min: smaller regions are none; their points go back to the residual
+  int neighbors = 0;                ///< > 0: the k nearest points, itself included, instead of those within `radius`
+  bool seeds_by_curvature = false;  ///< seeds in rising curvature instead of in index order
+  double max_curvature = 1.0;       ///< points above it join but do not grow; 1/3 and more lets all grow
+  bool unsigned_normals = false;    ///< n and -n are the same direction
+
+  /// The paper's values (table of parameters): r_v = 6 mm, theta_th = 12 degrees, N_min = 350.
+  static RegionGrowingParameters paper() { return {}; }
+
+  /// Whether curvatures are asked for.
+  bool needs_curvature() const { return seeds_by_curvature || max_curvature < 1.0 / 3.0; }
+
+  /// @throws ParameterError naming the field that is out of range
+  void check() const {
+    check_parameter(std::isfinite(radius) && radius > 0, "radius", "positive and finite", radius);
+    check_parameter(smoothness >= 0 && smoothness <= kPi, "smoothness", "from 0 to pi", smoothness);
+    check_parameter(min_size >= 1, "min_size", "at least 1", min_size);
+    check_parameter(neighbors >= 0, "neighbors", "0 (use radius) or more", neighbors);
+    check_parameter(max_curvature >= 0, "max_curvature", "not negative", max_curvature);
+  }
+
+  /// f(name, field) for every field.
+  template <typename P, typename F>
+  static void fields(P& p, F&& f) {
+    f("radius", p.radius);
+    f("smoothness", p.smoothness);
+    f("min_size", p.min_size);
+    f("neighbors", p.neighbors);
+    f("seeds_by_curvature", p.seeds_by_curvature);
+    f("max_curvature", p.max_curvature);
+    f("unsigned_normals", p.unsigned_normals);
+  }
+};
+
+namespace detail {
+
+/// Labels of regions of at least `min_size` points, renumbered from 1 in order of creation; 0 for the rest.
+inline void drop_small_regions(Labels& labels, int regions, int min_size) {
+  std::vector<int> sizes(static_cast<std::size_t>(regions) + 1, 0);
+  for (const int label : labels) ++sizes[static_cast<std::size_t>(label)];
+  std::vector<int> renumbered(sizes.size(), 0);
+  int kept = 0;
+  for (std::size_t r = 1; r < sizes.size(); ++r)
+    if (sizes[r] >= min_size) renumbered[r] = ++kept;
+  for (int& label : labels) label = renumbered[static_cast<std::size_t>(label)];
+}
+
+/// The points in the order in which they may become seeds.
+template <typename S>
+Indices seed_order(std::size_t n, bool by_curvature, const std::vector<S>& curvatures) {
+  Indices order(n);
+  std::iota(order.begin(), order.end(), Index(0));
+  if (by_curvature)
+    std::stable_sort(order.begin(), order.end(), [&](Index a, Index b) {
+      return curvatures[static_cast<std::size_t>(a)] < curvatures[static_cast<std::size_t>(b)];
+    });
+  return order;
+}
+
+}  // namespace detail
+
+/// One label per point: regions from 1 in order of creation, 0 = residual. The cloud is not changed.
+///
+/// Points that are not finite, or whose normal is zero or not finite, never join.
+/// @param normals one unit normal a point, all turned to the same side unless `unsigned_normals`
+/// @param search a KdTree or Grid over `cloud`
+/// @param curvatures one finite surface variation a point where the parameters ask for it (estimate_normals gives them)
+/// @throws ParameterError for a bad parameter, InputError when sizes disagree or curvatures are missing
+template <typename C, typename Search>
+Labels grow_regions(const C& cloud, const std::vector<Vector3<scalar_t<C>>>& normals,
+                    const RegionGrowingParameters& params, const Search& search,
+                    const std::vector<scalar_t<C>>& curvatures = {}) {
+  using S = scalar_t<C>;
+  params.check();
+  const std::size_t n = agrisee::size(cloud);
+  check_input(search.size() == n, "the search and the cloud differ in size");
+  check_input(normals.size() == n, "grow_regions needs one normal a point");
+  check_input(!params.needs_curvature() || curvatures.size() == n, "grow_regions needs one curvature a point");
+  const bool gated = params.max_curvature < 1.0 / 3.0;
+  const S radius = static_cast<S>(params.radius), radius_sq = radius * radius;
+  const S cos_min = static_cast<S>(std::cos(params.smoothness));
+
+  constexpr int kFree = 0;
+  constexpr int kNever = -1;
+  Labels labels(n, kNever);
+  for (std::size_t i = 0; i < n; ++i)
+    if (is_finite(point(cloud, i)) && is_finite(normals[i]) && normals[i].squaredNorm() > 0) labels[i] = kFree;
+
+  int regions = 0;
+  Indices queue;
+  Neighbors<S> found;
+  for (const Index seed : detail::seed_order<S>(n, params.seeds_by_curvature, curvatures)) {
+    if (labels[static_cast<std::size_t>(seed)] != kFree) continue;
+    labels[static_cast<std::size_t>(seed)] = ++regions;
+    queue.assign(1, seed);
+    for (std::size_t head = 0; head < queue.size(); ++head) {
+      const auto i = static_cast<std::size_t>(queue[head]);
+      const Vector3<S> normal = normals[i];
+      const auto offer = [&](Index index) {
+        const auto j = static_cast<std::size_t>(index);
+        if (labels[j] != kFree) return;
+        const S cosine = normal.dot(normals[j]);
+        if (!((params.unsigned_normals ? std::abs(cosine) : cosine) > cos_min)) return;
+        labels[j] = regions;
+        if (!gated || static_cast<double>(curvatures[j]) <= params.max_curvature) queue.push_back(index);
+      };
+      if (params.neighbors > 0) {
+        search.knn(point(cloud, i), static_cast<std::size_t>(params.neighbors), found);
+        for (const auto& neighbor : found) offer(neighbor.index);
+      } else {
+        search.visit(point(cloud, i), radius, [&](Index index, S d_sq) {
+          if (d_sq < radius_sq) offer(index);
+        });
+      }
+    }
+  }
+  std::replace(labels.begin(), labels.end(), kNever, 0);
+  detail::drop_small_regions(labels, regions, params.min_size);
+  return labels;
+}
+
+/// The same with a search built for the call.
+template <typename C>
+Labels grow_regions(const C& cloud, const std::vector<Vector3<scalar_t<C>>>& normals,
+                    const RegionGrowingParameters& params = {}, const std::vector<scalar_t<C>>& curvatures = {}) {
+  params.check();
+  using S = scalar_t<C>;
+  return grow_regions(cloud, normals, params, Grid<S>(cloud, static_cast<S>(params.radius)), curvatures);
+}
+
+/// Indices of the points without a label (0), ascending: the paper's set U, to which DBSCAN is applied.
+inline Indices residual(const Labels& labels) {
+  Indices out;
+  for (std::size_t i = 0; i < labels.size(); ++i)
+    if (labels[i] == 0) out.push_back(static_cast<Index>(i));
+  return out;
+}
+
+}  // namespace agrisee

@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// @file
+/// Statistical outlier removal (Rusu et al., 2008; paper, "Outlier and Noise Removal"): a point goes when the mean
+/// distance d_i to its K nearest neighbours exceeds mu + alpha sigma, mu and sigma being the mean and the deviation of
+/// all d_i.
+///
+/// Any frame, metres. Cost: a kd-tree and one k-nearest query a point, O(n log n).
+///
+/// The K neighbours are others than the point itself, which is left out by its index: a duplicate of it counts, at
+/// distance 0. PCL's `setMeanK(K)` means the same K, Open3D's `nb_neighbors` counts the point: K + 1 there is K here
+/// (both sums are the same, and mean, deviation and threshold scale alike). Both divide the squares by N - 1, which is
+/// `sample_deviation`; the paper divides by N. Open3D also drops points with d_i = 0, which stay here.
+#pragma once
+
+#include <agrisee/core/kdtree.hpp>
+#include <agrisee/core/parallel.hpp>
+
+namespace agrisee {
+
+/// Parameters of remove_statistical_outliers.
+struct SorParameters {
+  int mean_k = 20;                ///< K, neighbours of a point without itself; fewer where the cloud has fewer
+  double std_ratio = 2.0;         ///< alpha, deviations above the mean that are still kept
+  bool sample_deviation = false;  ///< divide by N - 1 as PCL and Open3D do, instead of by N
+
+  /// The paper's values (table of parameters): K = 20, alpha = 2.
+  static SorParameters paper() { return {}; }
+
+  /// @throws ParameterError naming the field that is out of range
+  void check() const {
+    check_parameter(mean_k >= 1, "mean_k", "at least 1", mean_k);
+    check_parameter(std::isfinite(std_ratio) && std_ratio >= 0, "std_ratio", "finite and not negative", std_ratio);
+  }
+
+  /// f(name, field) for every field.
+  template <typename P, typename F>
+  static void fields(P& p, F&& f) {
+    f("mean_k", p.mean_k);
+    f("std_ratio", p.std_ratio);
+    f("sample_deviation", p.sample_deviation);
+  }
+};
+
+/// Mean distance (m) of every point to its `k` nearest others: the paper's d_i. Where there are fewer, the mean of
+/// those there are; 0 for a point alone; NaN for a point that is not finite.
+/// @param search a KdTree or Grid over `cloud`
+/// @throws InputError when the search is over a cloud of another size
+template <typename C, typename Search>
+std::vector<double> mean_neighbor_distances(const C& cloud, int k, const Search& search, int threads = 1) {
+  const std::size_t n = agrisee::size(cloud);
+  check_input(search.size() == n, "the search and the cloud differ in size");
+  std::vector<double> distances(n, std::numeric_limits<double>::quiet_NaN());
+  parallel_chunks(n, threads, 512, [&](std::size_t begin, std::size_t end) {
+    Neighbors<scalar_t<C>> found;
+    for (std::size_t i = begin; i < end; ++i) {
+      const Vector3<scalar_t<C>> p = point(cloud, i);
+      if (!is_finite(p)) continue;
+      search.knn(p, static_cast<std::size_t>(std::max(k, 0)) + 1, found);
+      // The point itself is at distance 0. Among more than k duplicates it may not be in the list; one of them stands
+      // for it.
+      double sum = 0.0;
+      for (const auto& neighbor : found) sum += static_cast<double>(neighbor.distance);
+      distances[i] = found.size() > 1 ? sum / static_cast<double>(found.size() - 1) : 0.0;
+    }
+  });
+  return distances;
+}
+
+/// Indices of the points that stay, ascending; the cloud is not changed. Points that are not finite go, and do not
+/// count in mean and deviation. A single point, or points that all coincide, stay; so does any cloud whose d_i are all
+/// equal.
+/// @param search a KdTree or Grid over `cloud`
+/// @throws ParameterError for a bad parameter, InputError when the search is over a cloud of another size
+template <typename C, typename Search>
+Indices remove_statistical_outliers(const C& cloud, const SorParameters& params, const Search& search,
+                                    int threads = 1) {
+  params.check();
+  const std::vector<double> distances = mean_neighbor_distances(cloud, params.mean_k, search, threads);
+  double sum = 0.0, squares = 0.0;
+  std::size_t n = 0;
+  for (const double d : distances)
+    if (!std::isnan(d)) sum += d, ++n;
+  const double mean = n > 0 ? sum / static_cast<double>(n) : 0.0;
+  for (const double d : distances)
+    if (!std::isnan(d)) squares += (d - mean) * (d - mean);
+  const double degrees = static_cast<double>(n) - (params.sample_deviation ? 1.0 : 0.0);
+  const double sigma = degrees > 0.0 ? std::sqrt(squares / degrees) : 0.0;
+  // The factor covers the rounding of the mean where all d_i are equal.
+  const double threshold = (mean + params.std_ratio * sigma) * (1.0 + 1e-12);
+  Indices kept;
+  kept.reserve(n);
+  for (std::size_t i = 0; i < distances.size(); ++i)
+    if (distances[i] <= threshold) kept.push_back(static_cast<Index>(i));
+  return kept;
+}
+
+/// The same with a search built for the call.
+template <typename C>
+Indices remove_statistical_outliers(const C& cloud, const SorParameters& params = {}, int threads = 1) {
+  params.check();
+  return remove_statistical_outliers(cloud, params, KdTree<scalar_t<C>>(cloud), threads);
+}
+
+}  // namespace agrisee
