@@ -100,6 +100,11 @@ struct GrowthAxisParameters {
   double shell = 0.45;      ///< points outside a fruit within this share of its radius may be its calyx and pedicel
   double up_weight = 0.35;  ///< weight of "fruit hang below their stem" against the evidence
 
+  /// @throws ParameterError
+  void check() const {
+    check_parameter(shell > 0, "axis.shell", "positive", shell);
+    check_parameter(up_weight >= 0, "axis.up_weight", ">= 0", up_weight);
+  }
   template <typename P, typename F>
   static void fields(P& p, F&& f) {
     f("shell", p.shell);

@@ -1,0 +1,44 @@
+# SPDX-License-Identifier: BSD-3-Clause
+# A thin front for the presets. `make demo` and `make test` work from a clean clone on Debian or Ubuntu.
+SHELL := /bin/bash
+JOBS ?= $(shell nproc)
+CONFIGURE := cmake --preset release -G Ninja
+AGRISEE := build/release/agrisee
+
+.PHONY: help build demo test bench format clean
+
+help:
+	@echo "make demo    install what is missing, build, scan a 7-fruit truss, evaluate it, draw it"
+	@echo "make test    install what is missing, build and run all tests"
+	@echo "make bench   build and run the benchmarks"
+	@echo "make format  run clang-format on all sources"
+	@echo "make clean   remove build/ and demo/"
+
+build:
+	@cmake/packages.sh build
+	@$(CONFIGURE) -DAGRISEE_BUILD_TESTS=OFF -DAGRISEE_BUILD_EXAMPLES=OFF
+	@cmake --build build/release -j $(JOBS)
+
+demo: build
+	@$(AGRISEE) make-truss --total 7 --hidden 1 --seed 1 -o demo/scene --force
+	@$(AGRISEE) scan demo/scene/scene.yaml -o demo/result --noise l515 --seed 1 --force
+	@$(AGRISEE) evaluate demo/scene/scene.yaml demo/result
+	@echo "Picture: demo/result/truss.png"
+
+test:
+	@cmake/packages.sh build test
+	@$(CONFIGURE) -DAGRISEE_BUILD_TESTS=ON -DAGRISEE_BUILD_EXAMPLES=ON
+	@cmake --build build/release -j $(JOBS)
+	@ctest --test-dir build/release --output-on-failure -j $(JOBS)
+
+bench:
+	@cmake/packages.sh build bench
+	@cmake -S . -B build/bench -G Ninja -DCMAKE_BUILD_TYPE=Release -DAGRISEE_BUILD_BENCHMARKS=ON -DAGRISEE_BUILD_TESTS=OFF
+	@cmake --build build/bench -j $(JOBS)
+	@for program in build/bench/benchmarks/bench_*; do [ ! -x $$program ] || $$program --benchmark_min_time=0.2; done
+
+format:
+	@git ls-files '*.hpp' '*.cpp' | xargs clang-format -i
+
+clean:
+	@rm -rf build demo

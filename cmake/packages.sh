@@ -1,0 +1,32 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: BSD-3-Clause
+# Installs what is missing of Debian's or Ubuntu's packages: cmake/packages.sh [build] [test] [oracles] [bench]
+# Says what it does; asks sudo only when there is something to install and the caller is not root.
+set -euo pipefail
+
+declare -A groups=(
+  [build]="g++ cmake ninja-build libeigen3-dev libnanoflann-dev libyaml-cpp-dev nlohmann-json3-dev libcli11-dev libstb-dev"
+  [test]="catch2 pkg-config"
+  [oracles]="libpcl-dev libopen3d-dev liborocos-kdl-dev libembree-dev"
+  [bench]="libbenchmark-dev"
+)
+wanted=()
+for group in "$@"; do
+  [ -n "${groups[$group]:-}" ] || { echo "packages.sh: unknown group '$group' (${!groups[*]})" >&2; exit 1; }
+  for package in ${groups[$group]}; do wanted+=("$package"); done
+done
+if ! command -v dpkg-query >/dev/null 2>&1; then
+  echo "packages.sh: not a Debian or Ubuntu machine; please install the counterparts of: ${wanted[*]}"
+  exit 0
+fi
+missing=()
+for package in "${wanted[@]}"; do
+  [ "$(dpkg-query -W -f='${Status}' "$package" 2>/dev/null)" = "install ok installed" ] || missing+=("$package")
+done
+[ ${#missing[@]} -gt 0 ] || exit 0
+echo "packages.sh: installing ${missing[*]}"
+root=()
+[ "$(id -u)" = 0 ] || root=(sudo)
+export DEBIAN_FRONTEND=noninteractive
+"${root[@]}" apt-get update -qq
+"${root[@]}" apt-get install -y -qq --no-install-recommends "${missing[@]}" >/dev/null

@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// @file
+/// All parameters of the pipeline in one plain struct: our defaults, and the paper's values.
+#pragma once
+
+#include <agrisee/cloud/icp_parameters.hpp>
+#include <agrisee/cloud/normals.hpp>
+#include <agrisee/cloud/sor.hpp>
+#include <agrisee/cloud/split.hpp>
+#include <agrisee/cloud/surfels.hpp>
+#include <agrisee/plan/gain_planner.hpp>
+#include <agrisee/see/params.hpp>
+#include <agrisee/sensor/surface_image.hpp>
+
+#include <string>
+
+namespace agrisee {
+
+/// Parameters of the whole pipeline. `Parameters{}` are our defaults, `Parameters::paper()` the paper's stages and values.
+struct Parameters {
+  std::string preset = "default";   ///< name of the preset that these values started from
+  std::string planner = "gain";     ///< gain (default), see (SEE++), fixed or random
+  int max_views = 15;               ///< view budget, whatever the planner
+  bool fuse_surfaces = true;        ///< smooth frames and fuse them as surfels; off: merge raw points, the first wins
+  bool register_views = true;       ///< lay each view on what is fused so far (ICP) before fusing it
+  bool filter_each_view = false;    ///< outlier removal after every view, besides the one at the end (raw points only)
+  bool adaptive_normals = true;     ///< derive the normals' radius from the cloud's spacing
+  double normal_reach = 3.0;        ///< adaptive: that many spacings
+  bool growth_axis = true;          ///< pose frames: z towards the calyx; off: towards the cloud's highest point (paper)
+  sensor::SurfaceParameters surface;
+  SurfelParameters surfels;
+  IcpParameters icp;
+  SorParameters sor{20, 3.0, false};  ///< a wider gate than the paper's: fused surfaces have few outliers
+  NormalParameters normals;
+  SplitParameters split;
+  GrowthAxisParameters axis;
+  plan::FreeSpaceParameters free_space;
+  plan::GainPlannerParameters gain;
+  see::Parameters see;
+
+  /// The paper's stages with the paper's values.
+  static Parameters paper() {
+    Parameters p;
+    p.preset = "paper";
+    p.planner = "see";
+    p.max_views = 50;
+    p.fuse_surfaces = false;
+    p.register_views = false;
+    p.filter_each_view = true;
+    p.adaptive_normals = false;
+    p.growth_axis = false;
+    p.icp = IcpParameters::paper();
+    p.sor = SorParameters::paper();
+    p.normals = NormalParameters::paper();
+    p.split = SplitParameters::paper();
+    p.see = see::Parameters::paper();
+    return p;
+  }
+  /// The preset of that name. @throws ParameterError for any but `default` and `paper`
+  static Parameters named(const std::string& preset) {
+    if (preset == "default") return {};
+    if (preset == "paper") return paper();
+    throw ParameterError("preset must be default or paper, got " + preset);
+  }
+  /// @throws ParameterError naming the first field out of its range
+  void check() const {
+    if (preset != "default" && preset != "paper") throw ParameterError("preset must be default or paper, got " + preset);
+    if (planner != "gain" && planner != "see" && planner != "fixed" && planner != "random")
+      throw ParameterError("planner must be gain, see, fixed or random, got " + planner);
+    check_parameter(max_views >= 1, "max_views", ">= 1", max_views);
+    check_parameter(normal_reach > 0, "normal_reach", "positive", normal_reach);
+    surface.check();
+    surfels.check();
+    icp.check();
+    sor.check();
+    normals.check();
+    split.check();
+    axis.check();
+    free_space.check();
+    gain.check();
+    see.check();
+  }
+  /// f(name, field) for every field; nested parameter structs have `fields` of their own.
+  template <typename P, typename F>
+  static void fields(P& p, F&& f) {
+    f("preset", p.preset);
+    f("planner", p.planner);
+    f("max_views", p.max_views);
+    f("fuse_surfaces", p.fuse_surfaces);
+    f("register_views", p.register_views);
+    f("filter_each_view", p.filter_each_view);
+    f("adaptive_normals", p.adaptive_normals);
+    f("normal_reach", p.normal_reach);
+    f("growth_axis", p.growth_axis);
+    f("surface", p.surface);
+    f("surfels", p.surfels);
+    f("icp", p.icp);
+    f("sor", p.sor);
+    f("normals", p.normals);
+    f("split", p.split);
+    f("axis", p.axis);
+    f("free_space", p.free_space);
+    f("gain", p.gain);
+    f("see", p.see);
+  }
+};
+
+}  // namespace agrisee

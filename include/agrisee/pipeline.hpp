@@ -1,0 +1,241 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// @file
+/// The whole of AgriSEE behind one facade: look, clean, split, locate.
+///
+/// A robot's own loop: `observe` each frame with the pose it was taken from, ask `next_view`, move, repeat until there is
+/// none; then `result`. A ready cloud: `process` (process.hpp). A simulated scan: `study::scan` (study/simulated_scan.hpp),
+/// which drives the same loop. World frame, metres, radians.
+#pragma once
+
+#include <agrisee/cloud/icp.hpp>
+#include <agrisee/cloud/merge.hpp>
+#include <agrisee/plan/make_planner.hpp>
+#include <agrisee/process.hpp>
+#include <agrisee/sensor/points_to_frame.hpp>
+#include <agrisee/workcell.hpp>
+
+#include <memory>
+
+namespace agrisee {
+
+/// One scan of one truss.
+class Pipeline {
+ public:
+  /// @param workcell arm, sensor, scan volume and keep-out; see workcell.hpp
+  /// @param reach answers whether and how the arm can take a view; the default asks our UR3 model
+  /// @param planner decides where to look next; the default is the one that `parameters.planner` names
+  /// @param seed of whatever the planner draws
+  /// @throws ParameterError; InputError for an empty scan volume or poses that are not rigid
+  explicit Pipeline(const Workcell& workcell, const Parameters& parameters = {}, plan::Reach reach = {},
+                    std::unique_ptr<plan::Planner> planner = nullptr, std::uint64_t seed = 0, int threads = 1)
+      : workcell_(workcell), parameters_(parameters), reach_(std::move(reach)), planner_(std::move(planner)),
+        threads_(threads), surfels_(parameters.surfels), points_(parameters.see.min_separation()) {
+    parameters_.check();
+    check_input(!workcell.scan_volume.empty() && workcell.scan_volume.size().allFinite(), "the scan volume is empty or infinite");
+    check_input(is_rigid(workcell.world_T_base) && is_rigid(workcell.tool0_T_optical), "a pose of the workcell is not rigid");
+    if (!reach_) reach_ = plan::reach_of(workcell_);
+    if (!planner_) planner_ = plan::make_planner(workcell_, parameters_, seed);
+  }
+
+  /// Take in a depth frame that was seen from `world_T_optical` (at `joints`, where an arm is known).
+  /// A frame without returns inside the scan volume is a view that brought nothing.
+  /// @return the view as recorded
+  /// @throws InputError for a frame whose size disagrees with its intrinsics or a pose that is not rigid; the scan so far is kept
+  const View& observe(const sensor::DepthFrame& frame, const Pose& world_T_optical,
+                      const std::optional<Joints>& joints = std::nullopt) {
+    check(frame);
+    check_input(is_rigid(world_T_optical), "observe: the sensor pose is not a rigid transform");
+    View view;
+    view.world_T_optical = world_T_optical;
+    view.target = world_T_optical * Eigen::Vector3d(0.0, 0.0, target_distance(world_T_optical));
+    view.joints = joints;
+    view.plan_seconds = plan_seconds_;
+    plan_seconds_ = 0.0;
+    std::vector<Eigen::Vector3f> added;
+    std::optional<Indices> kept;
+    {
+      const Stopwatch watch(seconds_.fuse);
+      parameters_.fuse_surfaces ? fuse_surface(frame, view, added) : merge_points(frame, view, added);
+    }
+    if (parameters_.filter_each_view && !parameters_.fuse_surfaces && !points_.cloud().empty()) {
+      const Stopwatch watch(seconds_.filter);
+      kept = remove_statistical_outliers(points_.cloud(), parameters_.sor, threads_);
+      points_.keep(*kept);
+    }
+    view.points_new = added.size();
+    views_.push_back(view);
+    {
+      const Stopwatch watch(seconds_.plan);
+      refresh_cloud();
+      planner_->observe(progress(added, kept ? &*kept : nullptr));
+    }
+    return views_.back();
+  }
+
+  /// The same for unorganised points (m, optical frame), any cloud type.
+  template <typename C>
+  const View& observe_points(const C& points, const Pose& world_T_optical, const std::optional<Joints>& joints = std::nullopt) {
+    return observe(sensor::frame_from_points(points, workcell_.sensor.intrinsics), world_T_optical, joints);
+  }
+
+  /// Where to look next, from where the arm stands now; empty when the scan is over, `stop_reason` says why.
+  std::optional<plan::ReachableView> next_view(const Joints& current) {
+    check_input(current.allFinite(), "next_view: the joints are not finite");
+    double spent = 0.0;
+    std::optional<plan::ReachableView> next;
+    {
+      const Stopwatch watch(spent);
+      if (static_cast<int>(views_.size()) >= parameters_.max_views) {
+        stop_reason_ = StopReason::max_views;
+      } else {
+        next = planner_->next(progress({}, nullptr), current, reach_);
+        stop_reason_ = next ? StopReason::not_stopped : planner_->stop_reason();
+      }
+    }
+    plan_seconds_ += spent;
+    seconds_.plan += spent;
+    return next;
+  }
+
+  /// The arm could not take the view that `next_view` returned last: ask again for another.
+  void refused() { planner_->refused(); }
+
+  StopReason stop_reason() const { return stop_reason_; }
+  const std::vector<View>& views() const { return views_; }
+  /// The cloud merged so far, before any filter at the end.
+  const Cloud& merged() const { return cloud_; }
+  const Workcell& workcell() const { return workcell_; }
+  const Parameters& parameters() const { return parameters_; }
+  const plan::Reach& reach() const { return reach_; }
+
+  /// Clean, split and locate what has been seen so far.
+  ScanResult result() const {
+    CloudOrigin origin;
+    for (const View& v : views_) origin.sensors.push_back(v.world_T_optical.translation());
+    origin.cluster_origin = cluster_origin(workcell_.scan_volume, workcell_.world_T_base.translation());
+    SeenThrough seen_through;
+    if (!images_.empty())
+      seen_through = [this](const Ellipsoid& body) { return plan::seen_through(images_, body, parameters_.free_space); };
+    ScanResult out = process(cloud_, parameters_, origin, seen_through, threads_);
+    out.raw = raw_cloud();
+    out.views = views_;
+    out.stop_reason = stop_reason_;
+    out.seconds.plan = seconds_.plan;
+    out.seconds.fuse = seconds_.fuse;
+    out.seconds.filter += seconds_.filter;
+    out.seconds.capture = seconds_.capture;
+    out.seconds.total += seconds_.plan + seconds_.fuse + seconds_.filter;
+    return out;
+  }
+
+  /// Counts the time of a simulated sensor apart from our own.
+  double& capture_seconds() { return seconds_.capture; }
+
+ private:
+  /// How far ahead a view looks: to the middle of the scan volume, as seen along its axis.
+  double target_distance(const Pose& world_T_optical) const {
+    return std::max((workcell_.scan_volume.center() - world_T_optical.translation()).dot(world_T_optical.linear().col(2)), 0.0);
+  }
+
+  plan::Progress progress(const std::vector<Eigen::Vector3f>& added, const Indices* kept) const {
+    return {cloud_, images_, views_, added, kept};
+  }
+
+  /// The frame's surface, laid on what is fused so far, becomes part of it.
+  void fuse_surface(const sensor::DepthFrame& frame, View& view, std::vector<Eigen::Vector3f>& added) {
+    sensor::SurfaceImage image =
+        sensor::reconstruct_surface(frame, view.world_T_optical, workcell_.scan_volume, parameters_.surface, threads_);
+    view.points_in = image.points_in;
+    if (parameters_.register_views && surfels_.size() > 0) register_image(image);
+    const int id = static_cast<int>(views_.size());
+    for (std::size_t c = 0; c < image.points.size(); ++c)
+      if (image.sigma[c] > 0.0f && surfels_.add(image.points[c], image.normals[c], image.sigma[c], id))
+        added.push_back(image.points[c]);
+    // Only the depths are needed from now on, as evidence of free space.
+    image.points = {};
+    image.normals = {};
+    image.sigma = {};
+    images_.push_back(std::move(image));
+  }
+
+  void register_image(sensor::SurfaceImage& image) const {
+    Cloud source;
+    std::size_t valid = 0;
+    for (float s : image.sigma) valid += s > 0.0f;
+    const std::size_t step = std::max<std::size_t>(1, valid / 2500);
+    std::size_t k = 0;
+    for (std::size_t c = 0; c < image.points.size(); ++c)
+      if (image.sigma[c] > 0.0f && k++ % step == 0) {
+        source.points.push_back(image.points[c]);
+        source.normals.push_back(image.normals[c]);
+      }
+    const Cloud target = surfels_.cloud();
+    const IcpResult icp = register_cloud(source, source.normals, target, target.normals, parameters_.icp);
+    if (!icp.accepted) return;
+    const Eigen::Isometry3f correction = icp.target_T_source.cast<float>();
+    for (std::size_t c = 0; c < image.points.size(); ++c) {
+      if (!(image.sigma[c] > 0.0f)) continue;
+      image.points[c] = correction * image.points[c];
+      image.normals[c] = correction.linear() * image.normals[c];
+    }
+    image.world_T_optical = icp.target_T_source * image.world_T_optical;
+  }
+
+  /// The frame's raw points join the merged cloud where nothing is nearer than the minimum separation.
+  void merge_points(const sensor::DepthFrame& frame, View& view, std::vector<Eigen::Vector3f>& added) {
+    const int id = static_cast<int>(views_.size());
+    for (int v = 0; v < frame.intrinsics.height; ++v)
+      for (int u = 0; u < frame.intrinsics.width; ++u) {
+        if (!sensor::DepthFrame::valid(frame.at(u, v))) continue;
+        const Eigen::Vector3f p = (view.world_T_optical * frame.point(u, v).cast<double>()).cast<float>();
+        if (!workcell_.scan_volume.contains(p)) continue;
+        ++view.points_in;
+        if (!points_.add(p, id)) continue;
+        added.push_back(p);
+        raw_.points.push_back(p);
+        raw_.views.push_back(id);
+      }
+  }
+
+  /// The merged cloud as the planner and the result see it: surfels that later sight lines went through are left out.
+  void refresh_cloud() {
+    if (!parameters_.fuse_surfaces) {
+      cloud_ = points_.cloud();
+      return;
+    }
+    cloud_ = {};
+    for (const Surfel& s : surfels_.surfels()) {
+      int through = 0;
+      for (const auto& image : images_)
+        through += plan::sight(image, s.position.cast<double>(), parameters_.free_space) == plan::Sight::through;
+      if (through >= parameters_.free_space.min_refuting && through >= s.seen_by) continue;
+      cloud_.points.push_back(s.position);
+      cloud_.normals.push_back(s.normal);
+      cloud_.views.push_back(s.view);
+    }
+  }
+
+  Cloud raw_cloud() const {
+    if (!parameters_.fuse_surfaces) return raw_;
+    Cloud raw = surfels_.cloud();
+    raw.normals.clear();
+    return raw;
+  }
+
+  Workcell workcell_;
+  Parameters parameters_;
+  plan::Reach reach_;
+  std::unique_ptr<plan::Planner> planner_;
+  int threads_;
+  SurfelMap surfels_;                         // fused surfaces
+  std::vector<sensor::SurfaceImage> images_;  // what each view saw
+  SeparatedCloud points_;                     // or merged raw points
+  Cloud raw_;                                 // all of them, filtered away later or not
+  Cloud cloud_;                               // what is merged so far
+  std::vector<View> views_;
+  StopReason stop_reason_ = StopReason::not_stopped;
+  Timing seconds_;
+  double plan_seconds_ = 0.0;
+};
+
+}  // namespace agrisee

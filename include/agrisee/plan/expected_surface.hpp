@@ -1,0 +1,233 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// @file
+/// What a view is expected to show: the unseen parts of the bodies found so far, and unknown space in which more may hide.
+///
+/// The merged cloud is split into bodies (split.hpp). Each predicts where the rest of its surface lies; those parts that no
+/// point covers are samples, with the area they stand for. Beside them, voxels near the bodies that no sight line has
+/// reached stand for what may still hide there. A view shows a sample when it lies in the image and the range, faces the
+/// sensor, and no body or obstacle is in between. Samples that earlier views should have shown and did not count less and
+/// less: the prediction is wrong there. Metres, world; gains in m2 of fruit surface.
+#pragma once
+
+#include <agrisee/cloud/split.hpp>
+#include <agrisee/cloud/voxel.hpp>
+#include <agrisee/plan/planner.hpp>
+#include <agrisee/sensor/l515.hpp>
+
+namespace agrisee::plan {
+
+/// Parameters of ExpectedSurface.
+struct ExpectedSurfaceParameters {
+  double max_incidence = deg(68);  ///< a surface seen at less than this is expected to be measured (rad)
+  double voxel = 0.015;            ///< edge of the voxels of unknown space (m)
+  double neighborhood = 0.06;      ///< unknown space counts within this distance of a body's surface (m)
+  double unknown_weight = 0.08;    ///< fruit surface expected behind the face of an unknown voxel, as a share of the face
+  double disappointment = 0.35;    ///< factor on samples for every view that should have shown them and did not
+
+  /// @throws ParameterError
+  void check() const {
+    check_parameter(max_incidence > 0 && max_incidence < kPi / 2, "expected.max_incidence", "in (0, pi/2)", max_incidence);
+    check_parameter(voxel > 0, "expected.voxel", "positive", voxel);
+    check_parameter(neighborhood >= 0, "expected.neighborhood", ">= 0", neighborhood);
+    check_parameter(unknown_weight >= 0, "expected.unknown_weight", ">= 0", unknown_weight);
+    check_parameter(disappointment >= 0 && disappointment <= 1, "expected.disappointment", "in [0, 1]", disappointment);
+  }
+  template <typename P, typename F>
+  static void fields(P& p, F&& f) {
+    f("max_incidence", p.max_incidence);
+    f("voxel", p.voxel);
+    f("neighborhood", p.neighborhood);
+    f("unknown_weight", p.unknown_weight);
+    f("disappointment", p.disappointment);
+  }
+};
+
+/// The model of what has been seen and what has not.
+class ExpectedSurface {
+ public:
+  ExpectedSurface(const sensor::L515& sensor, const Aabb& volume, const ExpectedSurfaceParameters& parameters)
+      : sensor_(sensor), volume_(volume), parameters_(parameters) {
+    parameters.check();
+    const Eigen::Vector3d size = volume.size();
+    // At most about two million voxels, whatever the volume.
+    edge_ = std::max(parameters.voxel, std::cbrt(std::max(size.prod(), 0.0) / 2e6));
+    for (int a = 0; a < 3; ++a) dims_[a] = std::max(1, static_cast<int>(std::ceil(size[a] / edge_)));
+    known_.assign(std::size_t(dims_[0]) * std::size_t(dims_[1]) * std::size_t(dims_[2]), 0);
+  }
+
+  /// Update the model after a view.
+  void update(const Progress& progress, const SplitParameters& split_parameters, const FreeSpaceParameters& free_space) {
+    for (; images_read_ < progress.images.size(); ++images_read_) carve(progress.images[images_read_], free_space);
+    const Split found = split(progress.cloud, split_parameters, [&](const Ellipsoid& body) {
+      return seen_through(progress.images, body, free_space);
+    });
+    bodies_ = found.found;
+    collect_samples(progress, found);
+    PointCloud<float> rest;
+    for (std::size_t i = 0; i < progress.cloud.size(); ++i)
+      if (found.labels[i] == 0) rest.points.push_back(progress.cloud.points[i]);
+    obstacles_ = average_in_voxels(rest, 0.006).points;
+    // Expectations that earlier views disappointed.
+    for (const auto& image : progress.images) {
+      const Shown shown = look(image.world_T_optical);
+      for (std::size_t i = 0; i < samples_.size(); ++i)
+        if (shown.samples[i]) samples_[i].area *= parameters_.disappointment;
+    }
+  }
+
+  /// Fruit surface (m2) that a view is expected to show for the first time.
+  double gain(const Pose& world_T_optical) const { return look(world_T_optical).area; }
+
+  const std::vector<FoundBody>& bodies() const { return bodies_; }
+  /// Surface (m2) of all bodies found so far, and the part of it that points cover.
+  double area() const { return area_; }
+  double covered_area() const { return covered_; }
+  /// Centre of what is worth looking at: the mean of the bodies, else of the cloud's extent, else of the volume.
+  const Eigen::Vector3d& center() const { return center_; }
+
+ private:
+  struct Sample {
+    Eigen::Vector3d point, normal;  // zero normal: a voxel, seen from any side
+    double area;
+    int body;  // -1: a voxel
+  };
+  struct Shown {
+    std::vector<char> samples;
+    double area = 0.0;
+  };
+
+  void carve(const sensor::SurfaceImage& image, const FreeSpaceParameters& free_space) {
+    std::size_t i = 0;
+    for (int z = 0; z < dims_[2]; ++z)
+      for (int y = 0; y < dims_[1]; ++y)
+        for (int x = 0; x < dims_[0]; ++x, ++i)
+          if (!known_[i] && sight(image, voxel_center(x, y, z), free_space) != Sight::unknown) known_[i] = 1;
+  }
+
+  Eigen::Vector3d voxel_center(int x, int y, int z) const {
+    return volume_.min + edge_ * Eigen::Vector3d(x + 0.5, y + 0.5, z + 0.5);
+  }
+
+  void collect_samples(const Progress& progress, const Split& found) {
+    samples_.clear();
+    area_ = covered_ = 0.0;
+    Aabb extent;
+    std::vector<std::bitset<DirectionBins::kCount>> covered(bodies_.size());
+    for (std::size_t i = 0; i < progress.cloud.size(); ++i) {
+      const Eigen::Vector3d p = progress.cloud.points[i].cast<double>();
+      extent.extend(p);
+      // Anything on a body's surface covers it, calyx and stem included: behind them nothing more will show.
+      const int label = found.labels[i];
+      if (label > 0) {
+        const Ellipsoid& body = bodies_[static_cast<std::size_t>(label - 1)].fit.body;
+        covered[static_cast<std::size_t>(label - 1)].set(static_cast<std::size_t>(DirectionBins::bin(p - body.center)));
+      }
+    }
+    center_ = extent.empty() ? volume_.center() : extent.center();
+    if (!bodies_.empty()) center_.setZero();
+    for (std::size_t b = 0; b < bodies_.size(); ++b) {
+      const Ellipsoid& body = bodies_[b].fit.body;
+      center_ += body.center / static_cast<double>(bodies_.size());
+      const double r = body.mean_radius(), area = 4.0 * kPi * r * r;
+      for (std::size_t k = 0; k < DirectionBins::kCount; ++k) {
+        const double share = area * DirectionBins::shares()[k];
+        area_ += share;
+        if (covered[b][k]) {
+          covered_ += share;
+          continue;
+        }
+        const Eigen::Vector3d p = body.surface(DirectionBins::directions()[k]);
+        if (inside_other(p, static_cast<int>(b))) continue;
+        samples_.push_back({p, body.normal(p), share, static_cast<int>(b)});
+      }
+    }
+    std::size_t i = 0;
+    for (int z = 0; z < dims_[2]; ++z)
+      for (int y = 0; y < dims_[1]; ++y)
+        for (int x = 0; x < dims_[0]; ++x, ++i) {
+          if (known_[i]) continue;
+          const Eigen::Vector3d p = voxel_center(x, y, z);
+          double nearest = std::numeric_limits<double>::infinity();
+          for (const FoundBody& b : bodies_)
+            nearest = std::min(nearest, (p - b.fit.body.center).norm() - b.fit.body.mean_radius());
+          if (bodies_.empty() && extent.distance(p) < parameters_.neighborhood) nearest = edge_;
+          if (nearest < 0.0 || nearest > parameters_.neighborhood) continue;
+          samples_.push_back({p, Eigen::Vector3d::Zero(), parameters_.unknown_weight * edge_ * edge_, -1});
+        }
+  }
+
+  bool inside_other(const Eigen::Vector3d& p, int own) const {
+    for (std::size_t b = 0; b < bodies_.size(); ++b)
+      if (static_cast<int>(b) != own && (p - bodies_[b].fit.body.center).norm() < 0.98 * bodies_[b].fit.body.mean_radius())
+        return true;
+    return false;
+  }
+
+  /// Which samples a view shows, and their area.
+  Shown look(const Pose& world_T_optical) const {
+    Shown out;
+    out.samples.assign(samples_.size(), 0);
+    const sensor::Intrinsics& k = sensor_.intrinsics;
+    const Pose optical_T_world = world_T_optical.inverse(Eigen::Isometry);
+    const Eigen::Vector3d eye = world_T_optical.translation();
+    const double cos_max = std::cos(parameters_.max_incidence);
+    // Obstacles: a coarse depth image.
+    constexpr int kWidth = 96, kHeight = 72;
+    std::vector<float> depth(kWidth * kHeight, std::numeric_limits<float>::infinity());
+    const auto pixel = [&](const Eigen::Vector3d& p) -> int {
+      if (!(p.z() > 0.0)) return -1;
+      const Eigen::Vector2d uv = k.project(p);
+      const double u = (uv.x() + 0.5) / k.width * kWidth, v = (uv.y() + 0.5) / k.height * kHeight;
+      if (!(u >= 0 && v >= 0 && u < kWidth && v < kHeight)) return -1;
+      return static_cast<int>(v) * kWidth + static_cast<int>(u);
+    };
+    for (const Eigen::Vector3f& o : obstacles_) {
+      const Eigen::Vector3d p = optical_T_world * o.cast<double>();
+      const int c = pixel(p);
+      if (c >= 0) depth[static_cast<std::size_t>(c)] = std::min(depth[static_cast<std::size_t>(c)], static_cast<float>(p.z()));
+    }
+    for (std::size_t i = 0; i < samples_.size(); ++i) {
+      const Sample& s = samples_[i];
+      const Eigen::Vector3d d = s.point - eye;
+      const double distance = d.norm();
+      if (s.body >= 0 && -d.dot(s.normal) < cos_max * distance) continue;
+      if (distance < sensor_.range_min || distance > sensor_.range_max) continue;
+      const Eigen::Vector3d p = optical_T_world * s.point;
+      const int c = pixel(p);
+      if (c < 0 || double(depth[static_cast<std::size_t>(c)]) < p.z() - 0.012) continue;
+      if (hidden(eye, d / distance, distance, s.body)) continue;
+      out.samples[i] = 1;
+      out.area += s.area;
+    }
+    return out;
+  }
+
+  bool hidden(const Eigen::Vector3d& eye, const Eigen::Vector3d& u, double distance, int own) const {
+    for (std::size_t b = 0; b < bodies_.size(); ++b) {
+      if (static_cast<int>(b) == own) continue;
+      const Ellipsoid& body = bodies_[b].fit.body;
+      const double r = 0.97 * body.mean_radius();
+      const Eigen::Vector3d c = body.center - eye;
+      const double along = c.dot(u);
+      const double off_sq = c.squaredNorm() - along * along;
+      if (off_sq >= r * r || along < 0.0) continue;
+      if (along - std::sqrt(r * r - off_sq) < distance - 1e-3) return true;
+    }
+    return false;
+  }
+
+  sensor::L515 sensor_;
+  Aabb volume_;
+  ExpectedSurfaceParameters parameters_;
+  double edge_ = 0.0;
+  std::array<int, 3> dims_{1, 1, 1};
+  std::vector<char> known_;  // one a voxel: some sight line has reached it
+  std::size_t images_read_ = 0;
+  std::vector<FoundBody> bodies_;
+  std::vector<Sample> samples_;
+  std::vector<Eigen::Vector3f> obstacles_;
+  double area_ = 0.0, covered_ = 0.0;
+  Eigen::Vector3d center_ = Eigen::Vector3d::Zero();
+};
+
+}  // namespace agrisee::plan

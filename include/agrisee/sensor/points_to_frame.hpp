@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// @file
+/// Unorganised points of one view as a depth image, so that sensors without an image take the same path.
+#pragma once
+
+#include <agrisee/core/cloud.hpp>
+#include <agrisee/sensor/depth_frame.hpp>
+
+namespace agrisee::sensor {
+
+/// Each point (m, optical frame: z forward, x right, y down) goes to the pixel that sees it; the nearest wins. Points behind the
+/// sensor, outside the image or not finite are left out.
+/// @throws ParameterError for intrinsics without pixels
+template <typename C>
+DepthFrame frame_from_points(const C& points, const Intrinsics& intrinsics) {
+  check_parameter(intrinsics.width >= 1, "sensor width", ">= 1", intrinsics.width);
+  check_parameter(intrinsics.height >= 1, "sensor height", ">= 1", intrinsics.height);
+  DepthFrame frame;
+  frame.intrinsics = intrinsics;
+  frame.depth.assign(intrinsics.size(), 0.0f);
+  for (std::size_t i = 0; i < size(points); ++i) {
+    const Eigen::Vector3d p = point(points, i).template cast<double>();
+    if (!is_finite(p) || !(p.z() > 0.0)) continue;
+    const Eigen::Vector2d uv = intrinsics.project(p);
+    const double u = std::floor(uv.x() + 0.5), v = std::floor(uv.y() + 0.5);
+    if (!(u >= 0 && v >= 0 && u < intrinsics.width && v < intrinsics.height)) continue;
+    float& z = frame.depth[static_cast<std::size_t>(v) * static_cast<std::size_t>(intrinsics.width) + static_cast<std::size_t>(u)];
+    if (z == 0.0f || static_cast<float>(p.z()) < z) z = static_cast<float>(p.z());
+  }
+  return frame;
+}
+
+}  // namespace agrisee::sensor
