@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// @file
+/// Whole files in and out. Every reader and writer of this module goes through here, so that all of them fail alike: a
+/// FileError that begins with the path.
+#pragma once
+
+#include <agrisee/core/error.hpp>
+
+#include <cstddef>
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <string_view>
+
+namespace agrisee::io {
+
+/// The bytes of a file.
+struct Bytes {
+  std::unique_ptr<char[]> data;
+  std::size_t size = 0;
+
+  std::string_view view() const { return {data.get(), size}; }
+};
+
+/// All bytes of a regular file (or pipe), read at once.
+/// @throws FileError when it is missing, a directory, a device, or cannot be read
+Bytes read_bytes(const std::filesystem::path& path);
+
+/// A file that appears under its name only when it is complete: it is written to a temporary beside `path`, then
+/// renamed. Without commit() nothing is left behind and an older file stays as it was.
+class AtomicFile {
+ public:
+  /// @throws FileError when the temporary cannot be created
+  explicit AtomicFile(const std::filesystem::path& path);
+  AtomicFile(const AtomicFile&) = delete;
+  AtomicFile& operator=(const AtomicFile&) = delete;
+  ~AtomicFile();
+
+  /// Append bytes. @throws FileError when they cannot be written
+  void write(const void* data, std::size_t size);
+  void write(std::string_view text) { write(text.data(), text.size()); }
+  /// Put the file in its place. @throws FileError when that fails
+  void commit();
+
+ private:
+  struct Closer {
+    void operator()(std::FILE* file) const;
+  };
+  std::filesystem::path path_, temporary_;
+  std::unique_ptr<std::FILE, Closer> file_;
+};
+
+/// Write a whole file, atomically. @throws FileError
+void write_file(const std::filesystem::path& path, std::string_view bytes);
+
+/// Throw FileError("<path>: <message>").
+[[noreturn]] void fail(const std::filesystem::path& path, const std::string& message);
+/// Throw FileError("<path>:<line>: <message>").
+[[noreturn]] void fail(const std::filesystem::path& path, std::size_t line, const std::string& message);
+
+}  // namespace agrisee::io

@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <agrisee/io/files.hpp>
+
+#include <algorithm>
+#include <atomic>
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <system_error>
+#include <unistd.h>
+
+namespace agrisee::io {
+
+namespace fs = std::filesystem;
+
+void fail(const fs::path& path, const std::string& message) { throw FileError(path.string() + ": " + message); }
+
+void fail(const fs::path& path, std::size_t line, const std::string& message) {
+  throw FileError(path.string() + ":" + std::to_string(line) + ": " + message);
+}
+
+Bytes read_bytes(const fs::path& path) {
+  std::error_code error;
+  const fs::file_status status = fs::status(path, error);
+  if (!fs::exists(status)) fail(path, "no such file");
+  if (fs::is_directory(status)) fail(path, "is a directory, not a file");
+  if (!fs::is_regular_file(status) && !fs::is_fifo(status)) fail(path, "is not a regular file");
+  const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen(path.c_str(), "rb"), std::fclose);
+  if (!file) fail(path, std::string("cannot be opened: ") + std::strerror(errno));
+
+  std::size_t capacity = 1 << 16;
+  if (fs::is_regular_file(status)) {
+    const auto size = fs::file_size(path, error);
+    if (!error) capacity = static_cast<std::size_t>(size) + 1;  // one more, to meet the end at the first read
+  }
+  Bytes bytes{std::unique_ptr<char[]>(new char[capacity]), 0};
+  while (true) {
+    bytes.size += std::fread(bytes.data.get() + bytes.size, 1, capacity - bytes.size, file.get());
+    if (bytes.size < capacity) break;
+    std::unique_ptr<char[]> larger(new char[2 * capacity]);
+    std::memcpy(larger.get(), bytes.data.get(), bytes.size);
+    bytes.data = std::move(larger);
+    capacity *= 2;
+  }
+  if (std::ferror(file.get())) fail(path, "cannot be read");
+  return bytes;
+}
+
+void AtomicFile::Closer::operator()(std::FILE* file) const { std::fclose(file); }
+
+AtomicFile::AtomicFile(const fs::path& path) : path_(path) {
+  static std::atomic<unsigned> counter{0};  // several writers of one process never share a temporary
+  std::error_code error;
+  if (fs::is_directory(path, error)) fail(path, "is a directory, cannot be written as a file");
+  temporary_ = path;
+  temporary_.replace_filename("." + path.filename().string() + ".tmp" + std::to_string(::getpid()) + "-" +
+                              std::to_string(counter++));
+  file_.reset(std::fopen(temporary_.c_str(), "wb"));
+  if (!file_) fail(path, std::string("cannot be written: ") + std::strerror(errno));
+}
+
+AtomicFile::~AtomicFile() {
+  if (temporary_.empty()) return;
+  file_.reset();
+  std::error_code ignored;
+  fs::remove(temporary_, ignored);
+}
+
+void AtomicFile::write(const void* data, std::size_t size) {
+  if (size > 0 && std::fwrite(data, 1, size, file_.get()) != size)
+    fail(path_, std::string("cannot be written: ") + std::strerror(errno));
+}
+
+void AtomicFile::commit() {
+  if (std::fclose(file_.release()) != 0) fail(path_, std::string("cannot be written: ") + std::strerror(errno));
+  std::error_code error;
+  fs::rename(temporary_, path_, error);
+  if (error) fail(path_, "cannot be written: " + error.message());
+  temporary_.clear();
+}
+
+void write_file(const fs::path& path, std::string_view bytes) {
+  AtomicFile file(path);
+  file.write(bytes);
+  file.commit();
+}
+
+}  // namespace agrisee::io
