@@ -11,7 +11,7 @@ namespace agrisee::io {
 
 /// @throws FileError when a mesh that was read has no triangle or a vertex that is not finite
 void check_mesh(const std::filesystem::path& path, const Mesh& mesh);
-/// @throws InputError when a mesh to be written has an index out of range
-void check_indices(const Mesh& mesh);
+/// @throws InputError when a mesh to be written has an index out of range or a vertex that is not finite
+void check_writable(const Mesh& mesh);
 
 }  // namespace agrisee::io

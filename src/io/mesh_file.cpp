@@ -19,9 +19,12 @@ void check_mesh(const fs::path& path, const Mesh& mesh) {
     if (!is_finite(mesh.vertices[i])) fail(path, "vertex " + std::to_string(i) + " is not finite");
 }
 
-void check_indices(const Mesh& mesh) {
+void check_writable(const Mesh& mesh) {
+  for (const Eigen::Vector3f& v : mesh.vertices)
+    check_input(is_finite(v), "a mesh to be written has a vertex that is not finite");
   for (const auto& t : mesh.triangles)
-    for (const std::uint32_t i : t) check_input(i < mesh.vertices.size(), "a triangle's index is out of range");
+    for (const std::uint32_t i : t)
+      check_input(i < mesh.vertices.size(), "a mesh to be written has a vertex index out of range");
 }
 
 Mesh read_mesh(const fs::path& path, StlCorners corners) {
@@ -72,7 +75,7 @@ Mesh read_ply_mesh(const fs::path& path) {
 }
 
 void write_ply_mesh(const fs::path& path, const Mesh& mesh, const std::vector<Rgb>& colors) {
-  check_indices(mesh);
+  check_writable(mesh);
   check_input(colors.empty() || colors.size() == mesh.vertices.size(), "write_ply_mesh: not one colour per vertex");
   std::string out = "ply\nformat binary_little_endian 1.0\ncomment AgriSEE, metres\nelement vertex " +
                     std::to_string(mesh.vertices.size()) + "\nproperty float x\nproperty float y\nproperty float z\n";

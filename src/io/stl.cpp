@@ -139,7 +139,7 @@ Mesh read_stl(const std::filesystem::path& path, StlCorners corners) {
 }
 
 void write_stl(const std::filesystem::path& path, const Mesh& mesh) {
-  check_indices(mesh);
+  check_writable(mesh);
   std::string out(kHeader + kFacet * mesh.triangles.size(), '\0');
   constexpr std::string_view kTitle = "AgriSEE, binary STL, metres";  // must not begin with "solid"
   std::memcpy(out.data(), kTitle.data(), kTitle.size());

@@ -31,12 +31,13 @@ Mesh read_obj(const std::filesystem::path& path);
 Mesh read_ply_mesh(const std::filesystem::path& path);
 
 /// Write a binary STL file with facet normals, atomically.
-/// @throws InputError when an index is out of range  @throws FileError when the file cannot be written
+/// @throws InputError when an index is out of range or a vertex not finite  @throws FileError when the file cannot be
+/// written
 void write_stl(const std::filesystem::path& path, const Mesh& mesh);
 
 /// Write a binary little-endian PLY mesh, atomically.
 /// @param colors one per vertex, or none
-/// @throws InputError when an index is out of range or the colours are not one per vertex
+/// @throws InputError when an index is out of range, a vertex not finite, or the colours are not one per vertex
 /// @throws FileError when the file cannot be written
 void write_ply_mesh(const std::filesystem::path& path, const Mesh& mesh, const std::vector<Rgb>& colors = {});
 

@@ -9,10 +9,10 @@
 
 namespace agrisee::io {
 
-/// Read parameters from a YAML file. Keys that are absent keep the values of `base` or, where the file names one, of its
-/// `preset`. The result is checked.
-/// @throws FileError that names the file, the key and its line, for a file that cannot be read, an unknown key, a value of the
-/// wrong type or out of range
+/// Read parameters from a YAML file. Keys that are absent keep the values of `base` or, where the file names one, of
+/// its `preset`. The result is checked.
+/// @throws FileError that names the file, the key and its line, for a file that cannot be read, an unknown key, a value
+/// of the wrong type or out of range
 Parameters read_parameters(const std::string& path, const Parameters& base = {});
 
 /// The parameters as YAML, every key written; reading them back gives the same values.
