@@ -3,12 +3,18 @@
 /// Normals of a cloud whose views are unknown, turned to agree with one another: signs spread along a minimum spanning
 /// tree of the neighbourhood graph, an edge costing 1 - |n_i . n_j| (Hoppe et al., SIGGRAPH 1992).
 ///
+/// Where two bodies touch, their surfaces run side by side and an edge between them has the wrong sign. So an edge does
+/// not join two patches of which both know their outside (normals face away from a curved patch's centroid) and
+/// disagree.
+///
 /// Any frame, metres, radians. Cost: k nearest neighbours of every point and a sort of the O(k n) edges.
 #pragma once
 
 #include <agrisee/core/cloud.hpp>
 #include <agrisee/core/kdtree.hpp>
 #include <agrisee/core/parallel.hpp>
+
+#include <cmath>
 
 namespace agrisee {
 
@@ -38,13 +44,37 @@ struct OrientationParameters {
 
 namespace detail {
 
-/// Disjoint sets whose members know whether their sign differs from that of the set's root.
-class SignedSets {
- public:
-  explicit SignedSets(std::size_t n) : parent_(n), flip_(n, 0) {
-    for (std::size_t i = 0; i < n; ++i) parent_[i] = i;
+/// Sums over the points of a patch from which it follows whether its normals face away from its centroid.
+struct PatchSums {
+  double count = 0.0;
+  Eigen::Vector3d points = Eigen::Vector3d::Zero(), normals = Eigen::Vector3d::Zero();
+  double flux = 0.0, squares = 0.0;  // sums of n . p and p . p
+
+  void add(const PatchSums& other, double sign) {
+    count += other.count;
+    points += other.points;
+    normals += sign * other.normals;
+    flux += sign * other.flux;
+    squares += other.squares;
   }
-  /// Root of i; afterwards `differs(i)` is relative to it.
+  /// Mean of n . (p - centroid) over the root mean square of |p - centroid|: 1 for a sphere, about 0.35 times the
+  /// opening half-angle for a small cap of one, 0 for a plane, negative where the normals face inwards.
+  double outwardness() const {
+    const Eigen::Vector3d centroid = points / count;
+    const double spread = std::sqrt(std::max(0.0, squares / count - centroid.squaredNorm()));
+    return spread > 0.0 ? (flux - normals.dot(centroid)) / (count * spread) : 0.0;
+  }
+  /// Whether it is clear which side is outside.
+  bool decided() const { return count >= 20.0 && std::abs(outwardness()) > 0.1; }
+};
+
+/// Disjoint patches of points, each of which knows whether its sign differs from that of the patch's first point.
+class Patches {
+ public:
+  explicit Patches(std::vector<PatchSums> points) : parent_(points.size()), flip_(points.size(), 0), sums_(points) {
+    for (std::size_t i = 0; i < parent_.size(); ++i) parent_[i] = i;
+  }
+  /// First point of i's patch; afterwards `differs(i)` is relative to it.
   std::size_t root(std::size_t i) {
     std::size_t top = i;
     char flip = 0;
@@ -52,7 +82,7 @@ class SignedSets {
       flip = static_cast<char>(flip ^ flip_[top]);
       top = parent_[top];
     }
-    while (parent_[i] != top && i != top) {  // point the whole path at the root
+    while (i != top) {  // point the whole path at the root
       const std::size_t next = parent_[i];
       const char rest = static_cast<char>(flip ^ flip_[i]);
       parent_[i] = top;
@@ -63,18 +93,27 @@ class SignedSets {
     return top;
   }
   bool differs(std::size_t i) const { return flip_[i] != 0; }
-  /// Join the sets of a and b such that the signs of a and b differ or not.
+  const PatchSums& sums(std::size_t root) const { return sums_[root]; }
+
+  /// Join the patches of a and b such that the signs of a and b differ or not; unless both know their outside and one
+  /// of them would have to be turned inside out.
   void join(std::size_t a, std::size_t b, bool differ) {
     const std::size_t ra = root(a), rb = root(b);
     if (ra == rb) return;
-    const bool flip = differs(a) != differs(b) ? !differ : differ;
-    parent_[std::max(ra, rb)] = std::min(ra, rb);
-    flip_[std::max(ra, rb)] = flip ? 1 : 0;
+    const bool flip = (differs(a) != differs(b)) != differ;
+    const double sign = flip ? -1.0 : 1.0;
+    if (sums_[ra].decided() && sums_[rb].decided() && sign * sums_[ra].outwardness() * sums_[rb].outwardness() < 0.0)
+      return;
+    const std::size_t first = std::min(ra, rb), second = std::max(ra, rb);
+    parent_[second] = first;
+    flip_[second] = flip ? 1 : 0;
+    sums_[first].add(sums_[second], sign);
   }
 
  private:
   std::vector<std::size_t> parent_;
   std::vector<char> flip_;
+  std::vector<PatchSums> sums_;  // at roots
 };
 
 }  // namespace detail
@@ -120,35 +159,24 @@ std::vector<Vector3<scalar_t<C>>> orient_normals_consistently(std::vector<Vector
   edges.erase(std::remove_if(edges.begin(), edges.end(), [](const Edge& e) { return e.cost == S(2); }), edges.end());
   std::sort(edges.begin(), edges.end());
 
-  detail::SignedSets patches(n);  // Kruskal: an edge inside a patch changes nothing
-  for (const Edge& e : edges) {
+  std::vector<detail::PatchSums> points(n);
+  Eigen::Vector3d origin = Eigen::Vector3d::Zero();  // among the points, for the sake of the digits
+  for (std::size_t i = n; i-- > 0;)
+    if (known(i)) origin = point(cloud, i).template cast<double>();
+  for (std::size_t i = 0; i < n; ++i) {
+    if (!known(i)) continue;
+    const Eigen::Vector3d p = point(cloud, i).template cast<double>() - origin;
+    const Eigen::Vector3d normal = normals[i].template cast<double>();
+    points[i] = {1.0, p, normal, normal.dot(p), p.squaredNorm()};
+  }
+  detail::Patches patches(std::move(points));
+  for (const Edge& e : edges) {  // Kruskal: an edge inside a patch changes nothing
     const auto a = static_cast<std::size_t>(e.a), b = static_cast<std::size_t>(e.b);
     patches.join(a, b, normals[a].dot(normals[b]) < 0);
   }
-
-  // Per patch, at its root (its first point): centroid, then how much the normals face away from it.
-  std::vector<Eigen::Vector3d> centroid(n, Eigen::Vector3d::Zero());
-  std::vector<double> count(n, 0.0), outward(n, 0.0), reach(n, 0.0);
   for (std::size_t i = 0; i < n; ++i) {
     if (!known(i)) continue;
-    const std::size_t r = patches.root(i);
-    centroid[r] += point(cloud, i).template cast<double>();
-    count[r] += 1.0;
-  }
-  const auto arm = [&](std::size_t i, std::size_t r) {
-    return Eigen::Vector3d(point(cloud, i).template cast<double>() - centroid[r] / count[r]);
-  };
-  for (std::size_t i = 0; i < n; ++i) {
-    if (!known(i)) continue;
-    const std::size_t r = patches.root(i);
-    const double sign = patches.differs(i) ? -1.0 : 1.0;
-    outward[r] += sign * arm(i, r).dot(normals[i].template cast<double>());
-    reach[r] += arm(i, r).norm();
-  }
-  for (std::size_t i = 0; i < n; ++i) {
-    if (!known(i)) continue;
-    const std::size_t r = patches.root(i);
-    const bool inward = outward[r] < -1e-6 * reach[r];
+    const bool inward = patches.sums(patches.root(i)).outwardness() < -1e-6;
     if (patches.differs(i) != inward) normals[i] = -normals[i];
   }
   return normals;

@@ -1,0 +1,262 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <agrisee/cloud/icp.hpp>
+#include <agrisee/core/kdtree.hpp>
+
+#include "cloud/cloud_cases.hpp"
+
+using namespace agrisee;
+
+namespace {
+
+/// Points and normals of a truss of spheres, seen from -y when `front`.
+template <typename S>
+PointCloud<S> truss(std::size_t n, std::uint64_t seed, int spheres, double noise, bool front = false) {
+  Rng rng(seed);
+  PointCloud<S> out;
+  while (out.size() < n) {
+    const auto k = static_cast<double>(rng.below(static_cast<std::uint64_t>(spheres)));
+    const Eigen::Vector3d center(0.03 * std::cos(2 * k), 0.5 + 0.03 * std::sin(2 * k), 0.6 - 0.035 * k);
+    const Eigen::Vector3d normal = rng.direction();
+    const Eigen::Vector3d p = center + (0.03 + noise * rng.normal()) * normal;
+    if (front && normal.y() > -0.2) continue;
+    out.points.push_back(p.cast<S>());
+    out.normals.push_back(normal.cast<S>());
+  }
+  return out;
+}
+
+template <typename S>
+PointCloud<S> moved(const Pose& motion, PointCloud<S> cloud) {
+  for (auto& p : cloud.points) p = (motion * p.template cast<double>()).template cast<S>();
+  for (auto& n : cloud.normals) n = (motion.linear() * n.template cast<double>()).template cast<S>();
+  return cloud;
+}
+
+/// A motion about the truss's middle.
+Pose about_middle(const Eigen::Vector3d& shift, const Eigen::Vector3d& rpy) {
+  const Eigen::Vector3d middle(0.0, 0.5, 0.53);
+  return Eigen::Translation3d(middle) * pose_from_xyz_rpy(shift, rpy) * Eigen::Translation3d(-middle);
+}
+
+/// How far (m) the truss still is from its place.
+double error(const IcpResult& result, const Pose& motion) {
+  double worst = 0.0;
+  for (const Eigen::Vector3d& p :
+       {Eigen::Vector3d(0, 0.5, 0.6), Eigen::Vector3d(0, 0.5, 0.45), Eigen::Vector3d(0.05, 0.45, 0.5)})
+    worst = std::max(worst, (result.target_T_source * motion * p - p).norm());
+  return worst;
+}
+
+const Pose kSmall = about_middle({0.002, -0.001, 0.0015}, {0.008, -0.005, 0.006});
+
+template <typename S>
+IcpResult align(const PointCloud<S>& source, const PointCloud<S>& target, const IcpParameters& params = {}) {
+  return register_cloud(source, source.normals, target, target.normals, params);
+}
+
+}  // namespace
+
+TEST_CASE("ICP finds a small motion, whatever the kernel and the distance") {
+  const auto target = truss<float>(8000, 1, 6, 0.0);
+  const auto source = moved(kSmall, truss<float>(1500, 2, 6, 0.0, true));
+  for (const RobustKernel kernel : {RobustKernel::none, RobustKernel::huber, RobustKernel::tukey}) {
+    IcpParameters params;
+    params.kernel = kernel;
+    const IcpResult result = align(source, target, params);
+    INFO(to_string(kernel));
+    CHECK(result.accepted);
+    CHECK(error(result, kSmall) < 2e-4);
+    CHECK(result.rms_after < 0.5 * result.rms_before);
+    CHECK(result.constrained == 6);
+    CHECK(result.matches > 1300);
+    params.point_to_point = true;
+    params.max_iterations = 100;
+    const IcpResult points = align(source, target, params);
+    CHECK(points.accepted);
+    CHECK(error(points, kSmall) < 6e-4);  // points slide over points less easily
+  }
+}
+
+TEST_CASE("ICP of a cloud with its own copy is exact") {
+  const auto target = truss<double>(3000, 1, 6, 3e-4);
+  for (const bool point_to_point : {false, true}) {
+    IcpParameters params;
+    params.point_to_point = point_to_point;
+    params.max_iterations = 200;
+    params.kernel = RobustKernel::none;
+    const IcpResult result = align(moved(kSmall, target), target, params);
+    CHECK(result.accepted);
+    CHECK(error(result, kSmall) < 1e-5);
+    CHECK(result.rms_after < 1e-5);
+    const IcpResult still = align(target, target, params);  // nothing to gain
+    CHECK_FALSE(still.accepted);
+    CHECK(still.target_T_source.matrix() == Pose::Identity().matrix());
+    CHECK(still.matches == target.size());
+    CHECK(still.rms_before == 0.0);
+  }
+}
+
+TEST_CASE("ICP with noise and strays: robust weights do better") {
+  const auto target = truss<float>(8000, 1, 6, 5e-4);
+  auto source = moved(kSmall, truss<float>(1500, 2, 6, 5e-4, true));
+  for (std::size_t i = 0; i < source.size(); i += 8) source.points[i] += 0.004f * source.normals[i];
+  IcpParameters params;
+  const double robust = error(align(source, target, params), kSmall);
+  params.kernel = RobustKernel::none;
+  const double plain = error(align(source, target, params), kSmall);
+  INFO(robust << " " << plain);
+  CHECK(robust < 3e-4);
+  CHECK(robust < 0.5 * plain);
+}
+
+TEST_CASE("ICP obeys the laws: shuffles, motions, threads, searches") {
+  const auto target = truss<double>(4000, 1, 6, 3e-4);
+  const auto source = moved(kSmall, truss<double>(900, 2, 6, 3e-4, true));
+  const IcpResult straight = align(source, target);
+  REQUIRE(straight.accepted);
+  const auto run = [&](const auto& search, int threads) {
+    return register_cloud(source, source.normals, target, target.normals, {}, search, Pose::Identity(), threads);
+  };
+  for (const int threads : {1, 2, 5})
+    CHECK(run(Grid<double>(target, 0.0025), threads).target_T_source.matrix() == straight.target_T_source.matrix());
+  CHECK(run(KdTree<double>(target), 2).target_T_source.matrix() == straight.target_T_source.matrix());
+  CHECK(run(Grid<double>(target, 0.1), 1).target_T_source.matrix() == straight.target_T_source.matrix());
+  const IcpResult shuffled =
+      align(select(source, cases::shuffled(source.size())), select(target, cases::shuffled(target.size())));
+  CHECK(shuffled.target_T_source.isApprox(straight.target_T_source, 1e-9));
+  const Pose motion = cases::some_motion();
+  const IcpResult elsewhere = align(moved(motion, source), moved(motion, target));
+  CHECK((motion.inverse() * elsewhere.target_T_source * motion).isApprox(straight.target_T_source, 1e-7));
+  // The initial pose takes the motion's place.
+  const IcpResult initial = register_cloud(source, source.normals, moved(motion, target), moved(motion, target).normals,
+                                           {}, Grid<double>(moved(motion, target), 0.0025), motion);
+  CHECK(initial.accepted);
+  CHECK((motion.inverse() * initial.target_T_source).isApprox(straight.target_T_source, 1e-7));
+  CHECK(initial.translation == Approx(straight.translation).epsilon(1e-4));
+}
+
+TEST_CASE("ICP does not drift where the surface says nothing") {
+  const Pose lifted = about_middle({0, 0, 0.002}, {0, 0, 0});
+  PointCloud<double> plane, patch;
+  for (int i = 0; i < 3600; ++i) {
+    plane.points.push_back({0.002 * (i % 60), 0.5 + 0.002 * (i / 60), 0.5});
+    plane.normals.push_back(Eigen::Vector3d::UnitZ());
+    if (i % 60 > 20 && i % 60 < 40 && i / 60 > 20 && i / 60 < 40) {
+      patch.points.push_back(plane.points.back() + Eigen::Vector3d(7e-4, 3e-4, 0.002));
+      patch.normals.push_back(Eigen::Vector3d::UnitZ());
+    }
+  }
+  const IcpResult flat = align(patch, plane);
+  CHECK(flat.accepted);
+  CHECK(flat.constrained == 3);
+  CHECK((flat.target_T_source.translation() - Eigen::Vector3d(0, 0, -0.002)).norm() < 1e-9);
+  CHECK(flat.rotation < 1e-9);
+
+  const auto ball = truss<double>(4000, 1, 1, 0.0);
+  const IcpResult round = align(moved(lifted, truss<double>(800, 2, 1, 0.0)), ball);
+  CHECK(round.accepted);
+  CHECK(round.constrained == 3);
+  CHECK(round.rotation < deg(0.3));  // matches lie a little aside, so turn and shift mix a little
+  CHECK((round.target_T_source * lifted * Eigen::Vector3d(0.03, 0.5, 0.6) - Eigen::Vector3d(0.03, 0.5, 0.6)).norm() <
+        2e-4);
+}
+
+TEST_CASE("ICP drops what it cannot believe") {
+  const auto target = truss<double>(6000, 1, 6, 0.0);
+  const auto whole = truss<double>(1500, 2, 6, 0.0);
+  IcpParameters params;
+  params.max_translation = 0.001;
+  const Pose shift = about_middle({0, -0.002, 0}, {0, 0, 0});
+  CHECK_FALSE(align(moved(shift, whole), target, params).accepted);
+  params.max_translation = 0.003;
+  CHECK(align(moved(shift, whole), target, params).accepted);
+  const Pose turn = about_middle({0, 0, 0}, {0, 0.03, 0});
+  const IcpResult turned = align(moved(turn, whole), target);
+  CHECK_FALSE(turned.accepted);
+  CHECK(turned.rotation > deg(1.0));
+  CHECK(turned.target_T_source.matrix() == Pose::Identity().matrix());
+  params.max_rotation = deg(3.0);
+  CHECK(align(moved(turn, whole), target, params).accepted);
+  // Too far away, or turned inside out: no matches.
+  const Pose away = about_middle({0.5, 0, 0}, {0, 0, 0});
+  CHECK(align(moved(away, whole), target).matches == 0);
+  auto inside_out = truss<double>(1500, 2, 1, 0.0);
+  for (auto& n : inside_out.normals) n = -n;
+  const IcpResult none = align(inside_out, truss<double>(3000, 1, 1, 0.0));
+  CHECK(none.matches == 0);
+  CHECK_FALSE(none.accepted);
+  CHECK(none.iterations == 0);
+}
+
+TEST_CASE("ICP of next to nothing, degenerate clouds and bad input") {
+  const auto target = truss<float>(500, 1, 2, 0.0);
+  const Cloud none;
+  CHECK_FALSE(align(none, target).accepted);
+  CHECK_FALSE(align(target, none).accepted);
+  CHECK_FALSE(align(none, none).accepted);
+  const float nan = std::nanf("");
+  for (const std::string kind : {"one", "two", "equal", "line", "nan", "duplicated"}) {
+    INFO(kind);
+    Cloud cloud;
+    cloud.points = cases::cloud_of<float>(kind, 300);
+    cloud.normals.assign(cloud.size(), Eigen::Vector3f::UnitX());
+    Cloud shifted = cloud;
+    for (auto& p : shifted.points) p.x() += 0.001f;
+    for (const bool point_to_point : {false, true}) {
+      IcpParameters params;
+      params.point_to_point = point_to_point;
+      const IcpResult result = align(shifted, cloud, params);
+      CHECK(result.target_T_source.matrix().allFinite());
+      CHECK(is_rigid(result.target_T_source));
+      CHECK(std::isfinite(result.rms_after));
+      if (kind == "equal") CHECK((result.target_T_source.translation() + Eigen::Vector3d(0.001, 0, 0)).norm() < 1e-6);
+    }
+  }
+  Cloud bad = target;
+  bad.normals.assign(bad.size(), Eigen::Vector3f::Zero());
+  CHECK(align(target, bad).matches == 0);  // no normals, no planes
+  CHECK(align(bad, target).matches == 0);
+  bad.points.assign(bad.size(), {nan, nan, nan});
+  CHECK(align(bad, target).matches == 0);
+  bad.normals.pop_back();
+  CHECK_THROWS_AS(align(bad, target), InputError);
+  CHECK_THROWS_AS(align(target, bad), InputError);
+  IcpParameters points;
+  points.point_to_point = true;
+  const Cloud bare{target.points, {}, {}};
+  CHECK(align(bare, bare, points).matches == bare.size());
+  CHECK(align(target, bare, points).matches == bare.size());
+  CHECK_THROWS_AS(align(bare, bare), InputError);
+  Pose skewed = Pose::Identity();
+  skewed.linear() *= 2.0;
+  CHECK_THROWS_AS(register_cloud(target, target.normals, target, target.normals, {}, Grid(target, 0.01f), skewed),
+                  InputError);
+  CHECK_THROWS_AS(register_cloud(target, target.normals, target, target.normals, {}, Grid(none, 0.01f)), InputError);
+  const auto refuses = [&](auto change, const char* name) {
+    IcpParameters p;
+    change(p);
+    CHECK(cases::rejects(name, [&] { align(target, target, p); }));
+  };
+  refuses([](auto& p) { p.max_distance = 0; }, "max_distance");
+  refuses([](auto& p) { p.max_normal_angle = -1; }, "max_normal_angle");
+  refuses([](auto& p) { p.max_iterations = 0; }, "max_iterations");
+  refuses([](auto& p) { p.translation_tolerance = -1; }, "translation_tolerance");
+  refuses([](auto& p) { p.rotation_tolerance = std::nan(""); }, "rotation_tolerance");
+  refuses([](auto& p) { p.degeneracy = 1; }, "degeneracy");
+  refuses([](auto& p) { p.min_matches = 2; }, "min_matches");
+  refuses([](auto& p) { p.max_translation = 0; }, "max_translation");
+  refuses([](auto& p) { p.max_rotation = -1; }, "max_rotation");
+  CHECK(robust_kernel("huber") == RobustKernel::huber);
+  CHECK_THROWS_AS(robust_kernel("cauchy"), ParameterError);
+}
+
+TEST_CASE("robust weights are the derivatives of the costs") {
+  for (const RobustKernel kernel : {RobustKernel::none, RobustKernel::huber, RobustKernel::tukey})
+    for (const double r : {-3.0, -0.4, 0.1, 1.0, 2.0, 9.0}) {
+      const double h = 1e-6;
+      const double slope = (robust_cost(kernel, r + h, 0.7) - robust_cost(kernel, r - h, 0.7)) / (2 * h);
+      CHECK(robust_weight(kernel, r, 0.7) * r == Approx(slope).margin(1e-6));
+    }
+  CHECK(robust_scale({0, 0, -1, 0}, {1.0, -2.0, 50.0, 3.0}, 0.1) == Approx(1.4826 * 2.0));
+  CHECK(robust_scale({-1}, {1.0}, 0.1) == 0.1);
+}

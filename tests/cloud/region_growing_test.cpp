@@ -1,0 +1,178 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <agrisee/cloud/normals.hpp>
+#include <agrisee/cloud/region_growing.hpp>
+#include <agrisee/core/kdtree.hpp>
+
+#include <deque>
+
+#include "cloud/cloud_cases.hpp"
+
+using namespace agrisee;
+
+namespace {
+
+/// The algorithm of the paper and, by its options, of PCL, on lists of all neighbours.
+template <typename S>
+Labels brute(const cases::Points<S>& cloud, const cases::Points<S>& normals, const RegionGrowingParameters& params,
+             const std::vector<S>& curvatures) {
+  const std::size_t n = cloud.size();
+  const auto usable = [&](std::size_t i) { return is_finite(cloud[i]) && normals[i].norm() > 0; };
+  const auto neighbors = [&](std::size_t i) {
+    std::vector<std::pair<S, std::size_t>> near;
+    for (std::size_t j = 0; j < n; ++j) {
+      const S d_sq = distance_sq<S>(cloud[j], cloud[i]);
+      if (is_finite(cloud[j]) && (params.neighbors > 0 || d_sq < S(params.radius) * S(params.radius)))
+        near.emplace_back(d_sq, j);
+    }
+    std::sort(near.begin(), near.end());
+    if (params.neighbors > 0) near.resize(std::min(near.size(), static_cast<std::size_t>(params.neighbors)));
+    return near;
+  };
+  std::vector<std::size_t> seeds(n);
+  for (std::size_t i = 0; i < n; ++i) seeds[i] = i;
+  if (params.seeds_by_curvature)
+    std::stable_sort(seeds.begin(), seeds.end(), [&](auto a, auto b) { return curvatures[a] < curvatures[b]; });
+  std::vector<char> visited(n, 0);
+  Labels labels(n, 0);
+  int label = 0;
+  for (const std::size_t seed : seeds) {
+    if (visited[seed] || !usable(seed)) continue;
+    std::vector<std::size_t> region{seed};
+    std::deque<std::size_t> queue{seed};
+    visited[seed] = 1;
+    while (!queue.empty()) {
+      const std::size_t j = queue.front();
+      queue.pop_front();
+      for (const auto& [d_sq, k] : neighbors(j)) {
+        if (visited[k] || !usable(k)) continue;
+        const S cosine = normals[j].dot(normals[k]);
+        if (!((params.unsigned_normals ? std::abs(cosine) : cosine) > S(std::cos(params.smoothness)))) continue;
+        visited[k] = 1;
+        region.push_back(k);
+        if (curvatures[k] <= S(params.max_curvature)) queue.push_back(k);
+      }
+    }
+    if (region.size() < static_cast<std::size_t>(params.min_size)) continue;
+    ++label;
+    for (const std::size_t k : region) labels[k] = label;
+  }
+  return labels;
+}
+
+RegionGrowingParameters parameters(int mode) {
+  RegionGrowingParameters p;
+  p.radius = mode % 2 ? 0.006 : 0.01171875;  // the second is three spacings of "gridded": ties at r
+  p.smoothness = deg(mode < 4 ? 25.0 : 12.0);
+  p.min_size = mode < 3 ? 5 : 40;
+  p.neighbors = mode >= 4 ? 12 : 0;
+  p.seeds_by_curvature = mode >= 3;
+  p.unsigned_normals = mode >= 2;
+  p.max_curvature = mode == 5 ? 0.02 : 1.0;
+  return p;
+}
+
+template <typename S>
+void check_brute(const std::string& kind) {
+  const auto cloud = cases::cloud_of<S>(kind);
+  std::vector<S> curvatures;
+  const auto normals = estimate_normals(cloud, {0.008, 20}, 1, &curvatures);
+  for (int mode = 0; mode < 6; ++mode) {
+    INFO(mode);
+    const auto params = parameters(mode);
+    const Labels expected = brute<S>(cloud, normals, params, curvatures);
+    CHECK(grow_regions(cloud, normals, params, curvatures) == expected);
+    CHECK(grow_regions(cloud, normals, params, KdTree<S>(cloud), curvatures) == expected);
+  }
+}
+
+cases::Points<double> sphere_normals(const cases::Points<double>& points, const Eigen::Vector3d& first,
+                                     const Eigen::Vector3d& second) {
+  cases::Points<double> out;
+  for (const auto& p : points)
+    out.push_back(((p - first).norm() < (p - second).norm() ? p - first : p - second).normalized());
+  return out;
+}
+
+}  // namespace
+
+TEST_CASE("region growing equals the published algorithms") {
+  for (const auto& kind : cases::kinds()) {
+    INFO(kind);
+    check_brute<float>(kind);
+    check_brute<double>(kind);
+  }
+}
+
+TEST_CASE("region growing separates touching spheres, and obeys the laws") {
+  const Eigen::Vector3d first(0.2, 0.5, 0.3), second(0.261, 0.5, 0.3);
+  const auto points = cases::cloud_of<double>("spheres", 3000);
+  RegionGrowingParameters params;
+  params.min_size = 100;
+  const auto stage = [&](const auto& p, int) {
+    const bool here = p.empty() || (p[0] - first).norm() < 0.1;
+    const Pose motion = cases::some_motion();
+    return grow_regions(p, here ? sphere_normals(p, first, second) : sphere_normals(p, motion * first, motion * second),
+                        params);
+  };
+  cases::check_laws(points, stage,
+                    [](const Labels& a, const Labels& b) { return cases::canonical(a) == cases::canonical(b); });
+  const Labels labels = stage(points, 1);
+  CHECK(*std::max_element(labels.begin(), labels.end()) == 2);
+  for (std::size_t i = 0; i < points.size(); ++i) {  // point 0 lies on the second sphere
+    const int mine = (points[i] - first).norm() < (points[i] - second).norm() ? 2 : 1;
+    CHECK((labels[i] == 0 || labels[i] == mine));
+  }
+  CHECK(residual(labels).size() < 30);
+}
+
+TEST_CASE("a region's limits are strict, and small regions are residual") {
+  const cases::Points<double> cloud{{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {3, 0, 0}};
+  const cases::Points<double> up(4, Eigen::Vector3d::UnitZ());
+  RegionGrowingParameters p;
+  p.smoothness = deg(10);
+  p.min_size = 1;
+  p.radius = 1.0;
+  CHECK(grow_regions(cloud, up, p) == Labels{1, 2, 3, 4});
+  p.radius = 1.001;
+  CHECK(grow_regions(cloud, up, p) == Labels{1, 1, 1, 1});
+  p.min_size = 5;
+  CHECK(grow_regions(cloud, up, p) == Labels{0, 0, 0, 0});
+  CHECK(residual({0, 2, 0, 1}) == Indices{0, 2});
+  // Growth compares neighbours, not seeds: a slow turn by 9 degrees a point is one region.
+  cases::Points<double> turning;
+  for (int i = 0; i < 4; ++i) turning.push_back({std::sin(deg(9.0 * i)), 0, std::cos(deg(9.0 * i))});
+  p.min_size = 2;
+  CHECK(grow_regions(cloud, turning, p) == Labels{1, 1, 1, 1});
+  turning[2].setZero();
+  CHECK(grow_regions(cloud, turning, p) == Labels{1, 1, 0, 0});
+  turning[2] = -Eigen::Vector3d(std::sin(deg(18.0)), 0, std::cos(deg(18.0)));
+  CHECK(grow_regions(cloud, turning, p) == Labels{1, 1, 0, 0});
+  p.unsigned_normals = true;
+  CHECK(grow_regions(cloud, turning, p) == Labels{1, 1, 1, 1});
+}
+
+TEST_CASE("region growing of next to nothing, and bad input") {
+  using P = cases::Points<float>;
+  const P up(3, Eigen::Vector3f::UnitZ()), none;
+  CHECK(grow_regions(none, none).empty());
+  RegionGrowingParameters p;
+  p.min_size = 1;
+  CHECK(grow_regions(P{{1, 2, 3}}, P{{0, 0, 1}}, p) == Labels{1});
+  const float nan = std::nanf("");
+  CHECK(grow_regions(P{{1, 2, 3}, {nan, 0, 0}, {1, 2, 3}}, up, p) == Labels{1, 0, 1});
+  CHECK(grow_regions(P(3, {1, 2, 3}), P{{0, 0, 1}, {nan, 0, 0}, {0, 0, 0}}, p) == Labels{1, 0, 0});
+  CHECK_THROWS_AS(grow_regions(P(2, {0, 0, 0}), up), InputError);
+  p.seeds_by_curvature = true;
+  CHECK_THROWS_AS(grow_regions(P(3, {0, 0, 0}), up, p), InputError);
+  const auto rejects = [&](auto change, const char* name) {
+    RegionGrowingParameters bad;
+    change(bad);
+    CHECK(cases::rejects(name, [&] { grow_regions(P(3, {0, 0, 0}), up, bad); }));
+  };
+  rejects([](auto& b) { b.radius = 0; }, "radius");
+  rejects([](auto& b) { b.radius = std::nan(""); }, "radius");
+  rejects([](auto& b) { b.smoothness = -1; }, "smoothness");
+  rejects([](auto& b) { b.min_size = 0; }, "min_size");
+  rejects([](auto& b) { b.neighbors = -1; }, "neighbors");
+  rejects([](auto& b) { b.max_curvature = -1; }, "max_curvature");
+}
