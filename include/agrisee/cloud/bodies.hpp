@@ -12,6 +12,7 @@
 #include <agrisee/cloud/fit.hpp>
 #include <agrisee/core/grid.hpp>
 #include <agrisee/geometry/direction_bins.hpp>
+#include <agrisee/geometry/pca.hpp>
 
 #include <bitset>
 #include <functional>
@@ -128,13 +129,12 @@ Verdict judge(const PointCloud<S>& cloud, const Grid<S>& grid, const std::vector
     pp.noalias() += dp * dp.transpose();
     np.noalias() += (cloud.normals[i].template cast<double>() - n_mean) * dp.transpose();
   }
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes(pp);
-  const Eigen::Matrix<double, 3, 2> plane = axes.eigenvectors().rightCols<2>();
-  const Eigen::Matrix2d spread = plane.transpose() * pp * plane;
-  Eigen::Matrix2d curvature = plane.transpose() * np * plane * (spread + 1e-12 * Eigen::Matrix2d::Identity()).inverse();
-  curvature = 0.5 * (curvature + curvature.transpose()).eval();
-  const Eigen::Vector2d k = Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d>(curvature).eigenvalues();
-  v.roundness = k[1] > 0.0 ? std::max(k[0], 0.0) / k[1] : 0.0;
+  const Eigen::Matrix<double, 3, 2> plane = principal_axes<double>(p_mean, pp).axes.rightCols<2>();
+  const Eigen::Matrix2d spread = plane.transpose() * pp * plane + 1e-12 * Eigen::Matrix2d::Identity();
+  const Eigen::Matrix2d k = plane.transpose() * np * plane * spread.inverse();
+  const double mean = 0.5 * (k(0, 0) + k(1, 1));  // eigenvalues of the symmetric part: mean -+ half
+  const double half = std::hypot(0.5 * (k(0, 0) - k(1, 1)), 0.5 * (k(0, 1) + k(1, 0)));
+  v.roundness = mean + half > 0.0 ? std::max(mean - half, 0.0) / (mean + half) : 0.0;
   if (seen_through) v.seen_through = seen_through(body);
   return v;
 }

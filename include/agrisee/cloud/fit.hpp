@@ -3,7 +3,7 @@
 /// Fits spheres and ellipsoids to points with normals, robustly.
 ///
 /// An ellipsoid is { p : |A (p - c)| = 1 } with A symmetric positive definite; its distance from a point is taken to first
-/// order, (g - 1) g / |A A (p - c)| with g = |A (p - c)| (Taubin, PAMI 1991). Gauss-Newton with Tukey's biweight; where the
+/// order at the point's radial projection, (g - 1) g / |A A (p - c)| with g = |A (p - c)| (cf. Taubin, PAMI 1991). Gauss-Newton with Tukey's biweight; where the
 /// data do not tell, a prior pulls towards a sphere, so that a crescent yields a sphere and a whole fruit its own shape.
 /// Units: metres. Cost: linear in the points per iteration.
 #pragma once
@@ -151,24 +151,24 @@ std::optional<EllipsoidFit> fit_ellipsoid(const PointCloud<S>& cloud, const Indi
     const Eigen::Matrix3d& A = fit.body.A;
     for (Index index : indices) {
       const auto i = static_cast<std::size_t>(index);
-      const Eigen::Vector3d d = cloud.points[i].template cast<double>() - fit.body.center;
-      const Eigen::Vector3d a = A * d;
-      const double g = a.norm();
-      const Eigen::Vector3d slope = A * a;
+      // Everything is taken at the point's radial projection on the body: derivatives that saw the point's own error
+      // would be correlated with its residual, and crescents turn that into millimetres.
+      Eigen::Vector3d d = cloud.points[i].template cast<double>() - fit.body.center;
+      const double g = (A * d).norm();
+      if (!(g > 1e-9)) continue;
+      d /= g;
+      const Eigen::Vector3d a = A * d, slope = A * a;
       const double steep = slope.norm();
-      if (!(g > 1e-9) || !(steep > 1e-9)) continue;
       if (slope.dot(cloud.normals[i].template cast<double>()) < cos_max * steep) continue;
-      const double scale = g / steep;
-      const double residual = (g - 1.0) * scale;
+      const double residual = (g - 1.0) / steep;
       const double t = residual / gate;
       if (std::abs(t) >= 1.0) continue;
       const double w = (1.0 - t * t) * (1.0 - t * t);
       Vector9 j;
-      j.head<3>() = -slope * (scale / g) * size;
-      const double s = scale / (g * size);
+      j.head<3>() = -slope * (size / steep);
       j.tail<6>() << a.x() * d.x(), a.y() * d.y(), a.z() * d.z(), a.x() * d.y() + a.y() * d.x(),
           a.x() * d.z() + a.z() * d.x(), a.y() * d.z() + a.z() * d.y();
-      j.tail<6>() *= s;
+      j.tail<6>() /= steep * size;
       normal_matrix.noalias() += w * j * j.transpose();
       rhs -= w * residual * j;
       weights += w;

@@ -50,7 +50,7 @@ inline std::vector<Indices> indices_by_label(const Labels& labels) {
 template <typename C>
 Index highest_point(const C& cloud) {
   Index best = -1;
-  for (std::size_t i = 0; i < size(cloud); ++i)
+  for (std::size_t i = 0; i < agrisee::size(cloud); ++i)
     if (is_finite(point(cloud, i)) && (best < 0 || point(cloud, i).z() > point(cloud, static_cast<std::size_t>(best)).z()))
       best = static_cast<Index>(i);
   return best;

@@ -15,7 +15,7 @@ namespace agrisee {
 template <typename C, typename Search>
 double estimate_spacing(const C& cloud, const Search& search, std::size_t samples = 1000) {
   using S = scalar_t<C>;
-  const std::size_t n = size(cloud);
+  const std::size_t n = agrisee::size(cloud);
   if (n < 2) return 0.0;
   std::vector<double> spacing;
   Neighbors<S> found;

@@ -18,7 +18,7 @@ DepthFrame frame_from_points(const C& points, const Intrinsics& intrinsics) {
   DepthFrame frame;
   frame.intrinsics = intrinsics;
   frame.depth.assign(intrinsics.size(), 0.0f);
-  for (std::size_t i = 0; i < size(points); ++i) {
+  for (std::size_t i = 0; i < agrisee::size(points); ++i) {
     const Eigen::Vector3d p = point(points, i).template cast<double>();
     if (!is_finite(p) || !(p.z() > 0.0)) continue;
     const Eigen::Vector2d uv = intrinsics.project(p);

@@ -1,0 +1,189 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <agrisee/cloud/split.hpp>
+
+#include "catch.hpp"
+#include "spheres.hpp"
+
+using namespace agrisee;
+using test::Sphere;
+
+namespace {
+
+Eigen::Vector3d front() { return -Eigen::Vector3d::UnitY(); }
+
+/// A curved leaf: part of a cylinder of radius 40 mm, 50 x 70 mm.
+void add_leaf(Cloud& cloud, const Eigen::Vector3d& at) {
+  for (double s = -0.6; s <= 0.6; s += 0.06)
+    for (double z = 0.0; z < 0.07; z += 0.0024) {
+      const Eigen::Vector3d n(std::sin(s), -std::cos(s), 0.0);
+      cloud.points.push_back((at + 0.04 * n + z * Eigen::Vector3d::UnitZ()).cast<float>());
+      cloud.normals.push_back(n.cast<float>());
+    }
+}
+
+void add_stem(Cloud& cloud, const Eigen::Vector3d& at) {
+  for (double a = 0.0; a < 6.2; a += 0.6)
+    for (double z = 0.0; z < 0.3; z += 0.0024) {
+      const Eigen::Vector3d n(std::cos(a), std::sin(a), 0.0);
+      cloud.points.push_back((at + 0.004 * n + z * Eigen::Vector3d::UnitZ()).cast<float>());
+      cloud.normals.push_back(n.cast<float>());
+    }
+}
+
+}  // namespace
+
+TEST_CASE("a sphere is fitted from a crescent of it") {
+  const Sphere truth{{0.1, 0.5, 0.3}, 0.035};
+  Cloud cloud;
+  test::add_sphere(
+      cloud, truth, 0.0025, [](const Eigen::Vector3d& d) { return d.dot(front()) > 0.3 && d.x() > 0.2; }, 0.0005);
+  Indices all(cloud.size());
+  std::iota(all.begin(), all.end(), 0);
+  const auto start = sphere_from_normals(cloud, all);
+  REQUIRE(start);
+  CHECK((start->center - truth.center).norm() < 0.002);
+  CHECK(start->radius == Approx(truth.radius).margin(0.002));
+  const auto fit = fit_ellipsoid(cloud, all, Ellipsoid(*start));
+  REQUIRE(fit);
+  CHECK((fit->body.center - truth.center).norm() < 0.001);
+  CHECK(fit->body.mean_radius() == Approx(truth.radius).margin(0.001));
+  CHECK(fit->center_covariance.trace() > 0.0);
+}
+
+TEST_CASE("an ellipsoid is fitted where the data tell its shape") {
+  const Eigen::Vector3d radii(0.040, 0.036, 0.031);
+  const Eigen::Matrix3d axes = pose_from_xyz_rpy({0, 0, 0}, {0.4, -0.7, 1.1}).linear();
+  const Eigen::Vector3d center(-0.2, 0.4, 0.1);
+  Cloud cloud;
+  test::add_sphere(cloud, {{0, 0, 0}, 1.0}, 0.06, test::everywhere);
+  for (std::size_t i = 0; i < cloud.size(); ++i) {
+    const Eigen::Vector3d d = cloud.normals[i].cast<double>();
+    cloud.points[i] = (center + axes * radii.cwiseProduct(d)).cast<float>();
+    cloud.normals[i] = (axes * d.cwiseQuotient(radii)).normalized().cast<float>();
+  }
+  Indices all(cloud.size());
+  std::iota(all.begin(), all.end(), 0);
+  const auto fit = fit_ellipsoid(cloud, all, Ellipsoid(Sphere{center + Eigen::Vector3d(0.003, 0, 0.002), 0.034}));
+  REQUIRE(fit);
+  const auto [found, directions] = semi_axes(fit->body);
+  CHECK((fit->body.center - center).norm() < 2e-4);
+  for (int a = 0; a < 3; ++a) {
+    CHECK(found[a] == Approx(radii[a]).margin(8e-4));
+    CHECK(std::abs(directions.col(a).dot(axes.col(a))) > 0.99);
+  }
+  CHECK(directions.determinant() == Approx(1.0));
+}
+
+TEST_CASE("fits of nothing are none") {
+  Cloud cloud;
+  CHECK_FALSE(sphere_from_normals(cloud, {}));
+  CHECK_FALSE(fit_ellipsoid(cloud, {}, Ellipsoid(Sphere{{0, 0, 0}, 0.03})));
+  for (int i = 0; i < 100; ++i) {  // all points and normals equal
+    cloud.points.emplace_back(0.1f, 0.2f, 0.3f);
+    cloud.normals.emplace_back(0.0f, 0.0f, 1.0f);
+  }
+  Indices all(cloud.size());
+  std::iota(all.begin(), all.end(), 0);
+  CHECK_FALSE(sphere_from_normals(cloud, all));
+  cloud.normals.clear();
+  CHECK_THROWS_AS(fit_ellipsoid(cloud, all, Ellipsoid(Sphere{{0, 0, 0}, 0.03})), InputError);
+}
+
+TEST_CASE("touching fruit, one behind the others, leaf and stem: each fruit is found and nothing else") {
+  const std::vector<Sphere> fruit = {{{-0.036, 0.50, 0.20}, 0.036},
+                                     {{0.034, 0.50, 0.21}, 0.033},
+                                     {{0.0, 0.555, 0.205}, 0.034},
+                                     {{0.0, 0.50, 0.135}, 0.030}};
+  Cloud cloud;
+  for (std::size_t f = 0; f < fruit.size(); ++f) {
+    const bool hidden = f == 2;
+    test::add_sphere(
+        cloud, fruit[f], 0.0025,
+        [&](const Eigen::Vector3d& d) {
+          return hidden ? d.dot(Eigen::Vector3d(0.8, -0.3, 0.5)) > 0.55 : d.dot(front()) > 0.15;
+        },
+        0.0006, f + 1);
+  }
+  const std::size_t fruit_points = cloud.size();
+  add_leaf(cloud, {0.11, 0.50, 0.16});
+  add_stem(cloud, {0.0, 0.47, 0.24});
+  const Split found = split(cloud);
+  REQUIRE(found.found.size() == fruit.size());
+  for (const Sphere& s : fruit) {
+    double best = 1.0, radius = 0.0;
+    for (const FoundBody& b : found.found)
+      if ((b.fit.body.center - s.center).norm() < best) {
+        best = (b.fit.body.center - s.center).norm();
+        radius = b.fit.body.mean_radius();
+      }
+    CHECK(best < 0.0015);
+    CHECK(radius == Approx(s.radius).margin(0.001));
+  }
+  std::size_t wrong = 0, missed = 0;
+  for (std::size_t i = 0; i < cloud.size(); ++i)
+    (i < fruit_points ? missed : wrong) += (found.labels[i] == 0) == (i < fruit_points);
+  CHECK(missed < fruit_points / 50);
+  CHECK(wrong < (cloud.size() - fruit_points) / 50);
+}
+
+TEST_CASE("a body that sight lines went through is none") {
+  Cloud cloud;
+  test::add_sphere(cloud, {{0, 0.5, 0.2}, 0.035}, 0.0025,
+                   [](const Eigen::Vector3d& d) { return d.dot(front()) > 0.5; });
+  CHECK(split(cloud).found.size() == 1);
+  CHECK(split(cloud, {}, [](const Ellipsoid&) { return 0.5; }).found.empty());
+}
+
+TEST_CASE("smaller and larger fruit need another radius range and nothing else") {
+  for (const double scale : {0.4, 1.0, 2.5}) {
+    Cloud cloud;
+    test::add_sphere(
+        cloud, {scale * Eigen::Vector3d(0, 0.5, 0.2), scale * 0.035}, scale * 0.0025,
+        [](const Eigen::Vector3d& d) { return d.dot(front()) > 0.0; }, scale * 0.0003);
+    test::add_sphere(
+        cloud, {scale * Eigen::Vector3d(0.068, 0.5, 0.21), scale * 0.033}, scale * 0.0025,
+        [](const Eigen::Vector3d& d) { return d.dot(front()) > 0.0; }, scale * 0.0003);
+    SplitParameters p;
+    p.bodies.radius_min *= scale;
+    p.bodies.radius_max *= scale;
+    p.bodies.fit.noise *= scale;
+    const Split found = split(cloud, p);
+    CHECK(found.found.size() == 2);
+  }
+}
+
+TEST_CASE("the split follows a rigid motion of the cloud") {
+  Cloud cloud;
+  test::add_sphere(
+      cloud, {{0, 0.5, 0.2}, 0.035}, 0.0025, [](const Eigen::Vector3d& d) { return d.dot(front()) > 0.0; }, 0.0003);
+  test::add_sphere(
+      cloud, {{0.066, 0.5, 0.2}, 0.033}, 0.0025, [](const Eigen::Vector3d& d) { return d.dot(front()) > 0.0; }, 0.0003);
+  const Pose motion = pose_from_xyz_rpy({1.0, -2.0, 0.5}, {0.3, 0.2, -0.8});
+  Cloud moved = cloud;
+  for (auto& p : moved.points) p = (motion * p.cast<double>()).cast<float>();
+  for (auto& n : moved.normals) n = (motion.linear() * n.cast<double>()).cast<float>();
+  const Split a = split(cloud), b = split(moved);
+  REQUIRE(a.found.size() == b.found.size());
+  for (const FoundBody& f : a.found) {
+    double best = 1.0;
+    for (const FoundBody& g : b.found) best = std::min(best, (motion * f.fit.body.center - g.fit.body.center).norm());
+    CHECK(best < 3e-4);
+  }
+}
+
+TEST_CASE("too little to split is nothing") {
+  Cloud cloud;
+  CHECK(split(cloud).found.empty());
+  cloud.points.emplace_back(0.0f, 0.0f, 0.0f);
+  CHECK_THROWS_AS(split(cloud), InputError);  // no normals
+  cloud.normals.emplace_back(0.0f, 0.0f, 1.0f);
+  CHECK(split(cloud).labels == Labels{0});
+  for (int i = 0; i < 500; ++i) {  // all equal
+    cloud.points.push_back(cloud.points[0]);
+    cloud.normals.push_back(cloud.normals[0]);
+  }
+  CHECK(split(cloud).found.empty());
+  SplitParameters bad;
+  bad.bodies.radius_min = -1.0;
+  CHECK_THROWS_AS(split(cloud, bad), ParameterError);
+}

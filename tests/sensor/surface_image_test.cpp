@@ -1,0 +1,130 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <agrisee/sensor/points_to_frame.hpp>
+#include <agrisee/sensor/surface_image.hpp>
+
+#include "catch.hpp"
+#include "spheres.hpp"
+
+using namespace agrisee;
+using namespace agrisee::sensor;
+
+namespace {
+
+const std::vector<Sphere> kSpheres = {{{0.0, 0.5, 0.2}, 0.035}, {{0.06, 0.52, 0.22}, 0.03}, {{0.01, 0.60, 0.25}, 0.04}};
+const Pose kPose = look_along({0.0, 0.1, 0.2}, {0.0, 1.0, 0.0});
+
+Aabb volume() {
+  Aabb box;
+  box.extend({-0.2, 0.3, 0.0});
+  box.extend({0.2, 0.8, 0.4});
+  return box;
+}
+
+double distance_to_spheres(const Eigen::Vector3f& p) {
+  double best = 1e9;
+  for (const Sphere& s : kSpheres) best = std::min(best, std::abs((p.cast<double>() - s.center).norm() - s.radius));
+  return best;
+}
+
+struct Quality {
+  std::size_t cells = 0;
+  double mean = 0.0, worst95 = 0.0, turned = 0.0;
+};
+
+Quality quality(const SurfaceImage& image) {
+  Quality q;
+  std::vector<double> errors;
+  for (std::size_t c = 0; c < image.points.size(); ++c) {
+    if (!(image.sigma[c] > 0.0f)) continue;
+    errors.push_back(distance_to_spheres(image.points[c]));
+    q.mean += errors.back();
+    const Eigen::Vector3d to_eye = image.world_T_optical.translation() - image.points[c].cast<double>();
+    if (image.normals[c].cast<double>().dot(to_eye) <= 0.0) q.turned += 1.0;
+    CHECK(image.normals[c].norm() == Approx(1.0f).margin(1e-4));
+  }
+  q.cells = errors.size();
+  q.mean /= double(std::max<std::size_t>(1, q.cells));
+  std::sort(errors.begin(), errors.end());
+  if (!errors.empty()) q.worst95 = errors[errors.size() * 95 / 100];
+  return q;
+}
+
+}  // namespace
+
+TEST_CASE("a surface is recovered from noise that is larger than its detail") {
+  const Intrinsics k = intrinsics_from_fov(640, 480, deg(50), deg(39));
+  const auto [noise, mean_limit, limit95] = GENERATE(table<double, double, double>(
+      {{0.0, 0.0001, 0.0004}, {0.0015, 0.0003, 0.0008}, {0.010, 0.0009, 0.0025}}));
+  INFO(noise);
+  const SurfaceImage image = reconstruct_surface(test::render(kSpheres, k, kPose, noise), kPose, volume());
+  const Quality q = quality(image);
+  CHECK(q.cells > 1000);
+  CHECK(q.mean < mean_limit);
+  CHECK(q.worst95 < limit95);
+  CHECK(q.turned == 0.0);
+  if (noise > 0.0) CHECK(image.noise == Approx(noise).epsilon(0.1));
+}
+
+TEST_CASE("cells and pixels agree where a point is seen") {
+  const Intrinsics k = intrinsics_from_fov(640, 480, deg(50), deg(39));
+  const SurfaceImage image = reconstruct_surface(test::render(kSpheres, k, kPose), kPose, volume());
+  std::size_t same = 0, all = 0;
+  for (std::size_t c = 0; c < image.points.size(); ++c) {
+    if (!(image.sigma[c] > 0.0f)) continue;
+    ++all;
+    same += image.cell(image.points[c].cast<double>()) == static_cast<std::ptrdiff_t>(c);
+  }
+  CHECK(same > all * 98 / 100);
+  CHECK(image.cell({0.0, 0.0, 0.2}) == -1);  // behind the sensor
+}
+
+TEST_CASE("surfaces do not depend on threads") {
+  const Intrinsics k = intrinsics_from_fov(320, 240, deg(50), deg(39));
+  const DepthFrame frame = test::render(kSpheres, k, kPose, 0.005);
+  const SurfaceImage a = reconstruct_surface(frame, kPose, volume(), {}, 1), b = reconstruct_surface(frame, kPose, volume(), {}, 3);
+  CHECK(a.points == b.points);
+  CHECK(a.sigma == b.sigma);
+}
+
+TEST_CASE("frames without anything to see give nothing") {
+  const Intrinsics k = intrinsics_from_fov(64, 48, deg(50), deg(39));
+  DepthFrame frame;
+  frame.intrinsics = k;
+  for (const float fill : {0.0f, std::nanf(""), -1.0f, std::numeric_limits<float>::infinity(), 0.01f, 5.0f}) {
+    frame.depth.assign(k.size(), fill);
+    const SurfaceImage image = reconstruct_surface(frame, kPose, volume());
+    CHECK(image.points_in == 0);
+    CHECK(quality(image).cells == 0);
+  }
+  frame.depth.assign(k.size(), 0.0f);
+  frame.depth[100] = 0.45f;  // a single return is no surface
+  CHECK(quality(reconstruct_surface(frame, kPose, volume())).cells == 0);
+}
+
+TEST_CASE("unusable frames are refused") {
+  DepthFrame frame;
+  CHECK_THROWS_AS(reconstruct_surface(frame, kPose, volume()), InputError);
+  frame.intrinsics = intrinsics_from_fov(64, 48, deg(50), deg(39));
+  frame.depth.assign(7, 1.0f);
+  CHECK_THROWS_AS(reconstruct_surface(frame, kPose, volume()), InputError);
+  frame.depth.assign(64 * 48, 1.0f);
+  Pose skewed = kPose;
+  skewed.linear() *= 2.0;
+  CHECK_THROWS_AS(reconstruct_surface(frame, skewed, volume()), InputError);
+  SurfaceParameters bad;
+  bad.spacing = 0.0;
+  CHECK_THROWS_AS(reconstruct_surface(frame, kPose, volume(), bad), ParameterError);
+}
+
+TEST_CASE("unorganised points take the same path as a depth image") {
+  const Intrinsics k = intrinsics_from_fov(320, 240, deg(50), deg(39));
+  const DepthFrame frame = test::render(kSpheres, k, kPose);
+  std::vector<Eigen::Vector3f> points;
+  for (int v = 0; v < k.height; ++v)
+    for (int u = 0; u < k.width; ++u)
+      if (frame.at(u, v) > 0) points.push_back(frame.point(u, v));
+  points.push_back(Eigen::Vector3f::Constant(std::nanf("")));
+  points.emplace_back(0.0f, 0.0f, -1.0f);
+  const DepthFrame again = frame_from_points(points, k);
+  for (std::size_t i = 0; i < frame.depth.size(); ++i) CHECK(again.depth[i] == Approx(frame.depth[i]).margin(1e-6));
+}
