@@ -5,7 +5,7 @@
 #pragma once
 
 #include <agrisee/geometry/scene.hpp>
-#include <agrisee/study/moments.hpp>
+#include <agrisee/study/mesh_moments.hpp>
 
 #include <optional>
 
@@ -29,7 +29,7 @@ struct GroundTruth {
   std::vector<TrueFruit> fruits;
 };
 
-/// The ground truth that the meshes of a scene's fruit tell: see moments().
+/// The ground truth that the meshes of a scene's fruit tell: see mesh_moments().
 /// @throws InputError for a fruit whose mesh has no area, an id that is not positive, or two fruits with one id
 inline GroundTruth ground_truth(const Scene& scene) {
   GroundTruth truth;
@@ -37,7 +37,7 @@ inline GroundTruth ground_truth(const Scene& scene) {
     if (object.cls != ObjectClass::fruit) continue;
     check_input(object.id > 0, "scene: a fruit's id must be positive");
     for (const TrueFruit& other : truth.fruits) check_input(other.id != object.id, "scene: two fruits share an id");
-    const Moments m = moments(object.mesh);
+    const MeshMoments m = mesh_moments(object.mesh);
     TrueFruit fruit;
     fruit.id = object.id;
     fruit.center = m.center;

@@ -39,10 +39,10 @@ struct SampleParameters {
 /// cut into equal shares and each share gives one point, uniform within it (stratified sampling). Degenerate triangles
 /// get none.
 /// @param id names the samples' fruit and selects the random stream
-/// @throws InputError as moments() does
+/// @throws InputError as mesh_moments() does
 inline void append_samples(Samples& samples, const Mesh& mesh, int id, const SampleParameters& params = {}) {
   params.check();
-  const Moments m = moments(mesh);
+  const MeshMoments m = mesh_moments(mesh);
   double signed_volume = 0.0;  // tells which way the triangles face
   std::vector<double> until;   // area up to and with triangle i
   until.reserve(mesh.triangles.size());

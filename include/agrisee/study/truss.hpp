@@ -69,7 +69,7 @@ inline Truss build(const TrussLayout& layout, const Eigen::Vector3d& center, int
   truss.truth = ground_truth(truss.scene);
   const TracedScene traced(truss.scene);
   SampleParameters params;
-  params.area = std::min(params.area, 0.01 * area(truss.scene.objects.front().mesh));
+  params.area = std::min(params.area, 0.001 * area(truss.scene.objects.front().mesh));
   const Samples samples = fruit_samples(truss.scene, params);
   const Flags seen = visible_from(traced, samples, layout.eye);
   for (std::size_t i = 0; i < layout.fruits.size(); ++i) {

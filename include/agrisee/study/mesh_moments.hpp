@@ -10,7 +10,7 @@
 namespace agrisee::study {
 
 /// Centre and ellipsoid of a mesh.
-struct Moments {
+struct MeshMoments {
   double volume = 0.0;                                 ///< m3; 0 for a mesh that does not close
   double area = 0.0;                                   ///< m2
   Eigen::Vector3d center = Eigen::Vector3d::Zero();    ///< volume centroid (m)
@@ -19,15 +19,15 @@ struct Moments {
   bool closed = false;                                 ///< the triangles' area vectors cancel
 };
 
-/// Moments of the solid that a mesh encloses, from the integrals over the tetrahedra between its triangles and a point
-/// (Tonon, "Explicit exact formulas for the 3-D tetrahedron inertia tensor", 2005). A solid ellipsoid with semi-axes r
-/// has variances r^2 / 5 along its axes, hence radii = sqrt(5 lambda). Meshes wound inside out count as if they were
-/// not.
+/// Moments of the solid that a mesh encloses, from the integrals over the tetrahedra between its triangles and a
+/// point (Tonon, "Explicit exact formulas for the 3-D tetrahedron inertia tensor", 2005). A solid ellipsoid with
+/// semi-axes r has variances r^2 / 5 along its axes, hence radii = sqrt(5 lambda). Meshes wound inside out count as if
+/// they were not.
 ///
 /// A mesh that does not close (area vectors that do not cancel to 1 % of its area, or no volume) has no inside: centre
 /// and radii are then those of its surface, whose variances are about r^2 / 3.
 /// @throws InputError when a triangle names a vertex that does not exist or the mesh has no area or is not finite
-inline Moments moments(const Mesh& mesh) {
+inline MeshMoments mesh_moments(const Mesh& mesh) {
   Eigen::Vector3d origin = Eigen::Vector3d::Zero();
   for (const Eigen::Vector3f& v : mesh.vertices) origin += v.cast<double>();
   origin /= std::max<double>(1.0, static_cast<double>(mesh.vertices.size()));
@@ -53,7 +53,7 @@ inline Moments moments(const Mesh& mesh) {
   }
   check_input(std::isfinite(surface) && surface > 0.0, "mesh: it has no area or is not finite");
 
-  Moments out;
+  MeshMoments out;
   out.area = surface;
   // A ball has the largest volume for its area; what is not even a millionth of it is flat.
   const double ball = std::pow(surface, 1.5) / (6.0 * std::sqrt(kPi));
