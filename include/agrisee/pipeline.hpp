@@ -9,7 +9,7 @@
 
 #include <agrisee/cloud/icp.hpp>
 #include <agrisee/cloud/merge.hpp>
-#include <agrisee/plan/make_planner.hpp>
+#include <agrisee/planners.hpp>
 #include <agrisee/process.hpp>
 #include <agrisee/sensor/points_to_frame.hpp>
 #include <agrisee/workcell.hpp>
@@ -34,7 +34,7 @@ class Pipeline {
     check_input(!workcell.scan_volume.empty() && workcell.scan_volume.size().allFinite(), "the scan volume is empty or infinite");
     check_input(is_rigid(workcell.world_T_base) && is_rigid(workcell.tool0_T_optical), "a pose of the workcell is not rigid");
     if (!reach_) reach_ = plan::reach_of(workcell_);
-    if (!planner_) planner_ = plan::make_planner(workcell_, parameters_, seed);
+    if (!planner_) planner_ = make_planner(workcell_, parameters_, seed, threads);
   }
 
   /// Take in a depth frame that was seen from `world_T_optical` (at `joints`, where an arm is known).

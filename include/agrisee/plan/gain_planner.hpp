@@ -7,6 +7,7 @@
 /// ends when the best view promises less than `min_gain` of the fruit surface known so far. Metres, seconds, world.
 #pragma once
 
+#include <agrisee/plan/directions.hpp>
 #include <agrisee/plan/expected_surface.hpp>
 
 
@@ -44,43 +45,6 @@ struct GainPlannerParameters {
   }
 };
 
-/// n directions spread evenly over the unit sphere (spherical Fibonacci lattice).
-inline std::vector<Eigen::Vector3d> spread_directions(int n) {
-  std::vector<Eigen::Vector3d> out;
-  out.reserve(static_cast<std::size_t>(std::max(n, 0)));
-  constexpr double kGoldenAngle = 2.399963229728653;
-  for (int i = 0; i < n; ++i) {
-    const double z = 1.0 - (2.0 * i + 1.0) / n;
-    const double s = std::sqrt(1.0 - z * z);
-    out.emplace_back(s * std::cos(kGoldenAngle * i), s * std::sin(kGoldenAngle * i), z);
-  }
-  return out;
-}
-
-/// The frontal direction: from `eye` (the arm's base) to the volume's centre, level.
-inline Eigen::Vector3d frontal_direction(const Aabb& volume, const Eigen::Vector3d& eye) {
-  Eigen::Vector3d d = volume.center() - eye;
-  d.z() = 0.0;
-  return d.norm() > 1e-9 ? Eigen::Vector3d(d.normalized()) : Eigen::Vector3d(Eigen::Vector3d::UnitY());
-}
-
-/// The reachable view nearest to frontal: directions in rising angle from it.
-/// @param skip how many of the reachable ones to pass over
-inline std::optional<ReachableView> first_view(const Aabb& volume, const Eigen::Vector3d& eye, const Joints& current,
-                                               const Reach& reach, const GainPlannerParameters& parameters, int skip = 0) {
-  const Eigen::Vector3d frontal = frontal_direction(volume, eye);
-  std::vector<Eigen::Vector3d> directions = spread_directions(std::max(600, parameters.directions));
-  directions.push_back(frontal);
-  std::stable_sort(directions.begin(), directions.end(), [&](const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
-    return a.dot(frontal) > b.dot(frontal);
-  });
-  for (const Eigen::Vector3d& d : directions) {
-    auto view = reach({volume.center(), d, parameters.distance, parameters.distance_min, parameters.distance_max}, current);
-    if (view && skip-- == 0) return view;
-  }
-  return std::nullopt;
-}
-
 /// See the file's head.
 class GainPlanner : public Planner {
  public:
@@ -104,7 +68,7 @@ class GainPlanner : public Planner {
     if (progress.cloud.empty()) {
       // Nothing seen so far: a few more tries near the front, then that is the answer.
       if (taken >= 4) return stop(StopReason::nothing_seen);
-      auto view = first_view(volume_, eye_, current, reach, parameters_, refused_first_ + 12 * taken);
+      auto view = first_view(volume_, eye_, current, reach, request(Eigen::Vector3d::UnitY()), refused_first_ + 12 * taken);
       if (!view && taken > 0) return stop(StopReason::nothing_seen);
       if (!view) return stop(StopReason::no_reachable_view);
       return view;
