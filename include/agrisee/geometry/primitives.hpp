@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// @file
-/// The solids of collision checks: boxes and upright cylinders to keep out of, capsules for the arm's links.
+/// The solids of collision checks: boxes and upright cylinders to keep out of, capsules for the arm's links. Metres.
+/// Distances are to solids, so they are 0 inside; how two solids overlap is in geometry/overlap.hpp.
 #pragma once
 
+#include <agrisee/core/error.hpp>
 #include <agrisee/core/types.hpp>
 
 #include <algorithm>
@@ -30,6 +32,21 @@ struct Cylinder {
 struct KeepOut {
   std::string name;
   std::variant<Box, Cylinder> shape;
+
+  /// @throws ParameterError naming the space and its size, when it has none or is not finite
+  void check() const {
+    const auto require = [&](bool ok, const char* what, double value) {
+      check_parameter(ok, ("keep_out '" + name + "': " + what).c_str(), "positive and finite", value);
+    };
+    if (const Box* box = std::get_if<Box>(&shape)) {
+      for (int a = 0; a < 3; ++a) require(box->size[a] > 0.0 && std::isfinite(box->size[a]), "size", box->size[a]);
+      if (!box->center.allFinite()) throw ParameterError("keep_out '" + name + "': center must be finite");
+    } else if (const Cylinder* c = std::get_if<Cylinder>(&shape)) {
+      require(c->radius > 0.0 && std::isfinite(c->radius), "radius", c->radius);
+      require(c->height > 0.0 && std::isfinite(c->height), "height", c->height);
+      if (!c->center.allFinite()) throw ParameterError("keep_out '" + name + "': center must be finite");
+    }
+  }
 };
 
 /// All points within `radius` (m) of the segment from a to b.
@@ -52,28 +69,75 @@ inline double distance(const KeepOut& k, const Eigen::Vector3d& p) {
   return std::visit([&](const auto& shape) { return distance(shape, p); }, k.shape);
 }
 
-/// Distance (m) from a solid to the segment from a to b, 0 where they touch; exact to 1e-9 of the segment's length.
-///
-/// The distance to a convex solid is a convex function along a segment, so golden-section search finds its minimum.
-template <typename Solid>
-double distance(const Solid& solid, const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
-  constexpr double kGolden = 0.6180339887498949;
-  const auto at = [&](double t) { return distance(solid, Eigen::Vector3d(a + t * (b - a))); };
-  double lo = 0.0, hi = 1.0;
-  double t1 = hi - kGolden * (hi - lo), t2 = lo + kGolden * (hi - lo);
-  double f1 = at(t1), f2 = at(t2);
-  double best = std::min({at(0.0), at(1.0), f1, f2});
-  for (int i = 0; i < 44 && best > 0.0; ++i) {
-    if (f1 <= f2) {
-      hi = t2, t2 = t1, f2 = f1;
-      t1 = hi - kGolden * (hi - lo), f1 = at(t1);
-    } else {
-      lo = t1, t1 = t2, f1 = f2;
-      t2 = lo + kGolden * (hi - lo), f2 = at(t2);
+/// Distance (m) from a box to the segment from a to b, 0 where they touch. Exact: half the derivative of the squared
+/// distance along the segment rises and is linear between the (at most six) places where the segment crosses the planes
+/// of the box's faces, so the minimum follows from the two places about its zero.
+inline double distance(const Box& box, const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
+  const Eigen::Vector3d p = a - box.center, d = b - a, h = 0.5 * box.size;
+  const auto slope = [&](double t) {
+    double sum = 0.0;
+    for (int i = 0; i < 3; ++i) {
+      const double x = p[i] + t * d[i];
+      sum += d[i] * (x - std::clamp(x, -h[i], h[i]));
     }
-    best = std::min({best, f1, f2});
+    return sum;
+  };
+  double lo = 0.0, hi = 1.0, at_lo = slope(0.0), at_hi = slope(1.0);
+  if (at_lo >= 0.0) return distance(box, a);
+  if (at_hi <= 0.0) return distance(box, b);
+  for (int i = 0; i < 3; ++i) {
+    if (d[i] == 0.0) continue;
+    for (const double face : {-h[i], h[i]}) {
+      const double t = (face - p[i]) / d[i];
+      if (!(t > lo && t < hi)) continue;
+      const double at = slope(t);
+      if (at <= 0.0)
+        lo = t, at_lo = at;
+      else
+        hi = t, at_hi = at;
+    }
   }
-  return best;
+  return distance(box, Eigen::Vector3d(a + (lo + (hi - lo) * at_lo / (at_lo - at_hi)) * d));
+}
+
+/// Distance (m) from an upright cylinder to the segment from a to b, 0 where they touch; exact to about 1e-12 m. The
+/// squared distance is convex along the segment: Newton's method on its derivative, kept inside a shrinking bracket.
+inline double distance(const Cylinder& c, const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
+  const Eigen::Vector3d p = a - c.center, d = b - a;
+  const double half = 0.5 * c.height, across_sq = d.x() * d.x() + d.y() * d.y();
+  double curvature = 0.0;
+  const auto slope = [&](double t) {  // half the first derivative; half the second goes to `curvature`
+    const double x = p.x() + t * d.x(), y = p.y() + t * d.y(), z = p.z() + t * d.z();
+    const double rho = std::sqrt(x * x + y * y), out = rho - c.radius, over = z - std::clamp(z, -half, half);
+    double sum = d.z() * over;
+    curvature = over != 0.0 ? d.z() * d.z() : 0.0;
+    if (out > 0.0 && rho > 0.0) {
+      const double speed = (x * d.x() + y * d.y()) / rho;
+      sum += out * speed;
+      curvature += speed * speed + out * (across_sq - speed * speed) / rho;
+    }
+    return sum;
+  };
+  double t = 0.0, at = slope(0.0);
+  if (at >= 0.0) return distance(c, a);
+  const double newton_from_a = -at / curvature;  // the slope is not zero, hence neither is its own
+  if (slope(1.0) <= 0.0) return distance(c, b);
+  double lo = 0.0, hi = 1.0;
+  t = newton_from_a < 1.0 ? newton_from_a : 0.5;
+  for (int i = 0; i < 60; ++i) {
+    at = slope(t);
+    if (at == 0.0) break;
+    (at < 0.0 ? lo : hi) = t;
+    const double step = t - at / curvature;
+    const double next = step > lo && step < hi ? step : 0.5 * (lo + hi);
+    const bool settled = std::abs(next - t) < 1e-14;
+    t = next;
+    if (settled) break;
+  }
+  return distance(c, Eigen::Vector3d(a + t * d));
+}
+inline double distance(const KeepOut& k, const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
+  return std::visit([&](const auto& shape) { return distance(shape, a, b); }, k.shape);
 }
 
 /// Distance (m) between the segments p1 q1 and p2 q2 (Ericson, Real-Time Collision Detection, 5.1.9).
