@@ -4,6 +4,7 @@
 #pragma once
 
 #include <agrisee/cloud/orient_normals.hpp>
+#include <agrisee/cloud/voxel.hpp>
 #include <agrisee/locate.hpp>
 
 #include <chrono>
@@ -29,6 +30,14 @@ struct CloudOrigin {
   std::optional<Eigen::Vector3d> viewpoint;  ///< one sensor position (m) for all points, where there are no views
   Eigen::Vector3d cluster_origin = Eigen::Vector3d::Zero();  ///< origin of the cluster frame in world (m)
 };
+
+/// A ready cloud at the spacing that fused surfaces have: denser ones are averaged in voxels of `surfels.separation`, which
+/// takes off noise and time; others are returned as they are, without the points that are not finite.
+inline Cloud thinned(const Cloud& cloud, const Parameters& parameters) {
+  Cloud finite = select(cloud, finite_indices(cloud));
+  const double separation = parameters.surfels.separation;
+  return estimate_spacing(finite) < 0.9 * separation && finite.views.empty() ? average_in_voxels(finite, separation) : finite;
+}
 
 /// Clean, split and locate (paper: SOR, region growing, DBSCAN, localization).
 ///

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The subcommands of `agrisee`, and what they share. Results go to stdout, progress to stderr.
+#pragma once
+
+#include <agrisee/io/results.hpp>
+#include <agrisee/parameters.hpp>
+
+#include <CLI/CLI.hpp>
+
+#include <functional>
+#include <string>
+
+namespace agrisee::cli {
+
+/// Exit codes.
+constexpr int kSuccess = 0, kUsage = 1, kBadInput = 2, kScanFailed = 3;
+
+/// A command line that parses but asks for something that cannot be done.
+struct UsageError : Error {
+  using Error::Error;
+};
+
+/// Registers a subcommand; `run` is set to what it does when it is chosen, and returns the exit code.
+using Run = std::function<int()>;
+void add_scan(CLI::App& app, Run& run);
+void add_process(CLI::App& app, Run& run);
+void add_make_truss(CLI::App& app, Run& run);
+void add_evaluate(CLI::App& app, Run& run);
+
+/// Options that scan and process have in common.
+struct PipelineOptions {
+  std::string preset = "default", params;
+  std::string output;
+  std::uint64_t seed = 0;
+  int threads = 0;  ///< 0 = as many as the machine has
+  bool force = false, json = false;
+};
+void add_pipeline_options(CLI::App& command, PipelineOptions& options);
+
+/// Preset and parameter file combined. @throws FileError, ParameterError
+Parameters parameters_of(const PipelineOptions& options);
+int threads_of(int asked);
+
+/// Makes the output folder ready. @throws UsageError when it holds a result already and `force` is off
+void prepare_output(const std::string& folder, bool force);
+
+/// The summary of a result on stdout: a table of fruit, or JSON.
+void print_summary(const ScanResult& result, const std::string& folder, bool json);
+
+}  // namespace agrisee::cli

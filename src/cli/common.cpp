@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "commands.hpp"
+
+#include <agrisee/io/parameters.hpp>
+#include <agrisee/version.hpp>
+
+#include <nlohmann/json.hpp>
+
+#include <filesystem>
+#include <iomanip>
+#include <iostream>
+#include <sstream>
+#include <thread>
+
+namespace agrisee::cli {
+
+namespace fs = std::filesystem;
+
+void add_pipeline_options(CLI::App& command, PipelineOptions& options) {
+  command.add_option("-o,--output", options.output, "folder for the result")->required();
+  command.add_option("--preset", options.preset, "starting values: default, or paper")
+      ->check(CLI::IsMember({"default", "paper"}))
+      ->capture_default_str();
+  command.add_option("--params", options.params, "YAML file with parameters to change");
+  command.add_option("--seed", options.seed, "seed of everything random")->capture_default_str();
+  command.add_option("--threads", options.threads, "threads (0: all); the result does not depend on it")
+      ->check(CLI::Range(0, 1024))
+      ->capture_default_str();
+  command.add_flag("--force", options.force, "overwrite an existing result");
+  command.add_flag("--json", options.json, "print the summary as JSON");
+}
+
+Parameters parameters_of(const PipelineOptions& options) {
+  const Parameters base = Parameters::named(options.preset);
+  return options.params.empty() ? base : io::read_parameters(options.params, base);
+}
+
+int threads_of(int asked) {
+  return asked > 0 ? asked : std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+}
+
+void prepare_output(const std::string& folder, bool force) {
+  std::error_code error;
+  if (fs::exists(folder, error) && !fs::is_directory(folder, error)) throw UsageError(folder + ": exists and is not a folder");
+  for (const char* name : {"run.json", "views.csv", "scene.yaml"})
+    if (!force && fs::exists(fs::path(folder) / name, error))
+      throw UsageError(folder + ": holds a result already (" + name + "); use --force to overwrite it");
+  fs::create_directories(folder, error);
+  if (error) throw FileError(folder + ": cannot be made: " + error.message());
+  if (force)  // nothing of an older result may be taken for part of the new one
+    for (const char* name : {"run.json", "views.csv", "cloud.ply", "cloud_raw.ply", "fruits.json", "fruits.csv", "truss.png"})
+      fs::remove(fs::path(folder) / name, error);
+}
+
+void print_summary(const ScanResult& result, const std::string& folder, bool json) {
+  std::size_t labelled = 0;
+  for (int l : result.labels) labelled += l > 0;
+  if (json) {
+    nlohmann::ordered_json out;
+    out["folder"] = folder;
+    out["fruits"] = result.fruits.size();
+    out["views"] = result.views.size();
+    out["stop_reason"] = to_string(result.stop_reason);
+    out["points"] = {{"merged", result.raw.size()}, {"filtered", result.cloud.size()}, {"labelled", labelled}};
+    out["seconds"] = result.seconds.total;
+    std::cout << out.dump(2) << "\n";
+    return;
+  }
+  std::ostringstream text;
+  text << std::fixed;
+  text << result.fruits.size() << " fruit from " << result.views.size() << " views (" << to_string(result.stop_reason)
+       << "), " << result.cloud.size() << " points, " << std::setprecision(2) << result.seconds.total
+       << " s of computing\n";
+  if (!result.fruits.empty())
+    text << "  id   points  found by              centre x, y, z (m)          radius  seen  axis z (world)\n";
+  for (const Fruit& f : result.fruits) {
+    const Eigen::Vector3d c = f.body ? f.body->center : f.centroid;
+    const Eigen::Vector3d z = f.orientation.col(2);
+    text << std::setw(4) << f.id << std::setw(9) << f.points << "  " << std::left << std::setw(16) << f.found_by << std::right
+         << std::setprecision(4) << std::setw(10) << c.x() << std::setw(9) << c.y() << std::setw(9) << c.z();
+    if (f.body)
+      text << std::setprecision(1) << std::setw(9) << 1e3 * f.body->radii.mean() << " mm" << std::setprecision(0) << std::setw(4)
+           << 100.0 * f.body->completeness << " %";
+    text << std::setprecision(2) << std::setw(8) << z.x() << std::setw(6) << z.y() << std::setw(6) << z.z() << "\n";
+  }
+  text << "Result: " << folder << "\n";
+  std::cout << text.str();
+}
+
+}  // namespace agrisee::cli

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "commands.hpp"
+
+#include <agrisee/version.hpp>
+
+#include <iostream>
+
+int main(int argc, char** argv) {
+  using namespace agrisee;
+  CLI::App app{"AgriSEE: look around a truss, find every fruit, say where it is."};
+  app.set_version_flag("--version", std::string("agrisee ") + AGRISEE_VERSION);
+  app.require_subcommand(1);
+  app.footer(
+      "Examples:\n"
+      "  agrisee make-truss --total 7 --hidden 1 --seed 1 -o truss\n"
+      "  agrisee scan truss/scene.yaml -o result --noise l515 --seed 1\n"
+      "  agrisee evaluate truss/scene.yaml result\n"
+      "  agrisee process cloud.ply -o result --viewpoint 0,0,0\n"
+      "Exit codes: 0 success, 1 bad usage, 2 bad input, 3 a scan that failed midway.");
+  cli::Run run;
+  cli::add_scan(app, run);
+  cli::add_process(app, run);
+  cli::add_make_truss(app, run);
+  cli::add_evaluate(app, run);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& e) {
+    return app.exit(e) == 0 ? cli::kSuccess : cli::kUsage;
+  }
+  try {
+    return run();
+  } catch (const cli::UsageError& e) {
+    std::cerr << "agrisee: " << e.what() << "\n";
+    return cli::kUsage;
+  } catch (const std::exception& e) {
+    std::cerr << "agrisee: " << e.what() << "\n";
+    return cli::kBadInput;
+  }
+}

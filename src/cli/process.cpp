@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// agrisee process: from a ready cloud to located fruit.
+#include "commands.hpp"
+
+#include <agrisee/io/cloud_file.hpp>
+#include <agrisee/io/parameters.hpp>
+#include <agrisee/io/render.hpp>
+#include <agrisee/process.hpp>
+#include <agrisee/version.hpp>
+
+#include <filesystem>
+#include <iostream>
+#include <memory>
+
+namespace agrisee::cli {
+namespace {
+
+struct ProcessOptions : PipelineOptions {
+  std::string cloud, views;
+  std::vector<double> viewpoint;
+  std::vector<double> radius;
+};
+
+int run_process(const ProcessOptions& options) {
+  Parameters parameters = parameters_of(options);
+  if (!options.radius.empty()) {
+    parameters.split.bodies.radius_min = options.radius[0];
+    parameters.split.bodies.radius_max = options.radius[1];
+  }
+  parameters.check();
+  const io::CloudFile file = io::read_cloud(options.cloud);
+  if (file.dropped > 0) std::cerr << options.cloud << ": " << file.dropped << " points that are not finite were dropped\n";
+  CloudOrigin origin;
+  if (!options.viewpoint.empty()) origin.viewpoint = Eigen::Vector3d(options.viewpoint[0], options.viewpoint[1], options.viewpoint[2]);
+  if (!options.views.empty()) {
+    if (file.cloud.views.size() != file.cloud.size())
+      throw FileError(options.cloud + ": has no property 'view', which --views needs");
+    for (const View& v : io::read_views(options.views)) origin.sensors.push_back(v.world_T_optical.translation());
+    for (int v : file.cloud.views)
+      if (v >= static_cast<int>(origin.sensors.size()))
+        throw FileError(options.views + ": has no view " + std::to_string(v) + ", which " + options.cloud + " refers to");
+  }
+  prepare_output(options.output, options.force);
+  const Cloud cloud = parameters.fuse_surfaces ? thinned(file.cloud, parameters) : file.cloud;
+  Workcell workcell;
+  workcell.name = std::filesystem::path(options.cloud).filename().string();
+  for (const auto& p : cloud.points) workcell.scan_volume.extend(p.cast<double>());
+  if (!workcell.scan_volume.empty()) origin.cluster_origin = cluster_origin(workcell.scan_volume, Eigen::Vector3d::Zero());
+  const ScanResult result = process(cloud, parameters, origin, {}, threads_of(options.threads));
+  io::RunInfo info;
+  info.scene = workcell.name;
+  info.version = AGRISEE_VERSION;
+  info.seed = options.seed;
+  info.threads = threads_of(options.threads);
+  info.noise = "none";
+  info.preset = parameters.preset;
+  info.planner = "none";
+  info.parameters_json = io::parameters_to_json(parameters);
+  io::write_result(options.output, result, workcell, info);
+  io::write_picture(std::filesystem::path(options.output) / "truss.png", result, workcell);
+  print_summary(result, options.output, options.json);
+  return kSuccess;
+}
+
+}  // namespace
+
+void add_process(CLI::App& app, Run& run) {
+  auto* command = app.add_subcommand("process", "locate the fruit in a cloud from elsewhere (PLY or PCD)");
+  auto options = std::make_shared<ProcessOptions>();
+  command->add_option("cloud", options->cloud, "cloud file (PLY or PCD; metres)")->required();
+  add_pipeline_options(*command, *options);
+  command->add_option("--viewpoint", options->viewpoint, "position x,y,z (m) from which all points were seen")
+      ->delimiter(',')
+      ->expected(3);
+  command->add_option("--views", options->views, "views.csv with the sensor of each point's property 'view'");
+  command->add_option("--radius", options->radius, "smallest,largest expected radius of a fruit (m)")->delimiter(',')->expected(2);
+  command->footer(
+      "Examples:\n"
+      "  agrisee process cloud.ply -o result\n"
+      "  agrisee process frame.pcd -o result --viewpoint 0,0,0 --radius 0.025,0.06");
+  command->callback([options, &run] { run = [options] { return run_process(*options); }; });
+}
+
+}  // namespace agrisee::cli

@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// agrisee scan: a simulated scan of a scene file.
+#include "commands.hpp"
+
+#include <agrisee/io/parameters.hpp>
+#include <agrisee/io/ply.hpp>
+#include <agrisee/io/render.hpp>
+#include <agrisee/io/scene.hpp>
+#include <agrisee/study/simulated_scan.hpp>
+#include <agrisee/version.hpp>
+
+#include <unistd.h>
+
+#include <filesystem>
+#include <iostream>
+#include <memory>
+
+namespace agrisee::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct ScanOptions : PipelineOptions {
+  std::string scene, planner, noise = "none";
+  int max_views = 0;
+};
+
+/// One line a view; on a terminal a bar that is drawn over.
+void show_progress(const Pipeline& pipeline, int budget) {
+  const View& v = pipeline.views().back();
+  const auto n = static_cast<int>(pipeline.views().size());
+  std::string line = "view " + std::to_string(n) + "/" + std::to_string(budget) + ": " + std::to_string(v.points_in) +
+                     " points seen, " + std::to_string(v.points_new) + " new";
+  if (isatty(STDERR_FILENO)) {
+    const int width = 24, done = std::min(width, width * n / std::max(1, budget));
+    std::cerr << "\r[" << std::string(static_cast<std::size_t>(done), '#')
+              << std::string(static_cast<std::size_t>(width - done), '.') << "] " << line << "\033[K" << std::flush;
+  } else {
+    std::cerr << line << "\n";
+  }
+}
+
+int run_scan(const ScanOptions& options) {
+  Parameters parameters = parameters_of(options);
+  if (!options.planner.empty()) parameters.planner = options.planner;
+  if (options.max_views > 0) parameters.max_views = options.max_views;
+  parameters.check();
+  study::SimulationOptions simulation;
+  simulation.noise = sensor::parse_noise(options.noise);
+  simulation.seed = options.seed;
+  simulation.threads = threads_of(options.threads);
+  const io::SceneFile file = io::read_scene(options.scene);
+  const TracedScene traced(file.scene);
+  prepare_output(options.output, options.force);
+  const fs::path folder = options.output;
+
+  simulation.on_view = [&](const Pipeline& pipeline) {
+    io::write_views(folder / "views.csv", pipeline.views());
+    show_progress(pipeline, parameters.max_views);
+  };
+  ScanResult result;
+  try {
+    result = study::scan(file.workcell, traced, parameters, std::move(simulation));
+  } catch (const std::exception& e) {
+    std::cerr << "\nagrisee: the scan failed midway: " << e.what() << "\nThe views taken so far are in "
+              << (folder / "views.csv").string() << "\n";
+    return kScanFailed;
+  }
+  if (isatty(STDERR_FILENO)) std::cerr << "\n";
+  io::RunInfo info;
+  info.scene = file.workcell.name;
+  info.version = AGRISEE_VERSION;
+  info.seed = options.seed;
+  info.threads = threads_of(options.threads);
+  info.noise = options.noise;
+  info.preset = parameters.preset;
+  info.planner = parameters.planner;
+  info.parameters_json = io::parameters_to_json(parameters);
+  io::write_result(folder, result, file.workcell, info);
+  io::write_picture(folder / "truss.png", result, file.workcell);
+  print_summary(result, options.output, options.json);
+  if (result.views.empty()) {
+    std::cerr << "agrisee: no view could be taken (" << to_string(result.stop_reason)
+              << "): the scan volume is out of the arm's reach\n";
+    return kScanFailed;
+  }
+  return kSuccess;
+}
+
+}  // namespace
+
+void add_scan(CLI::App& app, Run& run) {
+  auto* command = app.add_subcommand("scan", "scan a scene with the simulated sensor and arm, and locate its fruit");
+  auto options = std::make_shared<ScanOptions>();
+  command->add_option("scene", options->scene, "scene file (YAML)")->required();
+  add_pipeline_options(*command, *options);
+  command->add_option("--planner", options->planner, "where to look next")
+      ->check(CLI::IsMember({"gain", "see", "fixed", "random"}));
+  command->add_option("--noise", options->noise, "noise of the sensor: none, gaussian:SIGMA, l515 or rough")
+      ->capture_default_str();
+  command->add_option("--max-views", options->max_views, "view budget (default: the preset's)")->check(CLI::Range(1, 10000));
+  command->footer(
+      "Examples:\n"
+      "  agrisee scan truss/scene.yaml -o result --noise l515 --seed 1\n"
+      "  agrisee scan truss/scene.yaml -o paper --preset paper --noise gaussian:0.002 --max-views 20\n"
+      "DIR holds cloud.ply, cloud_raw.ply, views.csv, fruits.json, fruits.csv, run.json and truss.png.");
+  command->callback([options, &run] { run = [options] { return run_scan(*options); }; });
+}
+
+}  // namespace agrisee::cli
