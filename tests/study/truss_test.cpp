@@ -165,7 +165,7 @@ TEST_CASE("trusses of all kinds are as asked") {
                                         {6, 2, 1, 0.035, 0.055},
                                         {12, 0, 0, 0.028, 0.042},
                                         {12, 6, 6, 0.028, 0.042}}));
-  for (const std::uint64_t seed : {1, 7}) {
+  for (const unsigned seed : {1u, 7u}) {
     TrussParameters params;
     params.total = c.total;
     params.hidden = c.hidden;
@@ -195,7 +195,7 @@ TEST_CASE("trusses depend on their seed and on nothing else") {
 }
 
 TEST_CASE("fruit of a truss touch") {
-  for (const std::uint64_t seed : {1, 2, 3, 4}) {
+  for (const unsigned seed : {1u, 2u, 3u, 4u}) {
     TrussParameters params;
     params.seed = seed;
     params.hidden = 3;

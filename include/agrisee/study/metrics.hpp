@@ -6,9 +6,7 @@
 /// points.
 #pragma once
 
-#include <agrisee/core/kdtree.hpp>
 #include <agrisee/result.hpp>
-#include <agrisee/study/matching.hpp>
 #include <agrisee/study/visibility.hpp>
 
 #include <algorithm>

@@ -77,4 +77,14 @@ inline double share(const Samples& samples, const Flags& flags, int id) {
   return all > 0.0 ? flagged / all : 0.0;
 }
 
+/// Mean (m) of the flagged samples of fruit `id`; none when there are none.
+inline std::optional<Eigen::Vector3d> mean_of(const Samples& samples, const Flags& flags, int id) {
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  double n = 0.0;
+  for (std::size_t i = 0; i < samples.size(); ++i)
+    if (samples.fruit[i] == id && flags[i]) sum += samples.points[i].cast<double>(), n += 1.0;
+  if (n == 0.0) return std::nullopt;
+  return Eigen::Vector3d(sum / n);
+}
+
 }  // namespace agrisee::study
