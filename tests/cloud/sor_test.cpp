@@ -45,6 +45,7 @@ void check_brute(const std::string& kind) {
         const SorParameters params{k, alpha, sample};
         const Indices expected = brute(cloud, k, alpha, sample);
         CHECK(remove_statistical_outliers(cloud, params) == expected);
+        CHECK(remove_statistical_outliers(cloud, params, KdTree<S>(cloud)) == expected);
         CHECK(remove_statistical_outliers(cloud, params, Grid<S>(cloud, S(0.004))) == expected);
       }
 }

@@ -49,10 +49,10 @@ class DisjointSets {
     while (parent(i) != i) i = parent(i) = parent(parent(i));
     return i;
   }
-  void join(Index a, Index b) {
-    a = root(a);
-    b = root(b);
+  /// Join the sets of two roots; the root of both.
+  Index join(Index a, Index b) {
     if (a != b) parent(std::max(a, b)) = std::min(a, b);
+    return std::min(a, b);
   }
 
  private:
@@ -82,8 +82,9 @@ Labels dbscan(const C& cloud, const DbscanParameters& params, const Search& sear
   for (std::size_t i = 0; i < n; ++i) {
     if (!core[i]) continue;
     const auto self = static_cast<Index>(i);
+    Index mine = sets.root(self);
     search.visit(point(cloud, i), eps, [&](Index j, S) {
-      if (j < self && core[static_cast<std::size_t>(j)]) sets.join(j, self);
+      if (j < self && core[static_cast<std::size_t>(j)]) mine = sets.join(sets.root(j), mine);
     });
   }
 

@@ -7,6 +7,7 @@
 /// Any frame, metres. Cost: a grid, one visit of the neighbours and one 3 x 3 eigenproblem a point.
 #pragma once
 
+#include <agrisee/cloud/hybrid_query.hpp>
 #include <agrisee/core/grid.hpp>
 #include <agrisee/core/parallel.hpp>
 #include <agrisee/geometry/pca.hpp>
@@ -35,50 +36,6 @@ struct NormalParameters {
   }
 };
 
-namespace detail {
-
-/// The k nearest points within a radius, found by first trying the radius that held k points at the query before:
-/// density changes little from point to point, so that a dense neighbourhood is not read whole. The answer is exact.
-template <typename S>
-class HybridQuery {
- public:
-  HybridQuery(S radius, std::size_t k) : radius_(radius), k_(k), trial_(radius) {}
-
-  /// Neighbours of q, in no particular order; their `distance` is squared.
-  template <typename Search>
-  const Neighbors<S>& operator()(const Search& search, const Vector3<S>& q) {
-    gather(search, q, trial_);  // NaN finds nothing
-    if (found_.size() < k_ && trial_ < radius_) gather(search, q, radius_);
-    if (found_.size() > k_) {
-      const auto last = found_.begin() + static_cast<std::ptrdiff_t>(k_) - 1;
-      std::nth_element(found_.begin(), last, found_.end(), Nearest<S>::before);
-      found_.resize(k_);
-    }
-    if (found_.size() == k_) {
-      S worst_sq = 0;
-      for (const auto& n : found_) worst_sq = std::max(worst_sq, n.distance);
-      trial_ = std::min(radius_, S(1.25) * std::sqrt(worst_sq));
-    } else {
-      trial_ = radius_;
-    }
-    return found_;
-  }
-
- private:
-  template <typename Search>
-  void gather(const Search& search, const Vector3<S>& q, S r) {
-    found_.clear();
-    search.visit(q, r, [&](Index i, S d_sq) { found_.push_back({i, d_sq}); });
-  }
-
-  S radius_;
-  std::size_t k_;
-  S trial_;
-  Neighbors<S> found_;
-};
-
-}  // namespace detail
-
 /// One unit normal a point, its sign arbitrary; zero where the normal is unknown: fewer than three neighbours, all of
 /// them on a line or at one place (within the rounding of the coordinates), or a point that is not finite.
 /// @param search a KdTree or Grid over `cloud`
@@ -94,7 +51,7 @@ std::vector<Vector3<scalar_t<C>>> estimate_normals(const C& cloud, const NormalP
   std::vector<Vector3<S>> normals(n, Vector3<S>::Zero());
   if (curvatures) curvatures->assign(n, S(0));
   parallel_chunks(n, threads, 512, [&](std::size_t begin, std::size_t end) {
-    detail::HybridQuery<S> query(static_cast<S>(params.radius), static_cast<std::size_t>(params.max_neighbors));
+    HybridQuery<S> query(static_cast<S>(params.radius), static_cast<std::size_t>(params.max_neighbors));
     Moments moments;
     for (std::size_t i = begin; i < end; ++i) {
       const Vector3<S> p = point(cloud, i);
