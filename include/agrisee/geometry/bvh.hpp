@@ -186,8 +186,9 @@ void Bvh::traverse(const Eigen::Vector3f& origin, const Eigen::Vector3f& directi
   }
 }
 
-inline std::optional<Bvh::Hit> Bvh::closest(const Eigen::Vector3f& origin, const Eigen::Vector3f& direction,
-                                            float t_min, float t_max) const {
+[[gnu::noinline]] inline std::optional<Bvh::Hit> Bvh::closest(const Eigen::Vector3f& origin,
+                                                              const Eigen::Vector3f& direction, float t_min,
+                                                              float t_max) const {
   std::optional<Hit> best;
   traverse(origin, direction, t_min, t_max, [&](const Hit& hit) {
     if (!best || hit.t < best->t || (hit.t == best->t && hit.triangle < best->triangle)) best = hit;
@@ -196,7 +197,8 @@ inline std::optional<Bvh::Hit> Bvh::closest(const Eigen::Vector3f& origin, const
   return best;
 }
 
-inline bool Bvh::any(const Eigen::Vector3f& origin, const Eigen::Vector3f& direction, float t_min, float t_max) const {
+[[gnu::noinline]] inline bool Bvh::any(const Eigen::Vector3f& origin, const Eigen::Vector3f& direction, float t_min,
+                                       float t_max) const {
   bool found = false;
   traverse(origin, direction, t_min, t_max, [&](const Hit&) {
     found = true;
@@ -205,7 +207,8 @@ inline bool Bvh::any(const Eigen::Vector3f& origin, const Eigen::Vector3f& direc
   return found;
 }
 
-inline std::optional<Bvh::SurfacePoint> Bvh::nearest(const Eigen::Vector3f& p, float max_distance) const {
+[[gnu::noinline]] inline std::optional<Bvh::SurfacePoint> Bvh::nearest(const Eigen::Vector3f& p,
+                                                                       float max_distance) const {
   if (nodes_.empty() || !is_finite(p) || !(max_distance >= 0.0f)) return std::nullopt;
   constexpr double kMargin = 1.0 + 1e-6;
   const Eigen::Vector3d q = p.cast<double>();
