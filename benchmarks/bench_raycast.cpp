@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The tree and a full 1024 x 768 frame on a scene of 100,800 triangles: 30 spheres of 24 to 36 mm, 0.5 m in front of the
-// sensor, met by about one ray in seven.
+// The tree and a full 1024 x 768 frame on a scene of 100,800 triangles: 30 spheres of 24 to 36 mm, 0.5 m in front of
+// the sensor, met by about one ray in seven.
 #include <agrisee/core/random.hpp>
 #include <agrisee/sensor/l515.hpp>
 
@@ -18,7 +18,7 @@ const Scene& spheres() {
     Rng rng(1);
     for (int i = 0; i < 30; ++i) {
       const Eigen::Vector3d center(rng.uniform(-0.13, 0.13), rng.uniform(0.42, 0.62), rng.uniform(0.06, 0.34));
-      s.objects.push_back({i + 1, ObjectClass::fruit, test::sphere(center, rng.uniform(0.024, 0.036), 59 + i % 2)});
+      s.objects.push_back({i + 1, ObjectClass::fruit, shapes::sphere(center, rng.uniform(0.024, 0.036), 59 + i % 2)});
     }
     return s;
   }();
@@ -41,7 +41,8 @@ void BM_Frame(benchmark::State& state) {
   for (auto _ : state) {
     const auto image =
         sensor::raycast(scene, l515.intrinsics, eye(), l515.range_min, l515.range_max, int(state.range(0)));
-    hits = image.triangle.size() - std::size_t(std::count(image.triangle.begin(), image.triangle.end(), sensor::kNoHit));
+    hits =
+        image.triangle.size() - std::size_t(std::count(image.triangle.begin(), image.triangle.end(), sensor::kNoHit));
   }
   state.counters["hit_share"] = double(hits) / double(l515.intrinsics.size());
 }
@@ -67,7 +68,8 @@ void BM_Nearest(benchmark::State& state) {
   Rng rng(2);
   std::vector<Eigen::Vector3f> queries;
   for (int i = 0; i < 10000; ++i)
-    queries.emplace_back(float(rng.uniform(-0.13, 0.13)), float(rng.uniform(0.42, 0.62)), float(rng.uniform(0.06, 0.34)));
+    queries.emplace_back(float(rng.uniform(-0.13, 0.13)), float(rng.uniform(0.42, 0.62)),
+                         float(rng.uniform(0.06, 0.34)));
   for (auto _ : state)
     for (const auto& q : queries) benchmark::DoNotOptimize(scene.bvh().nearest(q));
   state.SetItemsProcessed(state.iterations() * 10000);

@@ -5,10 +5,12 @@
 #include <agrisee/geometry/traced_scene.hpp>
 
 #include "catch.hpp"
+#include "support/says.hpp"
 #include "support/shapes.hpp"
 
 using namespace agrisee;
 using Eigen::Vector3f;
+using test::says;
 
 namespace {
 
@@ -197,7 +199,7 @@ TEST_CASE("the nearest point of a triangle is on it and no sample is nearer") {
 }
 
 TEST_CASE("a sphere is hit where it is") {
-  const Mesh mesh = test::sphere({0.1, 0.5, 0.2}, 0.04, 64);
+  const Mesh mesh = shapes::sphere({0.1, 0.5, 0.2}, 0.04, 64);
   const Bvh bvh(mesh);
   Rng rng(9);
   for (int i = 0; i < 2000; ++i) {
@@ -220,7 +222,7 @@ TEST_CASE("a sphere is hit where it is") {
 }
 
 TEST_CASE("no ray slips through the seams of a closed surface") {
-  const Mesh mesh = test::sphere({0, 0, 0}, 0.05, 40);
+  const Mesh mesh = shapes::sphere({0, 0, 0}, 0.05, 40);
   const Bvh bvh(mesh);
   Rng rng(10);
   for (int i = 0; i < 20000; ++i) {  // from inside, at points of edges and at corners
@@ -270,7 +272,7 @@ TEST_CASE("meshes that are empty, degenerate or broken") {
   Mesh broken = scene_of("one");
   broken.triangles.push_back({0, 1, 3});
   REQUIRE_THROWS_AS(Bvh(broken), InputError);
-  REQUIRE_THROWS_WITH(Bvh(broken), Catch::Matchers::Contains("triangle 1") && Catch::Matchers::Contains("vertex 3"));
+  REQUIRE_THROWS_WITH(Bvh(broken), says("triangle 1") && says("vertex 3"));
 }
 
 TEST_CASE("visit reaches every triangle of the boxes that are kept, and stops when told") {
@@ -296,9 +298,9 @@ TEST_CASE("visit reaches every triangle of the boxes that are kept, and stops wh
 
 TEST_CASE("a traced scene knows the object and the normal of each triangle") {
   Scene scene;
-  scene.objects.push_back({1, ObjectClass::fruit, test::sphere({-0.1, 0.5, 0.2}, 0.03, 16)});
+  scene.objects.push_back({1, ObjectClass::fruit, shapes::sphere({-0.1, 0.5, 0.2}, 0.03, 16)});
   scene.objects.push_back({0, ObjectClass::other, Mesh()});
-  scene.objects.push_back({2, ObjectClass::fruit, test::sphere({0.1, 0.5, 0.2}, 0.04, 16)});
+  scene.objects.push_back({2, ObjectClass::fruit, shapes::sphere({0.1, 0.5, 0.2}, 0.04, 16)});
   add(scene.objects[2].mesh, Vector3f::Zero(), Vector3f::Zero(), Vector3f::Zero());
   const TracedScene traced(scene);
   REQUIRE(traced.size() == scene.objects[0].mesh.triangles.size() + scene.objects[2].mesh.triangles.size());
@@ -312,5 +314,5 @@ TEST_CASE("a traced scene knows the object and the normal of each triangle") {
   }
   REQUIRE(TracedScene(Scene()).size() == 0);
   scene.objects[1].mesh.triangles.push_back({0, 0, 0});
-  REQUIRE_THROWS_WITH(TracedScene(scene), Catch::Matchers::Contains("object 1"));
+  REQUIRE_THROWS_WITH(TracedScene(scene), says("object 1"));
 }

@@ -4,7 +4,7 @@
 
 #include <agrisee/geometry/scene.hpp>
 
-namespace agrisee::test {
+namespace agrisee::shapes {
 
 /// A closed sphere with its corners on the surface: `segments` around, half as many from pole to pole;
 /// segments * (segments - 2) triangles, facing outwards.
@@ -50,4 +50,4 @@ inline Scene scene_of(const Mesh& mesh) {
   return scene;
 }
 
-}  // namespace agrisee::test
+}  // namespace agrisee::shapes
