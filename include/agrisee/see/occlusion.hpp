@@ -39,12 +39,11 @@ bool is_visible(const Search& search, const Eigen::Vector3d& p, const Eigen::Vec
 }
 
 /// Unit directions from p to the points that can occlude it: those farther than upsilon and within psi.
-/// @param reach farthest point that counts (m), at most psi
 template <typename C>
 std::vector<Eigen::Vector3f> occluder_directions(const C& cloud, const Eigen::Vector3d& p, double upsilon, double psi) {
   std::vector<Eigen::Vector3f> out;
-  out.reserve(size(cloud));
-  for (std::size_t i = 0; i < size(cloud); ++i) {
+  out.reserve(agrisee::size(cloud));
+  for (std::size_t i = 0; i < agrisee::size(cloud); ++i) {
     const Eigen::Vector3f d = (point(cloud, i).template cast<double>() - p).template cast<float>();
     const float range = d.norm();
     if (range > static_cast<float>(upsilon) && range <= static_cast<float>(psi)) out.push_back(d / range);

@@ -109,6 +109,7 @@ class Planner {
   /// This proposal cannot be reached. It is turned step by step towards where its frontier was first seen from, then
   /// dropped; a second look at a frontier is dropped at once, or replaced by the one from where it was first seen.
   void refuse(const ViewProposal& view) {
+    if (target_ == view.frontier) target_.reset();
     const auto found = candidates_.find(view.frontier);
     if (found == candidates_.end()) return;
     Candidate& c = found->second;
