@@ -149,7 +149,7 @@ class Pipeline {
     if (parameters_.register_views && surfels_.size() > 0) register_image(image);
     const int id = static_cast<int>(views_.size());
     for (std::size_t c = 0; c < image.points.size(); ++c)
-      if (image.sigma[c] > 0.0f && surfels_.add(image.points[c], image.normals[c], image.sigma[c], id))
+      if (surfels_.add(image.points[c], image.normals[c], image.sigma[c], id))
         added.push_back(image.points[c]);
     // Only the depths are needed from now on, as evidence of free space.
     image.points = {};
@@ -160,21 +160,16 @@ class Pipeline {
 
   void register_image(sensor::SurfaceImage& image) const {
     Cloud source;
-    std::size_t valid = 0;
-    for (float s : image.sigma) valid += s > 0.0f;
-    const std::size_t step = std::max<std::size_t>(1, valid / 2500);
-    std::size_t k = 0;
-    for (std::size_t c = 0; c < image.points.size(); ++c)
-      if (image.sigma[c] > 0.0f && k++ % step == 0) {
-        source.points.push_back(image.points[c]);
-        source.normals.push_back(image.normals[c]);
-      }
+    const std::size_t step = std::max<std::size_t>(1, image.points.size() / 2500);
+    for (std::size_t c = 0; c < image.points.size(); c += step) {
+      source.points.push_back(image.points[c]);
+      source.normals.push_back(image.normals[c]);
+    }
     const Cloud target = surfels_.cloud();
     const IcpResult icp = register_cloud(source, source.normals, target, target.normals, parameters_.icp);
     if (!icp.accepted) return;
     const Eigen::Isometry3f correction = icp.target_T_source.cast<float>();
     for (std::size_t c = 0; c < image.points.size(); ++c) {
-      if (!(image.sigma[c] > 0.0f)) continue;
       image.points[c] = correction * image.points[c];
       image.normals[c] = correction.linear() * image.normals[c];
     }
@@ -207,7 +202,7 @@ class Pipeline {
     for (const Surfel& s : surfels_.surfels()) {
       int through = 0;
       for (const auto& image : images_)
-        through += plan::sight(image, s.position.cast<double>(), parameters_.free_space) == plan::Sight::through;
+        through += plan::refutes(image, s.position.cast<double>(), parameters_.free_space);
       if (through >= parameters_.free_space.min_refuting && through >= s.seen_by) continue;
       cloud_.points.push_back(s.position);
       cloud_.normals.push_back(s.normal);

@@ -11,14 +11,16 @@
 
 #include <agrisee/cloud/split.hpp>
 #include <agrisee/cloud/voxel.hpp>
-#include <agrisee/plan/planner.hpp>
+#include <agrisee/plan/directions.hpp>
 #include <agrisee/sensor/l515.hpp>
 
 namespace agrisee::plan {
 
 /// Parameters of ExpectedSurface.
 struct ExpectedSurfaceParameters {
-  double max_incidence = deg(68);  ///< a surface seen at less than this is expected to be measured (rad)
+  double max_incidence = deg(75);  ///< a surface seen at less than this is expected to be measured (rad)
+  int samples = 320;               ///< samples of a body's surface
+  double cover_radius = 0.005;     ///< a sample with a point this near is covered (m)
   double voxel = 0.015;            ///< edge of the voxels of unknown space (m)
   double neighborhood = 0.06;      ///< unknown space counts within this distance of a body's surface (m)
   double unknown_weight = 0.08;    ///< fruit surface expected behind the face of an unknown voxel, as a share of the face
@@ -27,6 +29,8 @@ struct ExpectedSurfaceParameters {
   /// @throws ParameterError
   void check() const {
     check_parameter(max_incidence > 0 && max_incidence < kPi / 2, "expected.max_incidence", "in (0, pi/2)", max_incidence);
+    check_parameter(samples >= 1 && samples <= 100000, "expected.samples", "in [1, 100000]", samples);
+    check_parameter(cover_radius > 0, "expected.cover_radius", "positive", cover_radius);
     check_parameter(voxel > 0, "expected.voxel", "positive", voxel);
     check_parameter(neighborhood >= 0, "expected.neighborhood", ">= 0", neighborhood);
     check_parameter(unknown_weight >= 0, "expected.unknown_weight", ">= 0", unknown_weight);
@@ -35,6 +39,8 @@ struct ExpectedSurfaceParameters {
   template <typename P, typename F>
   static void fields(P& p, F&& f) {
     f("max_incidence", p.max_incidence);
+    f("samples", p.samples);
+    f("cover_radius", p.cover_radius);
     f("voxel", p.voxel);
     f("neighborhood", p.neighborhood);
     f("unknown_weight", p.unknown_weight);
@@ -62,7 +68,7 @@ class ExpectedSurface {
       return seen_through(progress.images, body, free_space);
     });
     bodies_ = found.found;
-    collect_samples(progress, found);
+    collect_samples(progress);
     PointCloud<float> rest;
     for (std::size_t i = 0; i < progress.cloud.size(); ++i)
       if (found.labels[i] == 0) rest.points.push_back(progress.cloud.points[i]);
@@ -108,37 +114,27 @@ class ExpectedSurface {
     return volume_.min + edge_ * Eigen::Vector3d(x + 0.5, y + 0.5, z + 0.5);
   }
 
-  void collect_samples(const Progress& progress, const Split& found) {
+  void collect_samples(const Progress& progress) {
     samples_.clear();
     area_ = covered_ = 0.0;
     Aabb extent;
-    std::vector<std::bitset<DirectionBins::kCount>> covered(bodies_.size());
-    for (std::size_t i = 0; i < progress.cloud.size(); ++i) {
-      const Eigen::Vector3d p = progress.cloud.points[i].cast<double>();
-      extent.extend(p);
-      // Anything on a body's surface covers it, calyx and stem included: behind them nothing more will show.
-      const int label = found.labels[i];
-      if (label > 0) {
-        const Ellipsoid& body = bodies_[static_cast<std::size_t>(label - 1)].fit.body;
-        covered[static_cast<std::size_t>(label - 1)].set(static_cast<std::size_t>(DirectionBins::bin(p - body.center)));
-      }
-    }
+    for (const auto& p : progress.cloud.points) extent.extend(p.cast<double>());
     center_ = extent.empty() ? volume_.center() : extent.center();
     if (!bodies_.empty()) center_.setZero();
+    // Anything near a body's surface covers it, calyx and stem included: behind them nothing more will show.
+    const Grid<float> grid(progress.cloud, static_cast<float>(parameters_.cover_radius));
+    const std::vector<Eigen::Vector3d> directions = spread_directions(parameters_.samples);
     for (std::size_t b = 0; b < bodies_.size(); ++b) {
       const Ellipsoid& body = bodies_[b].fit.body;
       center_ += body.center / static_cast<double>(bodies_.size());
-      const double r = body.mean_radius(), area = 4.0 * kPi * r * r;
-      for (std::size_t k = 0; k < DirectionBins::kCount; ++k) {
-        const double share = area * DirectionBins::shares()[k];
+      const double r = body.mean_radius(), share = 4.0 * kPi * r * r / parameters_.samples;
+      for (const Eigen::Vector3d& d : directions) {
         area_ += share;
-        if (covered[b][k]) {
+        const Eigen::Vector3d p = body.surface(d);
+        if (grid.count(p.cast<float>(), static_cast<float>(parameters_.cover_radius), 1) > 0)
           covered_ += share;
-          continue;
-        }
-        const Eigen::Vector3d p = body.surface(DirectionBins::directions()[k]);
-        if (inside_other(p, static_cast<int>(b))) continue;
-        samples_.push_back({p, body.normal(p), share, static_cast<int>(b)});
+        else if (!inside_other(p, static_cast<int>(b)))
+          samples_.push_back({p, body.normal(p), share, static_cast<int>(b)});
       }
     }
     std::size_t i = 0;

@@ -54,6 +54,24 @@ inline Sight sight(const sensor::SurfaceImage& view, const Eigen::Vector3d& p, c
   return measured > z - margin ? Sight::surface : Sight::unknown;
 }
 
+/// True when all sight lines of `view` around the point p (m, world; the 3 x 3 cells about it) went through: the surfaces'
+/// borders, where a cell sees both sides, refute nothing.
+inline bool refutes(const sensor::SurfaceImage& view, const Eigen::Vector3d& p, const FreeSpaceParameters& parameters) {
+  double z = 0.0;
+  const std::ptrdiff_t c = view.cell(p, &z);
+  if (c < 0) return false;
+  const auto width = static_cast<std::ptrdiff_t>(view.intrinsics.width);
+  const std::ptrdiff_t u = c % width, v = c / width;
+  if (u < 1 || v < 1 || u + 1 >= width || v + 1 >= view.intrinsics.height) return false;
+  const double margin = std::max(parameters.margin, 3.0 * view.noise);
+  for (std::ptrdiff_t dv = -1; dv <= 1; ++dv)
+    for (std::ptrdiff_t du = -1; du <= 1; ++du) {
+      const double measured = double(view.depth[static_cast<std::size_t>((v + dv) * width + u + du)]);
+      if (measured > 0.0 ? measured <= z + margin : view.fill < parameters.min_fill) return false;
+    }
+  return true;
+}
+
 /// Share (0..1) of a body's surface through which some view looked, where no view saw it.
 inline double seen_through(const std::vector<sensor::SurfaceImage>& views, const Ellipsoid& body,
                            const FreeSpaceParameters& parameters = {}) {

@@ -28,7 +28,7 @@ struct SurfaceParameters {
   double target_sigma = 0.0004;     ///< windows grow until a cell's standard deviation should reach this (m)
   int max_window = 6;               ///< largest half width of a window (cells)
   double smallest_radius = 0.012;   ///< smallest radius of curvature to be kept (m)
-  double max_incidence = deg(76);   ///< cells seen at more than this angle are dropped (rad)
+  double max_incidence = deg(81);   ///< cells seen at more than this angle are dropped (rad)
 
   /// @throws ParameterError
   void check() const {
@@ -50,14 +50,14 @@ struct SurfaceParameters {
   }
 };
 
-/// The surface seen in one frame, as an image of cells; vectors have `intrinsics.size()` entries, row by row.
+/// The surface seen in one frame: samples of it, and an image of cells with their raw depths.
 struct SurfaceImage {
   Intrinsics intrinsics;                   ///< of the cells: pixel (u, v) is cell (u, v)
   Pose world_T_optical = Pose::Identity();
   std::vector<float> depth;                ///< raw depth z of each cell (m), 0 = no return; inside the volume and out
-  std::vector<Eigen::Vector3f> points;     ///< surface point of each kept cell (m, world)
-  std::vector<Eigen::Vector3f> normals;    ///< its unit normal, towards the sensor (world)
-  std::vector<float> sigma;                ///< standard deviation of the point along the ray (m); 0 = cell not kept
+  std::vector<Eigen::Vector3f> points;     ///< surface points (m, world), in the order of the cells
+  std::vector<Eigen::Vector3f> normals;    ///< their unit normals, towards the sensor (world)
+  std::vector<float> sigma;                ///< their standard deviations along the ray (m), positive
   std::size_t points_in = 0;               ///< pixels that returned a point inside the volume
   double noise = 0.0;                      ///< standard deviation of the pixels about their blocks (m)
   double fill = 0.0;                       ///< median share of valid pixels in cells with any
@@ -98,6 +98,12 @@ inline double image_noise(const std::vector<float>& z, int width, int height, in
 
 struct Block {
   float u = 0.0f, v = 0.0f, z = 0.0f;  // mean pixel (in cell units) and depth of its agreeing pixels; z = 0: none
+};
+
+/// The paraboloid fitted around a cell: depth over the offset (du, dv) from the block's mean pixel, in cells.
+struct Patch {
+  Eigen::Matrix<double, 6, 1> x;  // 1, du, dv, du du, du dv, dv dv
+  double sigma = 0.0;             // of the depth (m); 0: the cell is not kept
 };
 
 }  // namespace detail
@@ -145,9 +151,6 @@ inline SurfaceImage reconstruct_surface(const DepthFrame& frame, const Pose& wor
   out.intrinsics = cells;
   const std::size_t n = cells.size();
   out.depth.assign(n, 0.0f);
-  out.points.assign(n, Eigen::Vector3f::Zero());
-  out.normals.assign(n, Eigen::Vector3f::Zero());
-  out.sigma.assign(n, 0.0f);
 
   // Blocks: the mean of the pixels that agree with the block's median.
   out.noise = detail::image_noise(inside, k.width, k.height, std::max(1, b), 1);
@@ -201,6 +204,7 @@ inline SurfaceImage reconstruct_surface(const DepthFrame& frame, const Pose& wor
   const double steepest = std::tan(parameters.max_incidence);
   const double bend = pitch * pitch / (2.0 * parameters.smallest_radius);
 
+  std::vector<detail::Patch> patches(n);
   const auto fit_cell = [&](std::size_t c) {
     const detail::Block& center = blocks[c];
     if (!(center.z > 0.0f)) return;
@@ -277,22 +281,42 @@ inline SurfaceImage reconstruct_surface(const DepthFrame& frame, const Pose& wor
     }
     // Cells without neighbours on their own surface are flying pixels.
     if (support < 0.2 * 0.63 * double(window_cells)) return;
-    const Eigen::Vector3d ray = cells.ray(double(center.u), double(center.v));
-    const double z = x[0];
-    if (std::abs(z - double(center.z)) > 4.0 * block_noise + 0.5 * pitch) return;
-    const Eigen::Vector3d along_u = Eigen::Vector3d(z / cells.fx, 0.0, 0.0) + ray * x[1];
-    const Eigen::Vector3d along_v = Eigen::Vector3d(0.0, z / cells.fy, 0.0) + ray * x[2];
-    Eigen::Vector3d normal = along_v.cross(along_u);
-    if (!(normal.norm() > 0.0)) return;
-    normal.normalize();
-    const double cosine = -normal.dot(ray.normalized());
-    if (!(cosine > std::cos(parameters.max_incidence))) return;
-    const double spread = std::max(scale, block_noise);
-    out.points[c] = (world_T_optical * Eigen::Vector3d(ray * z)).cast<float>();
-    out.normals[c] = (rotation * normal).cast<float>();
-    out.sigma[c] = static_cast<float>(std::max(spread * std::sqrt(std::max(variance, 0.0)) * ray.norm(), 1e-5));
+    if (std::abs(x[0] - double(center.z)) > 4.0 * block_noise + 0.5 * pitch) return;
+    patches[c].x = x;
+    patches[c].sigma = std::max(std::max(scale, block_noise) * std::sqrt(std::max(variance, 0.0)), 1e-5);
   };
   parallel_for(n, threads, fit_cell, 256);
+
+  // One sample a cell; where the surface is steep several along the slope, so that they stay evenly apart on it.
+  const double cos_max = std::cos(parameters.max_incidence);
+  for (std::size_t c = 0; c < n; ++c) {
+    const detail::Patch& patch = patches[c];
+    if (!(patch.sigma > 0.0)) continue;
+    const auto sample = [&](double du, double dv, Eigen::Vector3d& point, Eigen::Vector3d& normal) {
+      const Eigen::Vector3d ray = cells.ray(double(blocks[c].u) + du, double(blocks[c].v) + dv);
+      const auto& x = patch.x;
+      const double z = x[0] + x[1] * du + x[2] * dv + x[3] * du * du + x[4] * du * dv + x[5] * dv * dv;
+      const Eigen::Vector3d along_u = Eigen::Vector3d(z / cells.fx, 0, 0) + ray * (x[1] + 2.0 * x[3] * du + x[4] * dv);
+      const Eigen::Vector3d along_v = Eigen::Vector3d(0, z / cells.fy, 0) + ray * (x[2] + x[4] * du + 2.0 * x[5] * dv);
+      point = ray * z;
+      normal = along_v.cross(along_u).normalized();
+      return -normal.dot(ray.normalized());  // cosine of the incidence
+    };
+    Eigen::Vector3d point, normal;
+    const double cosine = sample(0.0, 0.0, point, normal);
+    if (!(cosine > cos_max)) continue;
+    const Eigen::Vector2d slope = Eigen::Vector2d(patch.x[1], patch.x[2]).normalized();
+    const int m = std::clamp(static_cast<int>(std::lround(point.z() / cells.fx / (cosine * parameters.spacing))), 1, 5);
+    for (int i = 0; i < m; ++i) {
+      if (m > 1) {
+        const double t = (i + 0.5) / m - 0.5;
+        if (!(sample(t * slope.x(), t * slope.y(), point, normal) > cos_max)) continue;
+      }
+      out.points.push_back((world_T_optical * point).cast<float>());
+      out.normals.push_back((rotation * normal).cast<float>());
+      out.sigma.push_back(static_cast<float>(patch.sigma * point.norm() / point.z()));
+    }
+  }
   return out;
 }
 
