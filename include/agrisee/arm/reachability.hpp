@@ -5,7 +5,7 @@
 ///
 /// Either a full sensor pose is asked for, or a point to look at and a direction to look along, roll and distance free
 /// (paper, controller; a fixed distance and roll put most views of a UR3 out of reach). The posture alone is judged,
-/// not the path to it. World, metres, seconds. Cost: some 20 us for a view whose first distance serves.
+/// not the path to it. World, metres, seconds. Cost: about 60 us for a view with 24 rolls.
 #pragma once
 
 #include <agrisee/arm/collision.hpp>

@@ -9,7 +9,7 @@
 /// The inverse follows from three parallel axes (shoulder lift, elbow, wrist 1; Hawkins, "Analytic Inverse Kinematics
 /// for the Universal Robots UR-5/UR-10 Arms", 2013), written with vectors: with n the direction of those axes, the
 /// wrist's centre lies at d4 along n, which gives joint 1; the angle between n and the tool's axis is joint 5; n as
-/// seen in the tool is joint 6; what is left is a planar arm of two links. 1 to 2 us for all solutions.
+/// seen in the tool is joint 6; what is left is a planar arm of two links. About 2 us for all solutions.
 #pragma once
 
 #include <agrisee/arm/limits.hpp>
@@ -104,6 +104,25 @@ inline bool same_solution(const Joints& a, const Joints& b) {
   return true;
 }
 
+/// Joint 6 at a wrist singularity, where z5 may point anywhere in the arm's plane: `desired`, or the angle nearest to
+/// it for which the links reach the wrist. (u, v) is the wrist's centre along `out` and up from the shoulder.
+inline double singular_q6(double desired, const Eigen::Vector3d& x6, const Eigen::Vector3d& y6,
+                          const Eigen::Vector3d& out, double u, double v) {
+  const Eigen::Vector3d z5 = -std::sin(desired) * x6 - std::cos(desired) * y6;
+  const double w = std::hypot(u, v), bearing = std::atan2(v, u);
+  if (w < 1e-12) return desired;
+  // The links span |w - d5 z5|, which grows with the angle between the wrist's bearing and z5.
+  const auto angle_at = [&](double span) {
+    return std::acos(std::clamp((w * w + ur3::d5 * ur3::d5 - span * span) / (2.0 * ur3::d5 * w), -1.0, 1.0));
+  };
+  const double angle = wrap(std::atan2(z5.z(), z5.dot(out)) - bearing);
+  const double allowed = std::clamp(std::abs(angle), angle_at(ur3::a3 - ur3::a2), angle_at(-ur3::a2 - ur3::a3));
+  if (allowed == std::abs(angle)) return desired;
+  const double turned = bearing + std::copysign(allowed, angle);
+  const Eigen::Vector3d z5_allowed = std::cos(turned) * out + std::sin(turned) * Eigen::Vector3d::UnitZ();
+  return std::atan2(-z5_allowed.dot(x6), -z5_allowed.dot(y6));
+}
+
 /// body(q) for every solution, joints in (-pi, pi], without regard to limits; see inverse, which also documents the
 /// order. The pose is not checked.
 template <typename Body>
@@ -126,7 +145,8 @@ void for_each_solution(const Pose& base_link_T_tool0, double q6_desired, Body&& 
     const bool singular = s5 < kWristSingularity;
     for (const double sign5 : {1.0, -1.0}) {
       const double q5 = wrap(std::atan2(sign5 * s5, c5));
-      const double q6 = wrap(singular ? q6_desired : std::atan2(-sign5 * y6.dot(n), sign5 * x6.dot(n)));
+      const double q6 = wrap(singular ? singular_q6(q6_desired, x6, y6, out, wrist.dot(out), wrist.z() - ur3::d1)
+                                      : std::atan2(-sign5 * y6.dot(n), sign5 * x6.dot(n)));
       const Eigen::Vector3d z5 = -std::sin(q6) * x6 - std::cos(q6) * y6;
       const double q234 = std::atan2(z5.dot(out), -z5.z());
       // The planar arm: a2 at angle q2 and a3 at angle q2 + q3 reach (u, v), along `out` and up from the shoulder.
@@ -157,8 +177,8 @@ void for_each_solution(const Pose& base_link_T_tool0, double q6_desired, Body&& 
 /// The order is fixed: by joint 1 (the two differ by the side of the base on which the shoulder stands; the one
 /// counter-clockwise of the wrist's bearing first), then joint 5 (positive first), then the elbow (positive first).
 /// Solutions that coincide (at the singularities of shoulder, elbow and wrist) are listed once. At a wrist singularity
-/// (|sin q5| < kWristSingularity) only the sum or difference of joints 4 and 6 is determined; joint 6 is then
-/// `q6_desired`.
+/// (|sin q5| < kWristSingularity) joints 2, 3, 4 and 6 move together without moving the tool; joint 6 is then
+/// `q6_desired`, or the angle nearest to it that the links can reach.
 /// @param q6_desired joint 6 at wrist singularities (rad); usually its present angle
 /// @throws InputError when the pose is not finite or its rotation is no rotation (to 1e-6)
 inline std::vector<Joints> inverse(const Pose& base_link_T_tool0, const JointLimits& limits = {},
