@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <agrisee/io/parameters.hpp>
+
+#include <nlohmann/json.hpp>
+
+#include <fstream>
+
+#include "catch.hpp"
+
+using namespace agrisee;
+
+namespace {
+
+std::string write(const std::string& text) {
+  const std::string path = "parameters_test.yaml";
+  std::ofstream(path) << text;
+  return path;
+}
+
+std::string error_of(const std::string& text) {
+  try {
+    io::read_parameters(write(text));
+  } catch (const FileError& e) {
+    return e.what();
+  }
+  return "";
+}
+
+}  // namespace
+
+TEST_CASE("parameters read back as they were written") {
+  for (Parameters p : {Parameters{}, Parameters::paper()}) {
+    p.sor.mean_k = 33;
+    p.surface.spacing = 0.1 + 0.2;
+    p.icp.kernel = RobustKernel::huber;
+    p.split.bodies.fit.noise = 1e-4;
+    const std::string yaml = io::parameters_to_yaml(p);
+    const Parameters q = io::read_parameters(write(yaml));
+    CHECK(io::parameters_to_yaml(q) == yaml);
+    CHECK(q.surface.spacing == p.surface.spacing);
+    CHECK(nlohmann::json::parse(io::parameters_to_json(q))["sor"]["mean_k"] == 33);
+  }
+}
+
+TEST_CASE("absent keys keep their values; a preset sets them") {
+  CHECK(io::read_parameters(write("")).sor.mean_k == 20);
+  const Parameters p = io::read_parameters(write("preset: paper\nsor: {mean_k: 5}\n"));
+  CHECK(p.sor.mean_k == 5);
+  CHECK(p.planner == "see");
+  CHECK(p.see.k() == 537);
+}
+
+TEST_CASE("mistakes are named with file, line and key") {
+  CHECK(error_of("sor:\n  mean_q: 3\n").find("parameters_test.yaml:2: unknown key 'sor.mean_q'") == 0);
+  CHECK(error_of("max_views: lots\n").find("parameters_test.yaml:1: 'max_views'") == 0);
+  CHECK(error_of("sor: 3\n").find("'sor' must be a map") != std::string::npos);
+  CHECK(error_of("normals: {radius: -1}\n").find("radius must be positive") != std::string::npos);
+  CHECK(error_of("icp: {kernel: soft}\n").find("kernel") != std::string::npos);
+  CHECK(error_of("preset: other\n").find("preset") != std::string::npos);
+  CHECK(error_of("a: [1, 2\n").find("not valid YAML") != std::string::npos);
+  CHECK_THROWS_AS(io::read_parameters("no_such_file.yaml"), FileError);
+}

@@ -1,0 +1,188 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <agrisee/pipeline.hpp>
+
+#include "catch.hpp"
+#include "spheres.hpp"
+
+using namespace agrisee;
+
+namespace {
+
+const std::vector<Sphere> kFruit = {{{-0.03, 0.53, 0.2}, 0.035}, {{0.045, 0.54, 0.21}, 0.033}, {{0.01, 0.60, 0.20}, 0.034}};
+
+Workcell cell() {
+  Workcell w;
+  w.scan_volume.extend({-0.17, 0.40, -0.02});
+  w.scan_volume.extend({0.17, 0.72, 0.42});
+  w.keep_out.push_back({"platform", Box{{0, -0.1, -0.06}, {0.7, 0.7, 0.1}}});
+  w.keep_out.push_back({"plant", Box{{0, 0.85, 0.3}, {1.2, 0.5, 1.6}}});
+  w.keep_out.push_back({"cluster", Cylinder{{0.015, 0.545, 0.21}, 0.30, 0.9}});
+  w.sensor.intrinsics = sensor::intrinsics_from_fov(400, 300, deg(70), deg(55));
+  return w;
+}
+
+/// Runs a scan; `fault(view number, frame)` may spoil a frame, `refuse(number)` a motion.
+template <typename Fault, typename Refuse>
+ScanResult run(const Parameters& parameters, Fault&& fault, Refuse&& refuse, int* refusals = nullptr) {
+  const Workcell w = cell();
+  Pipeline pipeline(w, parameters);
+  Joints joints = w.start;
+  int asked = 0;
+  while (const auto next = pipeline.next_view(joints)) {
+    if (refuse(asked++)) {
+      pipeline.refused();
+      if (refusals) ++*refusals;
+      continue;
+    }
+    joints = *next->joints;
+    auto frame = test::render(kFruit, w.sensor.intrinsics, next->world_T_optical, 0.001, static_cast<std::uint64_t>(asked));
+    fault(static_cast<int>(pipeline.views().size()), frame);
+    pipeline.observe(frame, next->world_T_optical, joints);
+  }
+  return pipeline.result();
+}
+
+void no_fault(int, sensor::DepthFrame&) {}
+bool never(int) { return false; }
+
+void check_found(const ScanResult& result) {
+  CHECK(result.fruits.size() == kFruit.size());
+  for (const Sphere& s : kFruit) {
+    double best = 1.0;
+    for (const Fruit& f : result.fruits)
+      if (f.body) best = std::min(best, (f.body->center - s.center).norm());
+    CHECK(best < 0.002);
+  }
+}
+
+}  // namespace
+
+TEST_CASE("a scan finds every fruit, the hidden one too, and stops by itself") {
+  const ScanResult result = run({}, no_fault, never);
+  check_found(result);
+  CHECK(result.views.size() < 15);
+  CHECK(result.stop_reason != StopReason::not_stopped);
+  CHECK(result.labels.size() == result.cloud.size());
+  CHECK(result.raw.views.size() == result.raw.size());
+  for (const Fruit& f : result.fruits) {
+    CHECK((f.orientation * f.orientation.transpose() - Eigen::Matrix3d::Identity()).norm() < 1e-9);
+    CHECK(f.orientation.determinant() == Approx(1.0));
+    // The cluster frame: lower, left, far corner as seen from the base; axes parallel to world.
+    CHECK((f.centroid_cluster - (f.centroid - Eigen::Vector3d(-0.17, 0.72, -0.02))).norm() < 1e-9);
+    CHECK(f.body->completeness > 0.2);
+    CHECK(f.body->confidence > 0.3);
+  }
+}
+
+TEST_CASE("faults of a robot do not end a scan") {
+  check_found(run({}, [](int v, sensor::DepthFrame& f) { if (v == 1) std::fill(f.depth.begin(), f.depth.end(), 0.0f); }, never));
+  check_found(run({}, [](int v, sensor::DepthFrame& f) { if (v == 0) std::fill(f.depth.begin(), f.depth.end(), std::nanf("")); }, never));
+  int refusals = 0;
+  check_found(run({}, no_fault, [](int asked) { return asked % 3 == 1; }, &refusals));
+  CHECK(refusals > 0);
+}
+
+TEST_CASE("every planner terminates within its budget") {
+  for (const char* name : {"gain", "see", "fixed", "random"}) {
+    INFO(name);
+    Parameters p;
+    p.planner = name;
+    p.max_views = 5;
+    const ScanResult result = run(p, no_fault, never);
+    CHECK(result.views.size() <= 5);
+    CHECK(result.views.size() >= 2);
+    CHECK(result.stop_reason != StopReason::not_stopped);
+  }
+}
+
+TEST_CASE("the paper's stages on the paper's values") {
+  Parameters p = Parameters::paper();
+  p.max_views = 4;
+  const ScanResult result = run(p, no_fault, never);
+  CHECK(result.views.size() == 4);
+  CHECK(result.cloud.size() > 500);
+  CHECK(result.cloud.size() < result.raw.size());
+  for (const Fruit& f : result.fruits) CHECK_FALSE(f.body);
+}
+
+TEST_CASE("a truss out of reach and one that is not there are said to be so") {
+  Workcell far = cell();
+  far.world_T_base.translation() = Eigen::Vector3d(3.0, 3.0, 0.0);
+  far.keep_out.clear();
+  Pipeline pipeline(far);
+  CHECK_FALSE(pipeline.next_view(far.start));
+  CHECK(pipeline.stop_reason() == StopReason::no_reachable_view);
+  CHECK(pipeline.result().fruits.empty());
+
+  const ScanResult nothing =
+      run({}, [](int, sensor::DepthFrame& f) { std::fill(f.depth.begin(), f.depth.end(), 0.0f); }, never);
+  CHECK(nothing.stop_reason == StopReason::nothing_seen);
+  CHECK(nothing.fruits.empty());
+}
+
+TEST_CASE("what cannot be observed is refused and what was seen is kept") {
+  const Workcell w = cell();
+  Pipeline pipeline(w);
+  const auto next = pipeline.next_view(w.start);
+  REQUIRE(next);
+  pipeline.observe(test::render(kFruit, w.sensor.intrinsics, next->world_T_optical), next->world_T_optical, next->joints);
+  const std::size_t merged = pipeline.merged().size();
+  CHECK(merged > 100);
+  sensor::DepthFrame broken;
+  CHECK_THROWS_AS(pipeline.observe(broken, next->world_T_optical), InputError);
+  Pose skewed = next->world_T_optical;
+  skewed.translation().x() = std::nan("");
+  CHECK_THROWS_AS(pipeline.observe(test::render(kFruit, w.sensor.intrinsics, next->world_T_optical), skewed), InputError);
+  CHECK_THROWS_AS(pipeline.next_view(Joints::Constant(std::nan(""))), InputError);
+  CHECK(pipeline.merged().size() == merged);
+  CHECK(pipeline.views().size() == 1);
+  Workcell empty = w;
+  empty.scan_volume = Aabb();
+  CHECK_THROWS_AS(Pipeline(empty), InputError);
+  Parameters bad;
+  bad.planner = "oracle";
+  CHECK_THROWS_AS(Pipeline(w, bad), ParameterError);
+}
+
+TEST_CASE("an external robot's own reach replaces ours") {
+  const Workcell w = cell();
+  int asked = 0;
+  Pipeline pipeline(w, {}, [&](const plan::ViewRequest& request, const Joints&) -> std::optional<plan::ReachableView> {
+    ++asked;
+    if (request.direction.y() < 0.5) return std::nullopt;
+    plan::ReachableView view;
+    view.target = request.target;
+    view.world_T_optical = look_along(request.target - request.distance * request.direction, request.direction);
+    return view;
+  });
+  std::size_t taken = 0;
+  while (const auto next = pipeline.next_view(Joints::Zero())) {
+    CHECK(next->world_T_optical.linear().col(2).y() >= 0.5 - 1e-9);
+    std::vector<Eigen::Vector3f> points;  // this robot's sensor gives plain points
+    const auto frame = test::render(kFruit, w.sensor.intrinsics, next->world_T_optical);
+    for (int v = 0; v < frame.intrinsics.height; ++v)
+      for (int u = 0; u < frame.intrinsics.width; ++u)
+        if (frame.at(u, v) > 0) points.push_back(frame.point(u, v));
+    pipeline.observe_points(points, next->world_T_optical);
+    REQUIRE(++taken <= 15);
+  }
+  CHECK(asked > 0);
+  check_found(pipeline.result());
+  CHECK_FALSE(pipeline.views()[0].joints);
+}
+
+TEST_CASE("ready clouds: nothing, little and degenerate clouds give no fruit") {
+  CHECK(process(Cloud{}).fruits.empty());
+  for (const int n : {1, 2, 3, 300}) {
+    Cloud same, line;
+    for (int i = 0; i < n; ++i) {
+      same.points.emplace_back(0.1f, 0.2f, 0.3f);
+      line.points.emplace_back(0.001f * static_cast<float>(i), 0.0f, 0.0f);
+    }
+    CHECK(process(same).fruits.empty());
+    CHECK(process(line).fruits.empty());
+    same.points.emplace_back(std::nanf(""), 0.0f, 0.0f);
+    CHECK(process(same).fruits.empty());
+    CHECK(process(line, Parameters::paper()).fruits.empty());
+  }
+}
