@@ -13,11 +13,11 @@ namespace agrisee::study {
 
 /// How to simulate.
 struct SimulationOptions {
-  sensor::NoiseModel noise;                          ///< of the simulated sensor
-  std::uint64_t seed = 0;                            ///< of noise and planner
-  int threads = 1;                                   ///< results do not depend on it
-  std::unique_ptr<plan::Planner> planner = nullptr;  ///< another planner than the one the parameters name
-  std::function<void(const Pipeline&)> on_view = {}; ///< called after every view that was taken
+  sensor::NoiseModel noise;                           ///< of the simulated sensor
+  std::uint64_t seed = 0;                             ///< of noise and planner
+  int threads = 1;                                    ///< results do not depend on it
+  std::unique_ptr<plan::Planner> planner = nullptr;   ///< another planner than the one the parameters name
+  std::function<void(const Pipeline&)> on_view = {};  ///< called after every view that was taken
 };
 
 /// Scan a scene until the planner has enough: look, move, capture, observe, and at the end clean, split and locate.

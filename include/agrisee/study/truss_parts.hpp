@@ -82,8 +82,8 @@ inline Mesh stem_mesh(const TrussLayout& layout, Rng& rng) {
   return stem;
 }
 
-/// The vertices of an indexed mesh without those that no triangle uses being of matter to anyone: a leaflet on its
-/// stalk.
+/// A leaflet on its stalk, from anywhere along the upper part of the rachis, in any direction that is free.
+/// @param size a fruit's radius, which the leaflet is scaled by (m)
 inline Mesh leaflet_mesh(const TrussLayout& layout, double size, Rng& rng) {
   Mesh best;
   double least = std::numeric_limits<double>::infinity();
