@@ -114,7 +114,7 @@ TEST_CASE("a scan ends and says why", "[see]") {
     REQUIRE(planner.stop_reason() == StopReason::nothing_seen);
   }
   SECTION("too little was seen to have a frontier") {
-    for (std::size_t n : {1, 2, 5}) {
+    for (const std::size_t n : {std::size_t{1}, std::size_t{2}, std::size_t{5}}) {
       Planner planner((Parameters()));
       planner.observe(Points(n, Eigen::Vector3f::UnitX()), Eigen::Vector3d::Zero());
       REQUIRE_FALSE(planner.next_view(Eigen::Vector3d::Zero(), anywhere));

@@ -179,9 +179,8 @@ class Planner {
     search_.reset();
   }
 
-  const Grid<float>& search() {
+  void build_search() {
     if (!search_) search_.emplace(cloud(), static_cast<float>(0.5 * params_.radius));
-    return *search_;
   }
 
   const Eigen::Vector3d& first_sensor(Index i) const {
@@ -201,7 +200,7 @@ class Planner {
     for (Index i : map_.of_class(PointClass::frontier))
       if (!given_up_[static_cast<std::size_t>(i)] && candidates_.find(i) == candidates_.end()) added.push_back(i);
     if (added.empty()) return;
-    search();
+    build_search();
     std::vector<std::optional<Frontier>> frames(added.size());
     parallel_for(
         added.size(), threads_, [&](std::size_t j) { frames[j] = frame(added[j]); }, 16);
@@ -236,7 +235,7 @@ class Planner {
 
   /// Update the views of the frontiers `open` and return those worth taking, best first.
   std::vector<ViewProposal> ranked(const std::vector<Index>& open, const Eigen::Vector3d& sensor) {
-    search();
+    build_search();
     std::vector<Candidate*> candidates;
     for (Index i : open) candidates.push_back(&candidates_.at(i));
     parallel_for(
@@ -277,10 +276,9 @@ class Planner {
     Candidate& c = found->second;
     Eigen::Vector3d added = Eigen::Vector3d::Zero();
     double n = 0.0;
-    const double r_sq = params_.radius * params_.radius;
     for (std::size_t i = first_new; i < map_.size(); ++i) {
       const Eigen::Vector3d p = cloud().points[i].cast<double>();
-      if ((p - c.frame.point).squaredNorm() > r_sq) continue;
+      if ((p - c.frame.point).norm() > params_.radius) continue;
       added += p;
       n += 1.0;
     }
@@ -329,10 +327,8 @@ class Planner {
       refused = refused || c.state == State::refused;
       low = low || c.state == State::low_gain;
     }
-    return any       ? StopReason::max_views
-           : refused ? StopReason::no_reachable_view
-           : low     ? StopReason::low_gain
-                     : StopReason::no_frontier;
+    if (any) return StopReason::max_views;
+    return refused ? StopReason::no_reachable_view : low ? StopReason::low_gain : StopReason::no_frontier;
   }
 
   Parameters params_;
