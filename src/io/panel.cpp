@@ -47,7 +47,7 @@ Panel::Panel(Canvas& canvas, const Viewport& viewport, const Eigen::Vector3d& di
     place[axis] = 0.5 * (above + below);
     place.z() = std::min(place.z(), (below - above) / (2.0 * tangent));
   }
-  place.z() = std::min(place.z(), nearest - 0.1);
+  place.z() = std::min(place.z(), nearest - 2.0 * double(kNear));
   eye_ = rotation_.transpose() * place;
 }
 
@@ -105,10 +105,10 @@ void Panel::rasterise(const Splats& splats, Visit&& visit) const {
   }
 }
 
-/// 1 in the open, less beside what stands in front: shades gaps and contacts (eye-dome lighting; Boucheny, 2009).
-float Panel::openness(int x, int y) const {
+/// 1 in the open, less beside what stands in front, by `deep` (m) or more the least: shades gaps and contacts (eye-dome
+/// lighting; Boucheny, 2009).
+float Panel::openness(int x, int y, float deep) const {
   constexpr int kReach[] = {4, 10, 22};
-  constexpr float kDeep = 0.02f;  // m
   const float z = depth(x, y);
   float sum = 0.0f;
   for (const int r : kReach)
@@ -117,7 +117,7 @@ float Panel::openness(int x, int y) const {
       constexpr float kY[] = {0.0f, 0.7f, 1.0f, 0.7f, 0.0f, -0.7f, -1.0f, -0.7f};
       const int px = x + static_cast<int>(kX[k] * static_cast<float>(r)),
                 py = y + static_cast<int>(kY[k] * static_cast<float>(r));
-      if (inside(px, py)) sum += std::clamp((z - depth(px, py)) / kDeep, 0.0f, 1.0f);
+      if (inside(px, py)) sum += std::clamp((z - depth(px, py)) / deep, 0.0f, 1.0f);
     }
   return std::exp(-1.6f * sum / 24.0f);
 }
@@ -149,7 +149,7 @@ void Panel::draw(const Splats& splats) {
       const float diffuse = 0.42f + 0.62f * std::max(facing, 0.0f) + 0.08f * std::min(facing, 0.0f);
       const float shine = 0.16f * std::pow(std::max(n.dot(halfway), 0.0f), 30.0f);
       const Color c = pixel.color / pixel.weight * diffuse + Color::Constant(shine);
-      canvas_.at(x, y) = (c * openness(x, y)).cwiseMin(1.0f);
+      canvas_.at(x, y) = (c * openness(x, y, 8.0f * splats.radius)).cwiseMin(1.0f);
     }
 }
 

@@ -59,7 +59,7 @@ class Panel {
   };
   template <typename Visit>
   void rasterise(const Splats& splats, Visit&& visit) const;
-  float openness(int x, int y) const;
+  float openness(int x, int y, float deep) const;
   float& depth(int x, int y) { return depth_[offset(x, y)]; }
   float depth(int x, int y) const { return depth_[offset(x, y)]; }
   std::size_t offset(int x, int y) const {

@@ -100,7 +100,7 @@ float splat_radius(const Cloud& cloud) {
   if (distances.empty()) return 0.003f;
   const auto middle = distances.begin() + static_cast<std::ptrdiff_t>(distances.size() / 2);
   std::nth_element(distances.begin(), middle, distances.end());
-  return std::clamp(1.15f * *middle, 0.0004f, 0.006f);
+  return std::clamp(1.15f * *middle, 0.00005f, 0.006f);
 }
 
 /// The ellipse along which sight lines touch an ellipsoid: in coordinates where that is the unit sphere, the circle on

@@ -71,6 +71,8 @@ void write_run(const std::filesystem::path& path, const ScanResult& result, cons
 
 void write_result(const std::filesystem::path& folder, const ScanResult& result, const Workcell& workcell,
                   const RunInfo& info) {
+  check_input(result.raw.views.empty() || result.raw.views.size() == result.raw.size(),
+              "write_result: not one view per merged point");
   check_input(result.labels.empty() || result.labels.size() == result.cloud.size(),
               "write_result: not one label per point");
   check_input(result.cloud.normals.empty() || result.cloud.normals.size() == result.cloud.size(),

@@ -13,12 +13,18 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Roll, pitch, yaw (URDF) of a rotation; at the singularity the yaw is 0.
+/// Roll, pitch, yaw (URDF) of a rotation; at the singularity the yaw is 0. Rounded to 1e-14 rad, so that angles that
+/// came from a file go back as they were.
 Eigen::Vector3d rpy_of(const Eigen::Matrix3d& r) {
   const double cos_pitch = std::hypot(r(0, 0), r(1, 0));
-  const double pitch = std::atan2(-r(2, 0), cos_pitch);
-  if (cos_pitch < 1e-9) return {std::atan2(-r(1, 2), r(1, 1)), pitch, 0.0};
-  return {std::atan2(r(2, 1), r(2, 2)), pitch, std::atan2(r(1, 0), r(0, 0))};
+  Eigen::Vector3d rpy(0.0, std::atan2(-r(2, 0), cos_pitch), 0.0);
+  if (cos_pitch < 1e-9) {
+    rpy[0] = std::atan2(-r(1, 2), r(1, 1));
+  } else {
+    rpy[0] = std::atan2(r(2, 1), r(2, 2));
+    rpy[2] = std::atan2(r(1, 0), r(0, 0));
+  }
+  return (rpy * 1e14).array().round() / 1e14;
 }
 
 template <typename V>

@@ -1,0 +1,316 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <agrisee/io/ply.hpp>
+#include <agrisee/io/results.hpp>
+
+#include <limits>
+#include <nlohmann/json.hpp>
+
+#include "io/io_support.hpp"
+
+using namespace agrisee;
+using namespace agrisee::test;
+
+namespace {
+
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+
+Eigen::Matrix3d rotation(double a, double b) {
+  return (Eigen::AngleAxisd(a, Eigen::Vector3d::UnitZ()) * Eigen::AngleAxisd(b, Eigen::Vector3d::UnitX()))
+      .toRotationMatrix();
+}
+
+ScanResult some_result() {
+  ScanResult r;
+  for (int i = 0; i < 3; ++i) {
+    View v;
+    v.world_T_optical = look_along({0.1 * i, 0.1, 1.0 / 3.0}, {0.1 * i, 0.9, -0.2});
+    v.target = {0.015, 0.545, 0.21};
+    if (i != 1) v.joints = Joints::Constant(0.1 * i - 1.0 / 7.0);
+    v.points_in = static_cast<std::size_t>(1000 + i);
+    v.points_new = static_cast<std::size_t>(500 - i);
+    v.plan_seconds = 0.01 * i;
+    r.views.push_back(v);
+  }
+  r.stop_reason = StopReason::low_gain;
+  Rng rng(3);
+  for (int i = 0; i < 50; ++i) {
+    r.raw.points.push_back(rng.direction().cast<float>());
+    r.raw.views.push_back(i % 3);
+    if (i % 2) continue;
+    r.cloud.points.push_back(r.raw.points.back());
+    r.cloud.normals.push_back(rng.direction().cast<float>());
+    r.labels.push_back(i % 3);
+  }
+  for (int i = 0; i < 2; ++i) {
+    Fruit f;
+    f.id = i + 1;
+    f.points = static_cast<std::size_t>(100 + i);
+    f.found_by = i ? "dbscan" : "region_growing";
+    f.centroid = {0.1 / 3.0, -0.5, 0.2 + i};
+    f.centroid_cluster = {1e-9, 2.0, 3.0};
+    f.sigma = {0.01, 0.02, 1.0 / 70.0};
+    f.orientation = rotation(0.3 + i, 2.0);
+    if (i == 0) {
+      Body b;
+      b.center = {0.03, -0.49, 0.21};
+      b.radii = {0.041, 0.04, 0.035};
+      b.axes = rotation(1.0, -2.5);
+      b.center_covariance = Eigen::Vector3d(1e-6, 2e-6, 3e-6).asDiagonal();
+      b.rms = 0.0004;
+      b.completeness = 0.6;
+      b.confidence = 0.9;
+      f.body = b;
+    }
+    r.fruits.push_back(f);
+  }
+  r.seconds.capture = 1.5;
+  r.seconds.plan = 0.1;
+  r.seconds.total = 2.25;
+  return r;
+}
+
+Workcell some_cell() {
+  Workcell cell;
+  cell.name = "some";
+  cell.scan_volume.min = {-0.17, 0.40, -0.02};
+  cell.scan_volume.max = {0.17, 0.72, 0.42};
+  return cell;
+}
+
+io::RunInfo some_info() {
+  io::RunInfo info;
+  info.scene = "truss \"7\" \xC3\xA9";
+  info.version = "0.1.0";
+  info.seed = 18446744073709551615ull;
+  info.threads = 2;
+  info.noise = "gaussian:0.01";
+  info.planner = "gain";
+  info.parameters_json = R"({"sor": {"mean_k": 20}, "list": [1, 2]})";
+  return info;
+}
+
+}  // namespace
+
+TEST_CASE("a result folder holds every file of the contract and reads back") {
+  const TempFolder folder;
+  const ScanResult result = some_result();
+  io::write_result(folder / "new/result", result, some_cell(), some_info());
+  for (const char* name : {"cloud.ply", "cloud_raw.ply", "views.csv", "fruits.json", "fruits.csv", "run.json"})
+    CHECK(std::filesystem::exists(folder / "new/result" / name));
+  const auto dir = folder / "new/result";
+
+  const io::CloudFile cloud = io::read_cloud(dir / "cloud.ply");
+  CHECK(cloud.cloud.points == result.cloud.points);
+  CHECK(cloud.instance == result.labels);
+  CHECK(io::read_cloud(dir / "cloud_raw.ply").cloud.views == result.raw.views);
+
+  const std::vector<View> views = io::read_views(dir / "views.csv");
+  REQUIRE(views.size() == 3);
+  for (std::size_t i = 0; i < 3; ++i) {
+    CHECK(views[i].world_T_optical.isApprox(result.views[i].world_T_optical, 1e-14));
+    CHECK(views[i].world_T_optical.translation() == result.views[i].world_T_optical.translation());
+    CHECK(views[i].target == result.views[i].target);
+    CHECK(views[i].joints.has_value() == result.views[i].joints.has_value());
+    if (views[i].joints) CHECK(*views[i].joints == *result.views[i].joints);
+    CHECK(views[i].points_in == result.views[i].points_in);
+    CHECK(views[i].points_new == result.views[i].points_new);
+    CHECK(views[i].plan_seconds == result.views[i].plan_seconds);
+  }
+
+  const std::vector<Fruit> fruits = io::read_fruits(dir / "fruits.json");
+  REQUIRE(fruits.size() == 2);
+  for (std::size_t i = 0; i < 2; ++i) {
+    const Fruit &a = fruits[i], &b = result.fruits[i];
+    CHECK(a.id == b.id);
+    CHECK(a.points == b.points);
+    CHECK(a.found_by == b.found_by);
+    CHECK(a.centroid == b.centroid);
+    CHECK(a.centroid_cluster == b.centroid_cluster);
+    CHECK(a.sigma == b.sigma);
+    CHECK(a.orientation.isApprox(b.orientation, 1e-14));
+    CHECK(a.body.has_value() == b.body.has_value());
+  }
+  CHECK(fruits[0].body->center == result.fruits[0].body->center);
+  CHECK(fruits[0].body->radii == result.fruits[0].body->radii);
+  CHECK(fruits[0].body->axes.isApprox(result.fruits[0].body->axes, 1e-14));
+  CHECK(fruits[0].body->center_covariance == result.fruits[0].body->center_covariance);
+  CHECK(fruits[0].body->rms == 0.0004);
+  CHECK(fruits[0].body->completeness == 0.6);
+  CHECK(fruits[0].body->confidence == 0.9);
+
+  const io::RunFile run = io::read_run(dir / "run.json");
+  CHECK(run.info.scene == some_info().scene);
+  CHECK(run.info.seed == some_info().seed);
+  CHECK(run.info.threads == 2);
+  CHECK(run.info.noise == "gaussian:0.01");
+  CHECK(run.info.planner == "gain");
+  CHECK(nlohmann::json::parse(run.info.parameters_json) == nlohmann::json::parse(some_info().parameters_json));
+  CHECK(run.views == 3);
+  CHECK(run.stop_reason == "low_gain");
+  CHECK(run.merged == 50);
+  CHECK(run.filtered == 25);
+  CHECK(run.labelled == static_cast<std::size_t>(
+                            std::count_if(result.labels.begin(), result.labels.end(), [](int l) { return l > 0; })));
+  CHECK(run.seconds.capture == 1.5);
+  CHECK(run.seconds.total == 2.25);
+}
+
+TEST_CASE("the text files have the contract's keys and columns") {
+  const TempFolder folder;
+  io::write_result(folder.path(), some_result(), some_cell(), some_info());
+  const std::string views = slurp(folder / "views.csv");
+  CHECK(views.rfind("view,x,y,z,dx,dy,dz,ox,oy,oz,qx,qy,qz,qw,q1,q2,q3,q4,q5,q6,points_in,points_new,plan_s\n0,0,0.1,0."
+                    "3333333333333333,",
+                    0) == 0);
+  CHECK(views.find(",,,,,,,1001,499,0.01\n") != std::string::npos);  // a view without an arm
+  const auto fruits = nlohmann::json::parse(slurp(folder / "fruits.json"));
+  for (const char* key :
+       {"id", "points", "found_by", "centroid_cluster", "centroid_world", "sigma_world", "orientation_world"})
+    for (const auto& fruit : fruits) CHECK(fruit.contains(key));
+  for (const char* key : {"center_world", "radii", "body_orientation_world", "completeness", "confidence"}) {
+    CHECK(fruits[0].contains(key));
+    CHECK_FALSE(fruits[1].contains(key));
+  }
+  const Eigen::Quaterniond q = quaternion(some_result().fruits[0].orientation);
+  CHECK(fruits[0]["orientation_world"][0].get<double>() == Approx(q.x()));
+  CHECK(fruits[0]["orientation_world"][3].get<double>() == Approx(q.w()));
+  const auto run = nlohmann::json::parse(slurp(folder / "run.json"));
+  for (const char* key : {"format_version", "scene", "version", "seed", "threads", "noise", "preset", "planner",
+                          "parameters", "views", "stop_reason", "points", "seconds"})
+    CHECK(run.contains(key));
+  for (const char* key : {"merged", "filtered", "labelled"}) CHECK(run["points"].contains(key));
+  for (const char* key : {"capture", "plan", "fuse", "filter", "normals", "segment", "locate", "total"})
+    CHECK(run["seconds"].contains(key));
+  CHECK(run["parameters"]["sor"]["mean_k"] == 20);
+  CHECK(run["cluster_origin_world"] == nlohmann::json({-0.17, 0.72, -0.02}));
+  const std::string table = slurp(folder / "fruits.csv");
+  const std::string head = table.substr(0, table.find('\n'));
+  CHECK(head.rfind("id,points,found_by,centroid_cluster_x,", 0) == 0);
+  const auto commas = [](const std::string& s) { return std::count(s.begin(), s.end(), ','); };
+  std::size_t lines = 0;
+  for (std::size_t at = 0, end; (end = table.find('\n', at)) != std::string::npos; at = end + 1, ++lines)
+    CHECK(commas(table.substr(at, end - at)) == commas(head));
+  CHECK(lines == 3);
+}
+
+TEST_CASE("equal results leave equal bytes") {
+  const TempFolder a, b;
+  io::write_result(a.path(), some_result(), some_cell(), some_info());
+  io::write_result(b.path(), some_result(), some_cell(), some_info());
+  for (const char* name : {"cloud.ply", "cloud_raw.ply", "views.csv", "fruits.json", "fruits.csv", "run.json"})
+    CHECK(slurp(a / name) == slurp(b / name));
+  CHECK(a.files() == 6);
+}
+
+TEST_CASE("an empty result is a result") {
+  const TempFolder folder;
+  io::write_result(folder.path(), ScanResult{}, Workcell{}, io::RunInfo{});
+  CHECK(io::read_views(folder / "views.csv").empty());
+  CHECK(io::read_fruits(folder / "fruits.json").empty());
+  CHECK(io::read_cloud(folder / "cloud.ply").cloud.empty());
+  CHECK(io::read_run(folder / "run.json").stop_reason == "not_stopped");
+}
+
+TEST_CASE("a scan in progress leaves its views and points") {
+  const TempFolder folder;
+  const ScanResult result = some_result();
+  for (std::size_t n = 1; n <= 3; ++n) {
+    io::write_views(folder / "views.csv",
+                    {result.views.begin(), result.views.begin() + static_cast<std::ptrdiff_t>(n)});
+    io::write_raw_ply(folder / "cloud_raw.ply", result.raw);
+    CHECK(io::read_views(folder / "views.csv").size() == n);
+  }
+  CHECK(folder.files() == 2);
+}
+
+TEST_CASE("a result that is not finite or does not fit together is not written") {
+  const TempFolder folder;
+  const auto refuse = [&](const char* what, auto&& spoil) {
+    ScanResult bad = some_result();
+    spoil(bad);
+    INFO(what);
+    CHECK_THROWS_AS(io::write_result(folder.path(), bad, some_cell(), some_info()), InputError);
+    CHECK(folder.files() == 0);
+  };
+  refuse("centroid", [](ScanResult& r) { r.fruits[1].centroid.x() = kNan; });
+  refuse("orientation", [](ScanResult& r) { r.fruits[1].orientation(0, 0) = kNan; });
+  refuse("radii", [](ScanResult& r) { r.fruits[0].body->radii.y() = kNan; });
+  refuse("confidence", [](ScanResult& r) { r.fruits[0].body->confidence = 1.0 / 0.0; });
+  refuse("pose", [](ScanResult& r) { r.views[2].world_T_optical.translation().z() = kNan; });
+  refuse("joints", [](ScanResult& r) { (*r.views[2].joints)[0] = kNan; });
+  refuse("time", [](ScanResult& r) { r.seconds.plan = kNan; });
+  refuse("labels", [](ScanResult& r) { r.labels.pop_back(); });
+  refuse("normals", [](ScanResult& r) { r.cloud.normals.pop_back(); });
+  refuse("views of points", [](ScanResult& r) { r.raw.views.pop_back(); });
+  io::RunInfo info = some_info();
+  info.parameters_json = "{";
+  CHECK_THROWS_AS(io::write_result(folder.path(), some_result(), some_cell(), info), InputError);
+  CHECK(folder.files() == 0);
+  folder.file("plain", "a file");
+  CHECK_THROWS_AS(io::write_result(folder / "plain", some_result(), some_cell(), some_info()), FileError);
+}
+
+TEST_CASE("result files that are not right are refused by name") {
+  const TempFolder folder;
+  io::write_result(folder.path(), some_result(), some_cell(), some_info());
+  const auto views = [](const auto& p) { io::read_views(p); };
+  const auto fruits = [](const auto& p) { io::read_fruits(p); };
+  const auto run = [](const auto& p) { io::read_run(p); };
+  require_file_error(folder / "none.csv", "no such file", views);
+  require_file_error(folder / "none.json", "no such file", fruits);
+  require_file_error(folder.path(), "directory", run);
+  const std::string csv = slurp(folder / "views.csv");
+  const auto spoilt = [&](std::string text, const std::string& what, const std::string& by) {
+    const std::size_t at = text.find(what);
+    REQUIRE(at != std::string::npos);
+    return folder.file("bad", text.replace(at, what.size(), by));
+  };
+  require_file_error(folder.file("bad", ""), "empty", views);
+  require_file_error(spoilt(csv, "qx", "qq"), ":1: no column 'qx'", views);
+  require_file_error(spoilt(csv, "\n1,", "\n1,2,"), ":3: expected 23 cells, got 24", views);
+  require_file_error(spoilt(csv, "0.3333333333333333", "third"), ":2: z: 'third' is not a number", views);
+  require_file_error(spoilt(csv, ",1001,", ",many,"), ":3: points_in: 'many' is not a count", views);
+  require_file_error(spoilt(csv, ",,,,,,,1001", ",1,,,,,,1001"), ":3: q2: '' is not a number", views);
+  require_file_error(spoilt(csv, "\n1,", "\n2,"), ":3: view: expected 1", views);
+  require_file_error(folder.file("bad", csv.substr(0, csv.size() - 12)), "cells", views);
+
+  const std::string json = slurp(folder / "fruits.json");
+  require_file_error(folder.file("bad", ""), "empty", fruits);
+  require_file_error(folder.file("bad", "{"), "not JSON", fruits);
+  require_file_error(folder.file("bad", "{}"), "expected a list", fruits);
+  require_file_error(folder.file("bad", "[3]"), "[0]: expected an object", fruits);
+  require_file_error(spoilt(json, "\"sigma_world\"", "\"sigma\""), "[0]: missing key 'sigma_world'", fruits);
+  require_file_error(spoilt(json, "\"id\": 2", "\"id\": 1"), "[1].id: two fruits", fruits);
+  require_file_error(spoilt(json, "\"id\": 2", "\"id\": -2"), "[1].id: expected a whole number", fruits);
+  require_file_error(spoilt(json, "\"dbscan\"", "5"), "[1].found_by: expected a text", fruits);
+  require_file_error(spoilt(json, "[0.041,", "[null,"), "radii[0]: expected a number", fruits);
+
+  const std::string text = slurp(folder / "run.json");
+  require_file_error(spoilt(text, "\"format_version\": 1", "\"format_version\": 2"), "only version 1", run);
+  require_file_error(spoilt(text, "\"seed\"", "\"sown\""), "missing key 'seed'", run);
+  require_file_error(spoilt(text, "\"fuse\"", "\"melt\""), "seconds: missing key 'fuse'", run);
+  survive_damage(folder, "bad", csv, views);
+  survive_damage(folder, "bad", json, fruits);
+  survive_damage(folder, "bad", text, run);
+}
+
+TEST_CASE("foreign results: columns in another order, further columns and keys") {
+  const TempFolder folder;
+  const auto csv =
+      folder.file("views.csv",
+                  "note,view,plan_s,x,y,z,dx,dy,dz,ox,oy,oz,qw,qx,qy,qz,q1,q2,q3,q4,q5,q6,points_in,points_new\r\n"
+                  "\"a, \"\"b\"\"\",0,0.5,1,2,3,0,0,1,4,5,6,1,0,0,0,,,,,,,7,8\r\n");
+  const std::vector<View> views = io::read_views(csv);
+  REQUIRE(views.size() == 1);
+  CHECK(views[0].world_T_optical.translation() == Eigen::Vector3d(1, 2, 3));
+  CHECK(views[0].world_T_optical.linear().isIdentity());
+  CHECK(views[0].points_new == 8);
+  CHECK_FALSE(views[0].joints);
+  const auto fruits = io::read_fruits(folder.file(
+      "fruits.json",
+      R"([{"id": 3, "points": 5, "found_by": "hand", "centroid_cluster": [1, 2, 3], "centroid_world": [4, 5, 6],
+      "sigma_world": [0, 0, 0], "orientation_world": [0, 0, 0, 1], "mass": 0.1, "center_world": [1, 1, 1], "radii": [3, 2, 1]}])"));
+  REQUIRE(fruits.size() == 1);
+  REQUIRE(fruits[0].body);
+  CHECK(fruits[0].body->axes.isIdentity());
+}

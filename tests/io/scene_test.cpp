@@ -1,0 +1,242 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <agrisee/io/mesh_file.hpp>
+#include <agrisee/io/scene.hpp>
+
+#include "io/io_support.hpp"
+
+using namespace agrisee;
+using namespace agrisee::test;
+
+namespace {
+
+const auto reader = [](const std::filesystem::path& path) { io::read_scene(path); };
+
+Mesh tetrahedron(float scale = 0.05f) {
+  Mesh mesh;
+  mesh.vertices = {{0, 0, 0}, {scale, 0, 0}, {0, scale, 0}, {0, 0, scale}};
+  mesh.triangles = {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {2, 0, 3}};
+  return mesh;
+}
+
+const std::string kRobot = "robot:\n  base: {xyz: [0, 0, 0], rpy: [0, 0, 0]}\n";
+const std::string kVolume = "scan_volume: {min: [-0.1, 0.4, 0], max: [0.1, 0.6, 0.3]}\n";
+const std::string kObjects = "objects:\n  - {id: 1, class: fruit, mesh: fruit.stl}\n";
+const std::string kScene = "name: small\n" + kRobot + kVolume + kObjects;
+
+/// A folder with a mesh in it.
+struct SceneFolder : TempFolder {
+  SceneFolder() { io::write_stl(*this / "fruit.stl", tetrahedron()); }
+  io::SceneFile read(const std::string& yaml) const { return io::read_scene(file("scene.yaml", yaml)); }
+  void refuse(const std::string& yaml, const std::string& what) const {
+    INFO(yaml);
+    require_file_error(file("scene.yaml", yaml), what, reader);
+  }
+};
+
+std::string replaced(std::string text, const std::string& what, const std::string& by) {
+  const std::size_t at = text.find(what);
+  REQUIRE(at != std::string::npos);
+  return text.replace(at, what.size(), by);
+}
+
+}  // namespace
+
+TEST_CASE("a scene with nothing optional has the documented defaults") {
+  const SceneFolder folder;
+  const io::SceneFile file = folder.read(kScene);
+  const Workcell& cell = file.workcell;
+  CHECK(cell.name == "small");
+  CHECK(cell.world_T_base.isApprox(Pose::Identity()));
+  CHECK(cell.tool0_T_optical.translation() == Eigen::Vector3d(0, 0, 0.03));
+  CHECK(cell.tool0_T_optical.linear().isIdentity());
+  CHECK(cell.start == (Joints() << 0, -1.57, 1.57, -1.57, -1.57, 0).finished());
+  const sensor::Intrinsics wanted = sensor::intrinsics_from_fov(1024, 768, deg(70), deg(55));
+  CHECK(cell.sensor.intrinsics.width == 1024);
+  CHECK(cell.sensor.intrinsics.height == 768);
+  CHECK(cell.sensor.intrinsics.fx == wanted.fx);
+  CHECK(cell.sensor.range_min == 0.25);
+  CHECK(cell.sensor.range_max == 9.0);
+  CHECK(cell.scan_volume.min == Eigen::Vector3d(-0.1, 0.4, 0));
+  CHECK(cell.scan_volume.max == Eigen::Vector3d(0.1, 0.6, 0.3));
+  CHECK(cell.keep_out.empty());
+  REQUIRE(file.scene.objects.size() == 1);
+  CHECK(file.scene.objects[0].id == 1);
+  CHECK(file.scene.objects[0].cls == ObjectClass::fruit);
+  CHECK(file.scene.objects[0].mesh.triangles.size() == 4);
+  CHECK(folder.read(replaced(kScene, kObjects, "objects: []\n")).scene.objects.empty());
+}
+
+TEST_CASE("every key of a scene arrives where it belongs") {
+  const SceneFolder folder;
+  const io::SceneFile file = folder.read(R"(name: "full: one"
+robot:
+  base: {xyz: [0.1, 0.2, 0.3], rpy: [0.1, -0.2, 0.3]}
+  tool: {xyz: [0, 0.01, 0.05], rpy: [0, 0, 1.57]}
+  start: [0.1, -1, 1, -1, -1, 0.5]
+sensor: {model: l515, width: 640, height: 480, fov_deg: [60, 46], range: [0.2, 3]}
+scan_volume: {min: [-0.17, 0.40, -0.02], max: [0.17, 0.72, 0.42]}
+keep_out:
+  - {name: platform, box: {center: [0, -0.1, -0.06], size: [0.7, 0.7, 0.1]}}
+  - {name: cluster,  cylinder: {center: [0.015, 0.545, 0.21], radius: 0.35, height: 0.9}}
+objects:
+  - {id: 7, class: fruit, mesh: fruit.stl, xyz: [0.05, 0.55, 0.13], rpy: [0.1, 0.2, 0.4], scale: 2.0}
+  - {id: 0, class: stem, mesh: fruit.stl}
+  - {id: 0, class: leaf, mesh: fruit.stl, scale: 0.5}
+  - {id: 0, class: other, mesh: fruit.stl, xyz: [1, 0, 0]}
+)");
+  const Workcell& cell = file.workcell;
+  CHECK(cell.name == "full: one");
+  CHECK(cell.world_T_base.isApprox(pose_from_xyz_rpy({0.1, 0.2, 0.3}, {0.1, -0.2, 0.3})));
+  CHECK(cell.tool0_T_optical.isApprox(pose_from_xyz_rpy({0, 0.01, 0.05}, {0, 0, 1.57})));
+  CHECK(cell.start == (Joints() << 0.1, -1, 1, -1, -1, 0.5).finished());
+  CHECK(cell.sensor.intrinsics.fx == sensor::intrinsics_from_fov(640, 480, deg(60), deg(46)).fx);
+  CHECK(cell.sensor.range_min == 0.2);
+  REQUIRE(cell.keep_out.size() == 2);
+  CHECK(cell.keep_out[0].name == "platform");
+  CHECK(std::get<Box>(cell.keep_out[0].shape).size == Eigen::Vector3d(0.7, 0.7, 0.1));
+  CHECK(std::get<Cylinder>(cell.keep_out[1].shape).radius == 0.35);
+  CHECK(std::get<Cylinder>(cell.keep_out[1].shape).height == 0.9);
+  REQUIRE(file.scene.objects.size() == 4);
+  const Mesh wanted = transformed(tetrahedron(), pose_from_xyz_rpy({0.05, 0.55, 0.13}, {0.1, 0.2, 0.4}), 2.0);
+  CHECK(volume(file.scene.objects[0].mesh) == Approx(volume(wanted)));
+  CHECK(area(file.scene.objects[2].mesh) == Approx(0.25 * area(tetrahedron())));
+  CHECK(file.scene.objects[3].mesh.vertices[0].x() >= 1.0f);
+  CHECK(file.scene.objects[1].cls == ObjectClass::stem);
+  CHECK(file.scene.objects[2].cls == ObjectClass::leaf);
+  CHECK(file.scene.objects[3].cls == ObjectClass::other);
+}
+
+TEST_CASE("scenes round trip") {
+  const SceneFolder folder;
+  io::SceneFile file = folder.read(kScene);
+  file.workcell.name = "it's \"quoted\": yes\n";
+  file.workcell.world_T_base = pose_from_xyz_rpy({0.1, 1.0 / 3.0, -0.3}, {0.5, -0.6, 2.7});
+  file.workcell.tool0_T_optical = pose_from_xyz_rpy({0, 0, 0.03}, {0.2, kPi / 2, -0.4});  // at the singularity
+  file.workcell.start[2] = 0.1 + 0.2;
+  file.workcell.sensor.intrinsics = sensor::intrinsics_from_fov(320, 200, deg(69.5), deg(41));
+  file.workcell.keep_out = {{"null", Box{{0, 1, 2}, {0.1, 0.2, 0.3}}}, {"pot 1", Cylinder{{3, 2, 1}, 0.25, 0.5}}};
+  file.scene.objects.push_back({0, ObjectClass::leaf, tetrahedron(0.02f)});
+  file.scene.objects.push_back({0, ObjectClass::leaf, tetrahedron(0.03f)});
+  file.scene.objects.push_back({12, ObjectClass::fruit, tetrahedron(0.04f)});
+  io::write_scene(folder / "out.yaml", file);
+  for (const char* mesh : {"fruit_1.stl", "fruit_12.stl", "leaf_1.stl", "leaf_2.stl"})
+    CHECK(std::filesystem::exists(folder / mesh));
+  const io::SceneFile back = io::read_scene(folder / "out.yaml");
+  CHECK(back.workcell.name == file.workcell.name);
+  CHECK((back.workcell.world_T_base.matrix() - file.workcell.world_T_base.matrix()).norm() < 1e-14);
+  CHECK((back.workcell.tool0_T_optical.matrix() - file.workcell.tool0_T_optical.matrix()).norm() < 1e-14);
+  CHECK(back.workcell.start == file.workcell.start);
+  CHECK(back.workcell.sensor.intrinsics.fx == Approx(file.workcell.sensor.intrinsics.fx).epsilon(1e-9));
+  CHECK(back.workcell.sensor.intrinsics.fy == Approx(file.workcell.sensor.intrinsics.fy).epsilon(1e-9));
+  CHECK(back.workcell.scan_volume.min == file.workcell.scan_volume.min);
+  REQUIRE(back.workcell.keep_out.size() == 2);
+  CHECK(back.workcell.keep_out[0].name == "null");
+  CHECK(std::get<Box>(back.workcell.keep_out[0].shape).center == Eigen::Vector3d(0, 1, 2));
+  CHECK(std::get<Cylinder>(back.workcell.keep_out[1].shape).radius == 0.25);
+  REQUIRE(back.scene.objects.size() == 4);
+  for (std::size_t i = 0; i < 4; ++i) {
+    CHECK(back.scene.objects[i].id == file.scene.objects[i].id);
+    CHECK(back.scene.objects[i].cls == file.scene.objects[i].cls);
+    CHECK(volume(back.scene.objects[i].mesh) == Approx(volume(file.scene.objects[i].mesh)));
+  }
+  file.workcell.tool0_T_optical = pose_from_xyz_rpy({0, 0, 0.03}, {0.2, -1.3, 0.4});
+  io::write_scene(folder / "out.yaml", file);
+  io::write_scene(folder / "again.yaml", io::read_scene(folder / "out.yaml"));
+  CHECK(slurp(folder / "again.yaml") == slurp(folder / "out.yaml"));
+}
+
+TEST_CASE("unknown, missing and repeated keys are named with file and line") {
+  const SceneFolder folder;
+  folder.refuse(kScene + "colour: red\n", ":7: unknown key 'colour'");
+  folder.refuse(kScene + "name: again\n", "key 'name' twice");
+  folder.refuse(replaced(kScene, "rpy: [0, 0, 0]}", "rpy: [0, 0, 0], yaw: 3}"), ":3: robot.base: unknown key 'yaw'");
+  folder.refuse(replaced(kScene, "mesh: fruit.stl", "mesh: fruit.stl, color: 3"),
+                ":6: objects[0]: unknown key 'color'");
+  folder.refuse(kScene + "sensor: {model: l515, fps: 30}\n", "sensor: unknown key 'fps'");
+  folder.refuse(kScene + "keep_out: [{name: a, box: {center: [0, 0, 0], size: [1, 1, 1], yaw: 1}}]\n",
+                "keep_out[0].box: unknown key 'yaw'");
+  folder.refuse(replaced(kScene, "name: small\n", ""), "missing key 'name'");
+  folder.refuse(replaced(kScene, kRobot, ""), "missing key 'robot'");
+  folder.refuse(replaced(kScene, kRobot, "robot: {start: [0, 0, 0, 0, 0, 0]}\n"), "robot: missing key 'base'");
+  folder.refuse(replaced(kScene, kVolume, ""), "missing key 'scan_volume'");
+  folder.refuse(replaced(kScene, "min: [-0.1, 0.4, 0], ", ""), "scan_volume: missing key 'min'");
+  folder.refuse(replaced(kScene, kObjects, ""), "missing key 'objects'");
+  folder.refuse(replaced(kScene, "id: 1, ", ""), "objects[0]: missing key 'id'");
+  folder.refuse(replaced(kScene, "class: fruit, ", ""), "objects[0]: missing key 'class'");
+  folder.refuse(replaced(kScene, ", mesh: fruit.stl", ""), "objects[0]: missing key 'mesh'");
+  folder.refuse(kScene + "keep_out: [{box: {center: [0, 0, 0], size: [1, 1, 1]}}]\n",
+                "keep_out[0]: missing key 'name'");
+}
+
+TEST_CASE("values out of range are named") {
+  const SceneFolder folder;
+  const auto refuse = [&](const std::string& what, const std::string& by, const std::string& error) {
+    folder.refuse(replaced(kScene, what, by), error);
+  };
+  refuse("id: 1", "id: 0", "objects[0].id: a fruit's id has to be positive, got 0");
+  refuse("id: 1", "id: -2", "objects[0].id");
+  refuse("id: 1", "id: 1.5", "'1.5' is not a whole number");
+  refuse("class: fruit", "class: stem", "objects[0].id: has to be 0 for all but fruit, got 1");
+  refuse("class: fruit", "class: apple", "objects[0].class: has to be fruit, stem, leaf or other, got 'apple'");
+  refuse("mesh: fruit.stl", "mesh: none.stl", "objects[0].mesh: " + (folder / "none.stl").string() + ": no such file");
+  refuse("mesh: fruit.stl", "mesh: scene.yaml", "objects[0].mesh: ");
+  refuse("mesh: fruit.stl", "mesh: fruit.stl, scale: 0", "objects[0].scale: has to be positive, got 0");
+  refuse("mesh: fruit.stl", "mesh: fruit.stl, xyz: [1, 2]", "objects[0].xyz: expected a list of 3 numbers");
+  refuse("mesh: fruit.stl", "mesh: fruit.stl, xyz: [1, 2, three]", "objects[0].xyz[2]: 'three' is not a number");
+  refuse("mesh: fruit.stl", "mesh: fruit.stl, xyz: [1, 2, nan]", "has to be finite");
+  refuse("mesh: fruit.stl", "mesh: [fruit.stl]", "objects[0].mesh: expected a text");
+  refuse("max: [0.1, 0.6, 0.3]", "max: [0.1, 0.4, 0.3]", "scan_volume: min has to be below max, but along y");
+  refuse("max: [0.1, 0.6, 0.3]", "max: [0.1, 0.6, -3]", "along z");
+  refuse("name: small", "name: []", "name: expected a text");
+  refuse(kObjects, "objects: 3\n", "objects: expected a list");
+  refuse(kObjects, "objects: [3]\n", "objects[0]: expected keys and values");
+  refuse(kRobot, kRobot + "  start: [0, 0, 0]\n", "robot.start: expected a list of 6 numbers");
+  folder.refuse(kScene + "  - {id: 1, class: fruit, mesh: fruit.stl}\n", ":7: objects[1].id: two fruits have the id 1");
+  folder.refuse(kScene + "sensor: {model: kinect}\n", "sensor.model: only 'l515' is known");
+  folder.refuse(kScene + "sensor: {width: 0}\n", "sensor.width");
+  folder.refuse(kScene + "sensor: {height: 1000000}\n", "sensor.height");
+  folder.refuse(kScene + "sensor: {fov_deg: [70, 180]}\n", "sensor.fov_deg");
+  folder.refuse(kScene + "sensor: {range: [2, 1]}\n", "sensor.range");
+  folder.refuse(kScene + "keep_out: [{name: a}]\n", "keep_out[0]: expected one of 'box' and 'cylinder'");
+  folder.refuse(kScene + "keep_out: [{name: a, box: {center: [0, 0, 0], size: [1, 0, 1]}}]\n", "keep_out[0].box.size");
+  folder.refuse(kScene + "keep_out: [{name: a, cylinder: {center: [0, 0, 0], radius: -1, height: 1}}]\n",
+                "keep_out[0].cylinder.radius: has to be positive, got -1");
+}
+
+TEST_CASE("what is no scene at all is refused") {
+  const SceneFolder folder;
+  require_file_error(folder / "none.yaml", "no such file", reader);
+  require_file_error(folder.path(), "directory", reader);
+  folder.refuse("", "empty");
+  folder.refuse("# nothing\n", "empty");
+  folder.refuse("just text\n", "expected keys and values");
+  folder.refuse("[1, 2]\n", "expected keys and values");
+  folder.refuse("name: {\n", "not YAML");
+  folder.refuse("name: a\n---\nname: b\n", "more than one");
+  folder.refuse(std::string("name: \0\1\2\n", 10), "");
+  survive_damage(folder, "scene.yaml", kScene, reader);
+}
+
+TEST_CASE("scenes that the format cannot express are not written") {
+  const SceneFolder folder;
+  const io::SceneFile good = folder.read(kScene);
+  const std::size_t files = folder.files();
+  const auto refuse = [&](const char* what, auto&& spoil) {
+    io::SceneFile bad = good;
+    spoil(bad);
+    INFO(what);
+    CHECK_THROWS_AS(io::write_scene(folder / "out.yaml", bad), InputError);
+    CHECK_FALSE(std::filesystem::exists(folder / "out.yaml"));
+  };
+  refuse("fruit without id", [](auto& f) { f.scene.objects[0].id = 0; });
+  refuse("stem with id", [](auto& f) { f.scene.objects[0].cls = ObjectClass::stem; });
+  refuse("two ids", [](auto& f) { f.scene.objects.push_back(f.scene.objects[0]); });
+  refuse("no mesh", [](auto& f) { f.scene.objects[0].mesh = {}; });
+  refuse("empty volume", [](auto& f) { f.workcell.scan_volume = Aabb(); });
+  refuse("no name", [](auto& f) { f.workcell.name.clear(); });
+  refuse("odd camera", [](auto& f) { f.workcell.sensor.intrinsics.cx += 3.0; });
+  refuse("pose that scales", [](auto& f) { f.workcell.world_T_base.linear() *= 2.0; });
+  refuse("no number", [](auto& f) { f.workcell.start[0] = std::nan(""); });
+  CHECK(folder.files() == files);
+  CHECK_THROWS_AS(io::write_scene(folder / "no/such/folder.yaml", good), FileError);
+}
