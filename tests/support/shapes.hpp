@@ -6,7 +6,7 @@
 
 namespace agrisee::shapes {
 
-/// A closed sphere with its corners on the surface: `segments` around, half as many from pole to pole;
+/// A closed sphere with its corners on the surface: `segments` (even) around, half as many from pole to pole;
 /// segments * (segments - 2) triangles, facing outwards.
 inline Mesh sphere(const Eigen::Vector3d& center, double radius, int segments) {
   Mesh mesh;
