@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The tree and a full 1024 x 768 frame on a scene of about 100,000 triangles: 30 spheres of 24 to 36 mm, 0.5 m in front of
-// the sensor, met by about one ray in seven.
+// The tree and a full 1024 x 768 frame on a scene of about 100,000 triangles: 30 spheres of 24 to 36 mm, 0.5 m in front
+// of the sensor, met by about one ray in seven.
 #include <agrisee/core/random.hpp>
 #include <agrisee/sensor/l515.hpp>
 
