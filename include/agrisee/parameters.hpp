@@ -30,7 +30,7 @@ struct Parameters {
   sensor::SurfaceParameters surface;
   SurfelParameters surfels;
   IcpParameters icp;
-  SorParameters sor{20, 3.0, false};  ///< a wider gate than the paper's: fused surfaces have few outliers
+  SorParameters sor{20, 6.0, false};  ///< a wider gate than the paper's, which costs the borders of what was seen
   NormalParameters normals;
   SplitParameters split;
   GrowthAxisParameters axis;

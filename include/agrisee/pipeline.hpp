@@ -118,6 +118,7 @@ class Pipeline {
       seen_through = [this](const Ellipsoid& body) { return plan::seen_through(images_, body, parameters_.free_space); };
     ScanResult out = process(cloud_, parameters_, origin, seen_through, threads_);
     out.raw = raw_cloud();
+    center_on_all_views(out);
     out.views = views_;
     out.stop_reason = stop_reason_;
     out.seconds.plan = seconds_.plan;
@@ -174,6 +175,25 @@ class Pipeline {
       image.normals[c] = correction.linear() * image.normals[c];
     }
     image.world_T_optical = icp.target_T_source * image.world_T_optical;
+  }
+
+  /// Registration lays every view on the first; the errors of that one view's pose would be the whole scan's. Over all views
+  /// they average out: the result is moved to the mean of where each view, as reported, would have put it.
+  void center_on_all_views(ScanResult& out) const {
+    if (images_.empty() || out.cloud.empty()) return;
+    Eigen::Vector3d center = Eigen::Vector3d::Zero(), shift = Eigen::Vector3d::Zero();
+    for (const auto& p : out.cloud.points) center += p.cast<double>() / static_cast<double>(out.cloud.size());
+    for (std::size_t v = 0; v < images_.size(); ++v) {
+      const Pose reported_T_registered = views_[v].world_T_optical * images_[v].world_T_optical.inverse(Eigen::Isometry);
+      shift += (reported_T_registered * center - center) / static_cast<double>(images_.size());
+    }
+    for (Cloud* cloud : {&out.cloud, &out.raw})
+      for (auto& p : cloud->points) p += shift.cast<float>();
+    for (Fruit& f : out.fruits) {
+      f.centroid += shift;
+      f.centroid_cluster += shift;
+      if (f.body) f.body->center += shift;
+    }
   }
 
   /// The frame's raw points join the merged cloud where nothing is nearer than the minimum separation.

@@ -187,6 +187,8 @@ std::vector<FoundBody> find_bodies(const PointCloud<S>& cloud, const std::vector
   std::vector<Entry> entries;
   for (const BodyCandidate& c : candidates) {
     if (!plausible(c.body.mean_radius())) continue;
+    // Not worth a fit where hardly anything supports even the first guess.
+    if (detail::judge(cloud, grid, taken, c.body, parameters, {}).coverage < 0.3 * parameters.min_coverage) continue;
     const auto fit = refine(c.body);
     if (!fit) continue;
     Entry e{*fit, &c.found_by, {}, true};
@@ -224,13 +226,14 @@ std::vector<FoundBody> find_bodies(const PointCloud<S>& cloud, const std::vector
       if (!e.alive) continue;
       const double gap = (e.fit.body.center - body.center).norm() - e.fit.body.mean_radius() - body.mean_radius();
       if (gap > 0.5 * body.mean_radius()) continue;
-      const auto again = refine(e.fit.body);
-      if (!again) {
+      assess(e);  // most end here: their points are taken
+      if (!e.alive) continue;
+      if (const auto again = refine(e.fit.body)) {
+        e.fit = *again;
+        assess(e);
+      } else {
         e.alive = false;
-        continue;
       }
-      e.fit = *again;
-      assess(e);
     }
   }
   return found;

@@ -14,6 +14,9 @@
 #include <agrisee/cloud/spacing.hpp>
 #include <agrisee/cloud/sphere_voting.hpp>
 
+#include <array>
+#include <numeric>
+
 namespace agrisee {
 
 /// Parameters of split.
@@ -82,6 +85,63 @@ inline std::string found_by(const Indices& points, const Labels& segments, const
     if (best == 0 || votes[s] > votes[best]) best = s;
   if (best == 0 || 2 * votes[best] < points.size() || 2 * votes[best] < sizes[best]) return "sphere_voting";
   return static_cast<int>(best) < first_cluster ? "region_growing" : "dbscan";
+}
+
+/// The distance from a voted centre at which most points face away from it (m), 0 when there are none.
+template <typename S>
+double likely_radius(const PointCloud<S>& cloud, const Grid<S>& grid, const Eigen::Vector3d& center,
+                     const BodyParameters& parameters) {
+  constexpr int kBins = 24;
+  const double low = 0.8 * parameters.radius_min, width = (1.2 * parameters.radius_max - low) / kBins;
+  std::array<double, kBins + 2> count{};
+  grid.visit(center.template cast<S>(), static_cast<S>(1.2 * parameters.radius_max), [&](Index index, S d_sq) {
+    const auto i = static_cast<std::size_t>(index);
+    const double d = std::sqrt(double(d_sq));
+    const Eigen::Vector3d u = cloud.points[i].template cast<double>() - center;
+    if (d < low || u.dot(cloud.normals[i].template cast<double>()) < 0.9 * d) return;
+    count[static_cast<std::size_t>(std::min((d - low) / width, kBins - 1.0)) + 1] += 1.0 / (d * d);  // by solid angle
+  });
+  int best = 0;
+  double most = 0.0;
+  for (int b = 1; b <= kBins; ++b) {
+    const auto i = static_cast<std::size_t>(b);
+    const double sum = count[i - 1] + 2.0 * count[i] + count[i + 1];
+    if (sum > most) most = sum, best = b;
+  }
+  return best == 0 ? 0.0 : low + (best - 0.5) * width;
+}
+
+/// Give a body what an ellipsoid cannot follow: points in its dimples (inside an opaque body there is nothing else), and
+/// points of a smooth region that is mostly this body's (shoulders, lobes).
+template <typename S>
+void extend_labels(Labels& labels, const PointCloud<S>& cloud, const std::vector<FoundBody>& found, const Labels& regions,
+                   int region_count, const BodyParameters& parameters) {
+  const std::size_t columns = found.size() + 1;
+  std::vector<std::size_t> votes(static_cast<std::size_t>(region_count + 1) * columns, 0);
+  for (std::size_t i = 0; i < labels.size(); ++i)
+    ++votes[static_cast<std::size_t>(regions[i]) * columns + static_cast<std::size_t>(labels[i])];
+  std::vector<std::size_t> owner(static_cast<std::size_t>(region_count) + 1, 0);
+  for (std::size_t r = 1; r < owner.size(); ++r) {
+    const auto row = votes.begin() + static_cast<std::ptrdiff_t>(r * columns);
+    const auto most = std::max_element(row + 1, row + static_cast<std::ptrdiff_t>(columns));
+    if (most != row + static_cast<std::ptrdiff_t>(columns) && 10 * *most >= 6 * std::accumulate(row, row + static_cast<std::ptrdiff_t>(columns), std::size_t{0}))
+      owner[r] = static_cast<std::size_t>(most - row);
+  }
+  for (std::size_t i = 0; i < labels.size(); ++i) {
+    if (labels[i] != 0) continue;
+    const Eigen::Vector3d p = cloud.points[i].template cast<double>(), n = cloud.normals[i].template cast<double>();
+    if (const std::size_t b = owner[static_cast<std::size_t>(regions[i])]) {
+      const Ellipsoid& body = found[b - 1].fit.body;
+      if (std::abs(body.distance(p)) < 0.25 * body.mean_radius() && body.normal(p).dot(n) > 0.0) labels[i] = static_cast<int>(b);
+    }
+    for (std::size_t b = 0; b < found.size() && labels[i] == 0; ++b) {
+      const Ellipsoid& body = found[b].fit.body;
+      const double r = body.mean_radius();
+      if ((p - body.center).squaredNorm() > 1.5 * r * r) continue;
+      const double d = body.distance(p);
+      if (d < 0.5 * parameters.tolerance * r && d > -0.4 * r && body.normal(p).dot(n) > 0.3) labels[i] = static_cast<int>(b) + 1;
+    }
+  }
 }
 
 }  // namespace detail
@@ -157,10 +217,14 @@ Split split(const PointCloud<S>& cloud, const SplitParameters& parameters = {}, 
   for (std::size_t s = 0; s < members.size(); ++s)
     if (const auto sphere = sphere_from_normals(cloud, members[s]))
       propose(*sphere, static_cast<int>(s) + 1 < first_cluster ? "region_growing" : "dbscan");
-  for (const VotedCenter& v :
-       vote_for_centers(cloud, bodies.radius_min, bodies.radius_max, 0.5 * static_cast<double>(growing.min_size))) {
-    propose({v.center, 0.5 * (bodies.radius_min + bodies.radius_max)}, "sphere_voting");
-    propose({v.center, bodies.radius_min}, "sphere_voting");
+  // Voted centres that a segment's sphere already stands for would only be fitted twice.
+  const std::size_t proposed = candidates.size();
+  for (const VotedCenter& v : vote_for_centers(cloud, bodies.radius_min, bodies.radius_max, 1.5 * growing.min_size)) {
+    const bool known = std::any_of(candidates.begin(), candidates.begin() + static_cast<std::ptrdiff_t>(proposed), [&](const BodyCandidate& c) {
+      return (c.body.center - v.center).norm() < 0.15 * c.body.mean_radius();
+    });
+    if (!known) propose({v.center, detail::likely_radius(cloud, grid, v.center, bodies)}, "sphere_voting");
+    if (candidates.size() >= proposed + 60) break;  // weaker maxima are noise
   }
   out.found = find_bodies(cloud, candidates, bodies, seen_through);
   out.labels = assign_to_bodies(cloud, out.found, bodies);
@@ -173,6 +237,7 @@ Split split(const PointCloud<S>& cloud, const SplitParameters& parameters = {}, 
       if (const auto fit = fit_ellipsoid(cloud, own[b], out.found[b].fit.body, bodies.fit)) out.found[b].fit = *fit;
     out.labels = assign_to_bodies(cloud, out.found, bodies);
   }
+  detail::extend_labels(out.labels, cloud, out.found, out.regions, out.regions_found, bodies);
 
   std::vector<std::size_t> sizes(members.size() + 1, 0);
   for (int s : segments) ++sizes[static_cast<std::size_t>(s)];

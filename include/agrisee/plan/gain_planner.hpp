@@ -20,7 +20,7 @@ struct GainPlannerParameters {
   double distance_min = 0.27;      ///< nearest (m)
   double distance_max = 0.55;      ///< farthest (m)
   double dwell = 1.5;              ///< time that a view costs beside the move (s): settling, exposure, computing
-  double min_gain = 0.004;         ///< stop when the best view promises less than this share of the known fruit surface
+  double min_gain = 0.003;         ///< stop when the best view promises less than this share of the known fruit surface
   ExpectedSurfaceParameters expected;
 
   /// @throws ParameterError

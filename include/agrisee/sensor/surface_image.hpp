@@ -100,6 +100,19 @@ struct Block {
   float u = 0.0f, v = 0.0f, z = 0.0f;  // mean pixel (in cell units) and depth of its agreeing pixels; z = 0: none
 };
 
+/// Solve the leading N x N part of normal equations; also the variance factor of the first unknown. False when degenerate.
+template <int N>
+bool solve(const Eigen::Matrix<double, 6, 6>& normal_matrix, const Eigen::Matrix<double, 6, 1>& rhs, double damping,
+           Eigen::Matrix<double, 6, 1>& x, double& variance) {
+  Eigen::Matrix<double, N, N> damped = normal_matrix.template topLeftCorner<N, N>();
+  damped.diagonal().array() += damping;
+  const Eigen::LLT<Eigen::Matrix<double, N, N>> solver(damped);
+  if (solver.info() != Eigen::Success) return false;
+  x.template head<N>() = solver.solve(rhs.template head<N>());
+  variance = solver.solve(Eigen::Matrix<double, N, 1>::Unit(0))[0];
+  return x.allFinite();
+}
+
 /// The paraboloid fitted around a cell: depth over the offset (du, dv) from the block's mean pixel, in cells.
 struct Patch {
   Eigen::Matrix<double, 6, 1> x;  // 1, du, dv, du du, du dv, dv dv
@@ -268,15 +281,11 @@ inline SurfaceImage reconstruct_surface(const DepthFrame& frame, const Pose& wor
         }
       if (support < 2.5) return;
       quadratic = support > 7.0;
-      const int m = quadratic ? 6 : 3;
-      Eigen::MatrixXd damped = normal_matrix.topLeftCorner(m, m);
-      damped.diagonal().array() += 1e-9 * support;
-      const Eigen::LDLT<Eigen::MatrixXd> solver(damped);
-      const Eigen::VectorXd solution = solver.solve(rhs.head(m));
-      if (!solution.allFinite()) return;
       x.setZero();
-      x.head(m) = solution;
-      variance = solver.solve(Eigen::VectorXd::Unit(m, 0))[0];
+      const double damping = 1e-9 * support;
+      const bool solved = quadratic ? detail::solve<6>(normal_matrix, rhs, damping, x, variance)
+                                    : detail::solve<3>(normal_matrix, rhs, damping, x, variance);
+      if (!solved) return;
       if (iteration > 0) scale = std::max(block_noise, 0.5 * std::sqrt(squares / support));
     }
     // Cells without neighbours on their own surface are flying pixels.
