@@ -6,23 +6,49 @@
 #include <algorithm>
 #include <cmath>
 #include <set>
+#include <sstream>
+#include <yaml-cpp/eventhandler.h>
 
 #include "text.hpp"
 
 namespace agrisee::io {
 
+namespace {
+
+/// Takes no notice of anything.
+struct Silent final : YAML::EventHandler {
+  void OnDocumentStart(const YAML::Mark&) override {}
+  void OnDocumentEnd() override {}
+  void OnNull(const YAML::Mark&, YAML::anchor_t) override {}
+  void OnAlias(const YAML::Mark&, YAML::anchor_t) override {}
+  void OnScalar(const YAML::Mark&, const std::string&, YAML::anchor_t, const std::string&) override {}
+  void OnSequenceStart(const YAML::Mark&, const std::string&, YAML::anchor_t, YAML::EmitterStyle::value) override {}
+  void OnSequenceEnd() override {}
+  void OnMapStart(const YAML::Mark&, const std::string&, YAML::anchor_t, YAML::EmitterStyle::value) override {}
+  void OnMapEnd() override {}
+};
+
+/// True when something follows the first document. (YAML::LoadAll never returns on some texts, such as ",".)
+bool has_second_document(const std::string& text) {
+  std::istringstream stream(text);
+  YAML::Parser parser(stream);
+  Silent silent;
+  return parser.HandleNextDocument(silent) && parser.HandleNextDocument(silent);
+}
+
+}  // namespace
+
 YAML::Node load_yaml(const std::filesystem::path& path) {
-  const Bytes bytes = read_bytes(path);
-  std::vector<YAML::Node> documents;
+  const std::string text(read_bytes(path).view());
   try {
-    documents = YAML::LoadAll(std::string(bytes.view()));
+    const YAML::Node document = YAML::Load(text);
+    if (has_second_document(text)) io::fail(path, "holds more than one YAML document");
+    if (document.IsNull()) io::fail(path, "is empty");
+    return document;
   } catch (const YAML::Exception& e) {
     if (e.mark.is_null()) io::fail(path, "not YAML: " + e.msg);
     io::fail(path, static_cast<std::size_t>(e.mark.line) + 1, "not YAML: " + e.msg);
   }
-  if (documents.empty() || documents[0].IsNull()) io::fail(path, "is empty");
-  if (documents.size() > 1) io::fail(path, "holds more than one YAML document");
-  return documents[0];
 }
 
 void YamlValue::fail(const std::string& message) const {

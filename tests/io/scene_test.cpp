@@ -213,6 +213,7 @@ TEST_CASE("what is no scene at all is refused") {
   folder.refuse("[1, 2]\n", "expected keys and values");
   folder.refuse("name: {\n", "not YAML");
   folder.refuse("name: a\n---\nname: b\n", "more than one");
+  folder.refuse(",", "more than one");
   folder.refuse(std::string("name: \0\1\2\n", 10), "");
   survive_damage(folder, "scene.yaml", kScene, reader);
 }
