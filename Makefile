@@ -2,7 +2,8 @@
 # A thin front for the presets. `make demo` and `make test` work from a clean clone on Debian or Ubuntu.
 SHELL := /bin/bash
 JOBS ?= $(shell nproc)
-CONFIGURE := cmake --preset release -G Ninja
+CMAKE_ARGS ?=
+CONFIGURE := cmake -S . -B build/release -G Ninja -DCMAKE_BUILD_TYPE=Release $(CMAKE_ARGS)
 AGRISEE := build/release/agrisee
 
 .PHONY: help build demo test bench format clean
@@ -29,7 +30,7 @@ test:
 	@cmake/packages.sh build test
 	@$(CONFIGURE) -DAGRISEE_BUILD_TESTS=ON -DAGRISEE_BUILD_EXAMPLES=ON
 	@cmake --build build/release -j $(JOBS)
-	@ctest --test-dir build/release --output-on-failure -j $(JOBS)
+	@cd build/release && ctest --output-on-failure -j $(JOBS)
 
 bench:
 	@cmake/packages.sh build bench

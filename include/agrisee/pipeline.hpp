@@ -65,10 +65,16 @@ class Pipeline {
     view.points_new = added.size();
     views_.push_back(view);
     {
-      const Stopwatch watch(seconds_.plan);
+      const Stopwatch watch(seconds_.fuse);
       refresh_cloud();
+    }
+    double spent = 0.0;
+    {
+      const Stopwatch watch(spent);
       planner_->observe(progress(added, kept ? &*kept : nullptr));
     }
+    seconds_.plan += spent;
+    plan_seconds_ += spent;  // it belongs to the next view
     return views_.back();
   }
 
@@ -104,6 +110,8 @@ class Pipeline {
   const std::vector<View>& views() const { return views_; }
   /// The cloud merged so far, before any filter at the end.
   const Cloud& merged() const { return cloud_; }
+  /// All points merged so far, filtered away later or not, each with its view.
+  Cloud raw() const { return raw_cloud(); }
   const Workcell& workcell() const { return workcell_; }
   const Parameters& parameters() const { return parameters_; }
   const plan::Reach& reach() const { return reach_; }

@@ -41,7 +41,10 @@ void add_pipeline_options(CLI::App& command, PipelineOptions& options);
 Parameters parameters_of(const PipelineOptions& options);
 int threads_of(int asked);
 
-/// Makes the output folder ready. @throws UsageError when it holds a result already and `force` is off
+/// @throws UsageError when it exists and is not a folder, FileError when it cannot be made
+void make_folder(const std::string& folder);
+
+/// Makes the folder ready for a result; with `force` an older one is removed. @throws UsageError when it holds a result already and `force` is off
 void prepare_output(const std::string& folder, bool force);
 
 /// The summary of a result on stdout: a table of fruit, or JSON.

@@ -1,16 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "commands.hpp"
-
 #include <agrisee/io/parameters.hpp>
 #include <agrisee/version.hpp>
-
-#include <nlohmann/json.hpp>
 
 #include <filesystem>
 #include <iomanip>
 #include <iostream>
+#include <nlohmann/json.hpp>
 #include <sstream>
 #include <thread>
+
+#include "commands.hpp"
 
 namespace agrisee::cli {
 
@@ -39,17 +38,24 @@ int threads_of(int asked) {
   return asked > 0 ? asked : std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
 }
 
-void prepare_output(const std::string& folder, bool force) {
+void make_folder(const std::string& folder) {
   std::error_code error;
-  if (fs::exists(folder, error) && !fs::is_directory(folder, error)) throw UsageError(folder + ": exists and is not a folder");
-  for (const char* name : {"run.json", "views.csv", "scene.yaml"})
-    if (!force && fs::exists(fs::path(folder) / name, error))
-      throw UsageError(folder + ": holds a result already (" + name + "); use --force to overwrite it");
+  if (fs::exists(folder, error) && !fs::is_directory(folder, error))
+    throw UsageError(folder + ": exists and is not a folder");
   fs::create_directories(folder, error);
   if (error) throw FileError(folder + ": cannot be made: " + error.message());
+}
+
+void prepare_output(const std::string& folder, bool force) {
+  constexpr const char* kResultFiles[] = {"run.json",    "views.csv",  "cloud.ply", "cloud_raw.ply",
+                                          "fruits.json", "fruits.csv", "truss.png"};
+  std::error_code error;
+  for (const char* name : kResultFiles)
+    if (!force && fs::exists(fs::path(folder) / name, error))
+      throw UsageError(folder + ": holds a result already (" + name + "); use --force to overwrite it");
+  make_folder(folder);
   if (force)  // nothing of an older result may be taken for part of the new one
-    for (const char* name : {"run.json", "views.csv", "cloud.ply", "cloud_raw.ply", "fruits.json", "fruits.csv", "truss.png"})
-      fs::remove(fs::path(folder) / name, error);
+    for (const char* name : kResultFiles) fs::remove(fs::path(folder) / name, error);
 }
 
 void print_summary(const ScanResult& result, const std::string& folder, bool json) {
@@ -76,11 +82,12 @@ void print_summary(const ScanResult& result, const std::string& folder, bool jso
   for (const Fruit& f : result.fruits) {
     const Eigen::Vector3d c = f.body ? f.body->center : f.centroid;
     const Eigen::Vector3d z = f.orientation.col(2);
-    text << std::setw(4) << f.id << std::setw(9) << f.points << "  " << std::left << std::setw(16) << f.found_by << std::right
-         << std::setprecision(4) << std::setw(10) << c.x() << std::setw(9) << c.y() << std::setw(9) << c.z();
+    text << std::setw(4) << f.id << std::setw(9) << f.points << "  " << std::left << std::setw(16) << f.found_by
+         << std::right << std::setprecision(4) << std::setw(10) << c.x() << std::setw(9) << c.y() << std::setw(9)
+         << c.z();
     if (f.body)
-      text << std::setprecision(1) << std::setw(9) << 1e3 * f.body->radii.mean() << " mm" << std::setprecision(0) << std::setw(4)
-           << 100.0 * f.body->completeness << " %";
+      text << std::setprecision(1) << std::setw(9) << 1e3 * f.body->radii.mean() << " mm" << std::setprecision(0)
+           << std::setw(4) << 100.0 * f.body->completeness << " %";
     text << std::setprecision(2) << std::setw(8) << z.x() << std::setw(6) << z.y() << std::setw(6) << z.z() << "\n";
   }
   text << "Result: " << folder << "\n";

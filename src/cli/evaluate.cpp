@@ -1,20 +1,19 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // agrisee evaluate: how good a result is, against the scene's own meshes.
-#include "commands.hpp"
-
 #include <agrisee/io/cloud_file.hpp>
 #include <agrisee/io/ground_truth.hpp>
 #include <agrisee/io/scene.hpp>
 #include <agrisee/study/evaluate.hpp>
 #include <agrisee/study/limit.hpp>
 
-#include <nlohmann/json.hpp>
-
 #include <filesystem>
 #include <iomanip>
 #include <iostream>
 #include <memory>
+#include <nlohmann/json.hpp>
 #include <sstream>
+
+#include "commands.hpp"
 
 namespace agrisee::cli {
 namespace {
@@ -91,7 +90,8 @@ void print(const study::Metrics& m) {
   std::ostringstream out;
   out << std::fixed << std::setprecision(1);
   const auto percent = [&](double x) -> std::ostream& { return out << 100.0 * x << " %"; };
-  out << "Fruit: " << m.n_real << " real, " << m.n_det << " found, counting error " << m.counting_error << ", precision ";
+  out << "Fruit: " << m.n_real << " real, " << m.n_det << " found, counting error " << m.counting_error
+      << ", precision ";
   percent(m.object_precision) << ", recall ";
   percent(m.object_recall) << "\nSurface: scanned ";
   percent(m.scanned) << ", recall ";
@@ -108,7 +108,8 @@ void print(const study::Metrics& m) {
     if (x)
       out << 1e3 * *x << " mm";
     else
-      out << "-" << "   ";
+      out << "-"
+          << "   ";
   };
   for (const study::FruitMetrics& f : m.fruits) {
     out << std::setw(4) << f.id << std::setw(4) << f.instance << std::setprecision(2) << std::setw(7) << f.surface_iou
@@ -131,8 +132,7 @@ int run_evaluate(const EvaluateOptions& options) {
   const int threads = threads_of(options.threads);
   const auto known = io::read_ground_truth(fs::path(options.scene).parent_path() / "ground_truth.json");
   const study::Truth truth = study::make_truth(file.scene, known, file.workcell.sensor);
-  const study::Observability observability =
-      study::observable(truth.traced, truth.samples, file.workcell, {}, threads);
+  const study::Observability observability = study::observable(truth.traced, truth.samples, file.workcell, {}, threads);
   study::MetricParameters parameters;
   parameters.threshold = options.threshold;
   const study::Metrics metrics = study::evaluate(truth, result, observability.observable, parameters, threads);

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "commands.hpp"
-
 #include <agrisee/version.hpp>
 
 #include <iostream>
+
+#include "commands.hpp"
 
 int main(int argc, char** argv) {
   using namespace agrisee;

@@ -1,16 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // agrisee make-truss: a procedural truss in the scene format, with its ground truth.
-#include "commands.hpp"
-
 #include <agrisee/io/ground_truth.hpp>
 #include <agrisee/io/scene.hpp>
 #include <agrisee/study/truss.hpp>
 
-#include <nlohmann/json.hpp>
-
 #include <filesystem>
 #include <iostream>
 #include <memory>
+#include <nlohmann/json.hpp>
+
+#include "commands.hpp"
 
 namespace agrisee::cli {
 namespace {
@@ -27,11 +26,19 @@ int run_make_truss(TrussOptions options) {
     options.truss.radius_min = options.radius[0];
     options.truss.radius_max = options.radius[1];
   }
-  study::Truss truss = study::make_truss(options.truss);
-  prepare_output(options.output, options.force);
   const std::filesystem::path folder = options.output;
-  truss.workcell.name = "truss_" + std::to_string(options.truss.total) + "_" + std::to_string(options.truss.hidden) + "_s" +
-                        std::to_string(options.truss.seed);
+  if (!options.force && std::filesystem::exists(folder / "scene.yaml"))
+    throw UsageError(options.output + ": holds a scene already; use --force to overwrite it");
+  study::Truss truss = [&] {
+    try {
+      return study::make_truss(options.truss);
+    } catch (const ParameterError& e) {  // the numbers came from the command line
+      throw UsageError(e.what());
+    }
+  }();
+  make_folder(options.output);
+  truss.workcell.name = "truss_" + std::to_string(options.truss.total) + "_" + std::to_string(options.truss.hidden) +
+                        "_s" + std::to_string(options.truss.seed);
   io::write_ground_truth(folder / "ground_truth.json", truss.truth);
   io::write_scene(folder / "scene.yaml", {truss.workcell, truss.scene});
   if (options.json) {
@@ -41,8 +48,8 @@ int run_make_truss(TrussOptions options) {
     std::cout << out.dump(2) << "\n";
     return kSuccess;
   }
-  std::cout << truss.workcell.name << ": " << truss.truth.fruits.size() << " fruit, " << options.truss.hidden << " hidden, in "
-            << (folder / "scene.yaml").string() << "\n";
+  std::cout << truss.workcell.name << ": " << truss.truth.fruits.size() << " fruit, " << options.truss.hidden
+            << " hidden, in " << (folder / "scene.yaml").string() << "\n";
   return kSuccess;
 }
 
@@ -52,10 +59,13 @@ void add_make_truss(CLI::App& app, Run& run) {
   auto* command = app.add_subcommand("make-truss", "make a procedural truss in the scene format, with ground truth");
   auto options = std::make_shared<TrussOptions>();
   command->add_option("--total", options->truss.total, "number of fruit")->capture_default_str();
-  command->add_option("--hidden", options->truss.hidden, "how many of them hang behind the others")->capture_default_str();
+  command->add_option("--hidden", options->truss.hidden, "how many of them hang behind the others")
+      ->capture_default_str();
   command->add_option("--seed", options->truss.seed, "which of all such trusses")->capture_default_str();
   command->add_option("--leaflets", options->truss.leaflets, "number of leaflets")->capture_default_str();
-  command->add_option("--radius", options->radius, "smallest,largest radius of a fruit (m)")->delimiter(',')->expected(2);
+  command->add_option("--radius", options->radius, "smallest,largest radius of a fruit (m)")
+      ->delimiter(',')
+      ->expected(2);
   command->add_option("-o,--output", options->output, "folder for the scene")->required();
   command->add_flag("--force", options->force, "overwrite an existing scene");
   command->add_flag("--json", options->json, "print the summary as JSON");

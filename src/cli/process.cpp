@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // agrisee process: from a ready cloud to located fruit.
-#include "commands.hpp"
-
 #include <agrisee/io/cloud_file.hpp>
 #include <agrisee/io/parameters.hpp>
 #include <agrisee/io/render.hpp>
@@ -11,6 +9,8 @@
 #include <filesystem>
 #include <iostream>
 #include <memory>
+
+#include "commands.hpp"
 
 namespace agrisee::cli {
 namespace {
@@ -29,23 +29,31 @@ int run_process(const ProcessOptions& options) {
   }
   parameters.check();
   const io::CloudFile file = io::read_cloud(options.cloud);
-  if (file.dropped > 0) std::cerr << options.cloud << ": " << file.dropped << " points that are not finite were dropped\n";
+  if (file.dropped > 0)
+    std::cerr << options.cloud << ": " << file.dropped << " points that are not finite were dropped\n";
   CloudOrigin origin;
-  if (!options.viewpoint.empty()) origin.viewpoint = Eigen::Vector3d(options.viewpoint[0], options.viewpoint[1], options.viewpoint[2]);
+  if (!options.viewpoint.empty())
+    origin.viewpoint = Eigen::Vector3d(options.viewpoint[0], options.viewpoint[1], options.viewpoint[2]);
   if (!options.views.empty()) {
     if (file.cloud.views.size() != file.cloud.size())
       throw FileError(options.cloud + ": has no property 'view', which --views needs");
     for (const View& v : io::read_views(options.views)) origin.sensors.push_back(v.world_T_optical.translation());
     for (int v : file.cloud.views)
       if (v >= static_cast<int>(origin.sensors.size()))
-        throw FileError(options.views + ": has no view " + std::to_string(v) + ", which " + options.cloud + " refers to");
+        throw FileError(options.views + ": has no view " + std::to_string(v) + ", which " + options.cloud +
+                        " refers to");
   }
+  std::error_code error;
+  for (const char* name : {"cloud.ply", "cloud_raw.ply"})
+    if (std::filesystem::equivalent(options.cloud, std::filesystem::path(options.output) / name, error))
+      throw UsageError(options.cloud + ": is the input and would be overwritten");
   prepare_output(options.output, options.force);
   const Cloud cloud = parameters.fuse_surfaces ? thinned(file.cloud, parameters) : file.cloud;
   Workcell workcell;
   workcell.name = std::filesystem::path(options.cloud).filename().string();
   for (const auto& p : cloud.points) workcell.scan_volume.extend(p.cast<double>());
-  if (!workcell.scan_volume.empty()) origin.cluster_origin = cluster_origin(workcell.scan_volume, Eigen::Vector3d::Zero());
+  if (!workcell.scan_volume.empty())
+    origin.cluster_origin = cluster_origin(workcell.scan_volume, Eigen::Vector3d::Zero());
   const ScanResult result = process(cloud, parameters, origin, {}, threads_of(options.threads));
   io::RunInfo info;
   info.scene = workcell.name;
@@ -73,7 +81,9 @@ void add_process(CLI::App& app, Run& run) {
       ->delimiter(',')
       ->expected(3);
   command->add_option("--views", options->views, "views.csv with the sensor of each point's property 'view'");
-  command->add_option("--radius", options->radius, "smallest,largest expected radius of a fruit (m)")->delimiter(',')->expected(2);
+  command->add_option("--radius", options->radius, "smallest,largest expected radius of a fruit (m)")
+      ->delimiter(',')
+      ->expected(2);
   command->footer(
       "Examples:\n"
       "  agrisee process cloud.ply -o result\n"

@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // agrisee scan: a simulated scan of a scene file.
-#include "commands.hpp"
-
 #include <agrisee/io/parameters.hpp>
 #include <agrisee/io/ply.hpp>
 #include <agrisee/io/render.hpp>
@@ -9,11 +7,12 @@
 #include <agrisee/study/simulated_scan.hpp>
 #include <agrisee/version.hpp>
 
-#include <unistd.h>
-
 #include <filesystem>
 #include <iostream>
 #include <memory>
+#include <unistd.h>
+
+#include "commands.hpp"
 
 namespace agrisee::cli {
 namespace {
@@ -46,24 +45,33 @@ int run_scan(const ScanOptions& options) {
   if (options.max_views > 0) parameters.max_views = options.max_views;
   parameters.check();
   study::SimulationOptions simulation;
-  simulation.noise = sensor::parse_noise(options.noise);
+  try {
+    simulation.noise = sensor::parse_noise(options.noise);
+  } catch (const ParameterError& e) {
+    throw UsageError(e.what());
+  }
   simulation.seed = options.seed;
   simulation.threads = threads_of(options.threads);
   const io::SceneFile file = io::read_scene(options.scene);
   const TracedScene traced(file.scene);
+  file.workcell.sensor.check();
+  Pipeline(file.workcell, parameters);  // what cannot be scanned is refused before anything is written
   prepare_output(options.output, options.force);
   const fs::path folder = options.output;
 
+  bool any_view = false;
   simulation.on_view = [&](const Pipeline& pipeline) {
     io::write_views(folder / "views.csv", pipeline.views());
+    io::write_raw_ply(folder / "cloud_raw.ply", pipeline.raw());
+    any_view = true;
     show_progress(pipeline, parameters.max_views);
   };
   ScanResult result;
   try {
     result = study::scan(file.workcell, traced, parameters, std::move(simulation));
   } catch (const std::exception& e) {
-    std::cerr << "\nagrisee: the scan failed midway: " << e.what() << "\nThe views taken so far are in "
-              << (folder / "views.csv").string() << "\n";
+    std::cerr << "\nagrisee: the scan failed midway: " << e.what() << "\n";
+    if (any_view) std::cerr << "The views taken so far are in " << (folder / "views.csv").string() << "\n";
     return kScanFailed;
   }
   if (isatty(STDERR_FILENO)) std::cerr << "\n";
@@ -98,7 +106,8 @@ void add_scan(CLI::App& app, Run& run) {
       ->check(CLI::IsMember({"gain", "see", "fixed", "random"}));
   command->add_option("--noise", options->noise, "noise of the sensor: none, gaussian:SIGMA, l515 or rough")
       ->capture_default_str();
-  command->add_option("--max-views", options->max_views, "view budget (default: the preset's)")->check(CLI::Range(1, 10000));
+  command->add_option("--max-views", options->max_views, "view budget (default: the preset's)")
+      ->check(CLI::Range(1, 10000));
   command->footer(
       "Examples:\n"
       "  agrisee scan truss/scene.yaml -o result --noise l515 --seed 1\n"

@@ -3,6 +3,9 @@
 
 #include <nlohmann/json.hpp>
 
+#include <unistd.h>
+
+#include <filesystem>
 #include <fstream>
 
 #include "catch.hpp"
@@ -12,7 +15,9 @@ using namespace agrisee;
 namespace {
 
 std::string write(const std::string& text) {
-  const std::string path = "parameters_test.yaml";
+  // Test cases run side by side, each in a process of its own.
+  const std::string path =
+      (std::filesystem::temp_directory_path() / ("parameters_test_" + std::to_string(::getpid()) + ".yaml")).string();
   std::ofstream(path) << text;
   return path;
 }
@@ -51,8 +56,8 @@ TEST_CASE("absent keys keep their values; a preset sets them") {
 }
 
 TEST_CASE("mistakes are named with file, line and key") {
-  CHECK(error_of("sor:\n  mean_q: 3\n").find("parameters_test.yaml:2: unknown key 'sor.mean_q'") == 0);
-  CHECK(error_of("max_views: lots\n").find("parameters_test.yaml:1: 'max_views'") == 0);
+  CHECK(error_of("sor:\n  mean_q: 3\n").find(".yaml:2: unknown key 'sor.mean_q'") != std::string::npos);
+  CHECK(error_of("max_views: lots\n").find(".yaml:1: 'max_views'") != std::string::npos);
   CHECK(error_of("sor: 3\n").find("'sor' must be a map") != std::string::npos);
   CHECK(error_of("normals: {radius: -1}\n").find("radius must be positive") != std::string::npos);
   CHECK(error_of("icp: {kernel: soft}\n").find("kernel") != std::string::npos);

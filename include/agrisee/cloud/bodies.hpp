@@ -35,6 +35,7 @@ struct BodyParameters {
   void check() const {
     check_parameter(radius_min > 0, "bodies.radius_min", "positive", radius_min);
     check_parameter(radius_max >= radius_min && std::isfinite(radius_max), "bodies.radius_max", ">= radius_min", radius_max);
+    check_parameter(radius_max <= 20.0 * radius_min, "bodies.radius_max", "at most 20 times radius_min", radius_max);
     check_parameter(tolerance > 0 && tolerance < 1, "bodies.tolerance", "in (0, 1)", tolerance);
     check_parameter(max_angle > 0 && max_angle < kPi, "bodies.max_angle", "in (0, pi)", max_angle);
     check_parameter(min_coverage > 0 && min_coverage < 1, "bodies.min_coverage", "in (0, 1)", min_coverage);

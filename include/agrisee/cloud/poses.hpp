@@ -113,8 +113,7 @@ struct GrowthAxisParameters {
 };
 
 /// Direction (unit, world) from a fruit's centre towards its calyx, from what can be measured: the points that belong to no
-/// fruit and lie just outside the body (calyx, pedicel) weigh by their nearness; gravity is a weak prior, and so is the
-/// body's shortest axis, about which a fruit is round.
+/// fruit and lie just outside the body (calyx, pedicel) weigh by their nearness; gravity is a weak prior.
 template <typename S>
 Eigen::Vector3d growth_axis(const PointCloud<S>& cloud, const Labels& labels, const Ellipsoid& body,
                             const GrowthAxisParameters& parameters = {}) {

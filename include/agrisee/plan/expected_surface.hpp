@@ -9,6 +9,7 @@
 /// less: the prediction is wrong there. Metres, world; gains in m2 of fruit surface.
 #pragma once
 
+#include <agrisee/cloud/normals.hpp>
 #include <agrisee/cloud/split.hpp>
 #include <agrisee/cloud/voxel.hpp>
 #include <agrisee/plan/directions.hpp>
@@ -56,7 +57,8 @@ class ExpectedSurface {
     parameters.check();
     const Eigen::Vector3d size = volume.size();
     // At most about two million voxels, whatever the volume.
-    edge_ = std::max(parameters.voxel, std::cbrt(std::max(size.prod(), 0.0) / 2e6));
+    edge_ = parameters.voxel;
+    while ((size / edge_).array().ceil().max(1.0).prod() > 2e6) edge_ *= 1.3;
     for (int a = 0; a < 3; ++a) dims_[a] = std::max(1, static_cast<int>(std::ceil(size[a] / edge_)));
     known_.assign(std::size_t(dims_[0]) * std::size_t(dims_[1]) * std::size_t(dims_[2]), 0);
   }
@@ -64,9 +66,12 @@ class ExpectedSurface {
   /// Update the model after a view.
   void update(const Progress& progress, const SplitParameters& split_parameters, const FreeSpaceParameters& free_space) {
     for (; images_read_ < progress.images.size(); ++images_read_) carve(progress.images[images_read_], free_space);
-    const Split found = split(progress.cloud, split_parameters, [&](const Ellipsoid& body) {
-      return seen_through(progress.images, body, free_space);
-    });
+    // Bodies are what this planner looks for, whatever the stages of the final split.
+    SplitParameters with_bodies = split_parameters;
+    with_bodies.adaptive = with_bodies.fit_bodies = true;
+    const auto through = [&](const Ellipsoid& body) { return seen_through(progress.images, body, free_space); };
+    const bool fused = progress.cloud.normals.size() == progress.cloud.size();
+    const Split found = fused ? split(progress.cloud, with_bodies, through) : split(with_normals(progress), with_bodies, through);
     bodies_ = found.found;
     collect_samples(progress);
     PointCloud<float> rest;
@@ -101,6 +106,17 @@ class ExpectedSurface {
     std::vector<char> samples;
     double area = 0.0;
   };
+
+  /// Raw points have no normals yet: estimated, and turned to the view that saw each.
+  static Cloud with_normals(const Progress& progress) {
+    Cloud cloud = progress.cloud;
+    NormalParameters normals;
+    if (const double spacing = estimate_spacing(cloud); spacing > 0.0) normals.radius = 3.0 * spacing;
+    std::vector<Eigen::Vector3d> sensors;
+    for (const View& v : progress.views) sensors.push_back(v.world_T_optical.translation());
+    cloud.normals = orient_normals_to_views(estimate_normals(cloud, normals), cloud, cloud.views, sensors);
+    return cloud;
+  }
 
   void carve(const sensor::SurfaceImage& image, const FreeSpaceParameters& free_space) {
     std::size_t i = 0;
@@ -216,7 +232,7 @@ class ExpectedSurface {
   Aabb volume_;
   ExpectedSurfaceParameters parameters_;
   double edge_ = 0.0;
-  std::array<int, 3> dims_{1, 1, 1};
+  Eigen::Vector3i dims_ = Eigen::Vector3i::Ones();
   std::vector<char> known_;  // one a voxel: some sight line has reached it
   std::size_t images_read_ = 0;
   std::vector<FoundBody> bodies_;

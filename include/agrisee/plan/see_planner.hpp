@@ -23,8 +23,10 @@ class SeePlanner : public Planner {
   }
 
   std::optional<ReachableView> next(const Progress& progress, const Joints& current, const Reach& reach) override {
-    if (progress.views.empty()) {
-      auto view = first_view(volume_, eye_, current, reach, band_, refused_first_);
+    // A first frame that shows nothing may be the sensor's fault: a few more tries near the front.
+    const auto taken = static_cast<int>(progress.views.size());
+    if (progress.cloud.empty() && taken < 4) {
+      auto view = first_view(volume_, eye_, current, reach, band_, refused_first_ + 12 * taken);
       if (!view) reason_ = StopReason::no_reachable_view;
       return view;
     }
