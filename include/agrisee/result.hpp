@@ -77,6 +77,19 @@ struct Fruit {
 /// Seconds of computing per stage. `total` is all of it but the simulated sensor's `capture`.
 struct Timing {
   double capture = 0.0, plan = 0.0, fuse = 0.0, filter = 0.0, normals = 0.0, segment = 0.0, locate = 0.0, total = 0.0;
+
+  /// f(name, field) for every stage.
+  template <typename P, typename F>
+  static void fields(P& p, F&& f) {
+    f("capture", p.capture);
+    f("plan", p.plan);
+    f("fuse", p.fuse);
+    f("filter", p.filter);
+    f("normals", p.normals);
+    f("segment", p.segment);
+    f("locate", p.locate);
+    f("total", p.total);
+  }
 };
 
 /// Everything that a scan, or the processing of a ready cloud, leaves behind.

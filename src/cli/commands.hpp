@@ -26,6 +26,9 @@ void add_scan(CLI::App& app, Run& run);
 void add_process(CLI::App& app, Run& run);
 void add_make_truss(CLI::App& app, Run& run);
 void add_evaluate(CLI::App& app, Run& run);
+void add_paper_scenes(CLI::App& app, Run& run);
+void add_experiment(CLI::App& app, Run& run);
+void add_limit(CLI::App& app, Run& run);
 
 /// Options that scan and process have in common.
 struct PipelineOptions {

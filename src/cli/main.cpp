@@ -15,6 +15,7 @@ int main(int argc, char** argv) {
       "  agrisee make-truss --total 7 --hidden 1 --seed 1 -o truss\n"
       "  agrisee scan truss/scene.yaml -o result --noise l515 --seed 1\n"
       "  agrisee evaluate truss/scene.yaml result\n"
+      "  agrisee limit truss/scene.yaml -o limit --base-search\n"
       "  agrisee process cloud.ply -o result --viewpoint 0,0,0\n"
       "Exit codes: 0 success, 1 bad usage, 2 bad input, 3 a scan that failed midway.");
   cli::Run run;
@@ -22,6 +23,9 @@ int main(int argc, char** argv) {
   cli::add_process(app, run);
   cli::add_make_truss(app, run);
   cli::add_evaluate(app, run);
+  cli::add_paper_scenes(app, run);
+  cli::add_experiment(app, run);
+  cli::add_limit(app, run);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& e) {

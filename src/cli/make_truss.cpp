@@ -1,15 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // agrisee make-truss: a procedural truss in the scene format, with its ground truth.
-#include <agrisee/io/ground_truth.hpp>
-#include <agrisee/io/scene.hpp>
-#include <agrisee/study/truss.hpp>
-
 #include <filesystem>
 #include <iostream>
 #include <memory>
 #include <nlohmann/json.hpp>
 
 #include "commands.hpp"
+#include "trusses.hpp"
 
 namespace agrisee::cli {
 namespace {
@@ -39,8 +36,7 @@ int run_make_truss(TrussOptions options) {
   make_folder(options.output);
   truss.workcell.name = "truss_" + std::to_string(options.truss.total) + "_" + std::to_string(options.truss.hidden) +
                         "_s" + std::to_string(options.truss.seed);
-  io::write_ground_truth(folder / "ground_truth.json", truss.truth);
-  io::write_scene(folder / "scene.yaml", {truss.workcell, truss.scene});
+  write_truss(folder, truss);
   if (options.json) {
     nlohmann::ordered_json out;
     out["scene"] = (folder / "scene.yaml").string();

@@ -4,6 +4,7 @@
 #include <agrisee/io/ply.hpp>
 #include <agrisee/io/render.hpp>
 #include <agrisee/io/scene.hpp>
+#include <agrisee/study/greedy_planner.hpp>
 #include <agrisee/study/simulated_scan.hpp>
 #include <agrisee/version.hpp>
 
@@ -41,7 +42,8 @@ void show_progress(const Pipeline& pipeline, int budget) {
 
 int run_scan(const ScanOptions& options) {
   Parameters parameters = parameters_of(options);
-  if (!options.planner.empty()) parameters.planner = options.planner;
+  const bool greedy = options.planner == "greedy";  // it needs the scene's truth, so it is no parameter
+  if (!options.planner.empty() && !greedy) parameters.planner = options.planner;
   if (options.max_views > 0) parameters.max_views = options.max_views;
   parameters.check();
   study::SimulationOptions simulation;
@@ -56,6 +58,11 @@ int run_scan(const ScanOptions& options) {
   const TracedScene traced(file.scene);
   file.workcell.sensor.check();
   Pipeline(file.workcell, parameters);  // what cannot be scanned is refused before anything is written
+  if (greedy) {
+    const study::Samples samples = study::fruit_samples(file.scene);
+    if (samples.size() == 0) throw FileError(options.scene + ": holds no fruit, whose truth the greedy planner needs");
+    simulation.planner = study::make_greedy_planner(traced, samples, file.workcell, {}, simulation.threads);
+  }
   prepare_output(options.output, options.force);
   const fs::path folder = options.output;
 
@@ -82,7 +89,7 @@ int run_scan(const ScanOptions& options) {
   info.threads = threads_of(options.threads);
   info.noise = options.noise;
   info.preset = parameters.preset;
-  info.planner = parameters.planner;
+  info.planner = greedy ? options.planner : parameters.planner;
   info.parameters_json = io::parameters_to_json(parameters);
   io::write_result(folder, result, file.workcell, info);
   io::write_picture(folder / "truss.png", result, file.workcell);
@@ -102,8 +109,8 @@ void add_scan(CLI::App& app, Run& run) {
   auto options = std::make_shared<ScanOptions>();
   command->add_option("scene", options->scene, "scene file (YAML)")->required();
   add_pipeline_options(*command, *options);
-  command->add_option("--planner", options->planner, "where to look next")
-      ->check(CLI::IsMember({"gain", "see", "fixed", "random"}));
+  command->add_option("--planner", options->planner, "where to look next; greedy knows the truth, for studies")
+      ->check(CLI::IsMember({"gain", "see", "fixed", "random", "greedy"}));
   command->add_option("--noise", options->noise, "noise of the sensor: none, gaussian:SIGMA, l515 or rough")
       ->capture_default_str();
   command->add_option("--max-views", options->max_views, "view budget (default: the preset's)")

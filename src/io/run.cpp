@@ -12,19 +12,6 @@ namespace {
 
 constexpr int kFormatVersion = 1;
 
-/// f(name, field) for every stage.
-template <typename T, typename F>
-void for_each_stage(T& timing, F&& f) {
-  f("capture", timing.capture);
-  f("plan", timing.plan);
-  f("fuse", timing.fuse);
-  f("filter", timing.filter);
-  f("normals", timing.normals);
-  f("segment", timing.segment);
-  f("locate", timing.locate);
-  f("total", timing.total);
-}
-
 Json parameters_of(const RunInfo& info) {
   if (info.parameters_json.empty()) return Json::object();
   try {
@@ -57,7 +44,7 @@ std::string run_text(const ScanResult& result, const Workcell& workcell, const R
     j["cluster_origin_world"] = json_list(cluster_origin(workcell.scan_volume, workcell.world_T_base.translation()),
                                           "the scan volume is not finite");
   Json& seconds = j["seconds"];
-  for_each_stage(result.seconds, [&](const char* stage, double value) {
+  Timing::fields(result.seconds, [&](const char* stage, double value) {
     check_input(std::isfinite(value), "write_run: a time is not finite");
     seconds[stage] = value;
   });
@@ -113,7 +100,7 @@ RunFile read_run(const std::filesystem::path& path) {
   run.filtered = static_cast<std::size_t>(points.at("filtered").count());
   run.labelled = static_cast<std::size_t>(points.at("labelled").count());
   const JsonValue seconds = top.at("seconds");
-  for_each_stage(run.seconds, [&](const char* stage, double& value) { value = seconds.at(stage).number(); });
+  Timing::fields(run.seconds, [&](const char* stage, double& value) { value = seconds.at(stage).number(); });
   return run;
 }
 

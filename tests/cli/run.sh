@@ -104,5 +104,63 @@ PY
     [ $code = 0 ] || fail "an empty scene: exit $code"
     grep -q nothing_seen r/run.json || fail "the reason is not recorded"
     ;;
+  limit)
+    "$agrisee" make-truss --total 3 --hidden 0 --seed 1 -o t >/dev/null || fail make-truss
+    small_sensor t/scene.yaml
+    expect 2 'missing.yaml' limit missing.yaml -o d
+    sed 's/scan_volume/scan_volum/' t/scene.yaml >t/typo.yaml && expect 2 'typo.yaml.*scan_volum' limit t/typo.yaml -o d
+    sed 's/class: fruit/class: other/; s/id: [0-9]*/id: 0/' t/scene.yaml >t/bare.yaml && expect 2 'bare.yaml.*no fruit' limit t/bare.yaml -o d
+    expect 2 'bare.yaml.*no fruit' scan t/bare.yaml -o d --planner greedy
+    expect 1 'base-search' limit t/scene.yaml -o d --base-step 0.1
+    expect 1 'step' limit t/scene.yaml -o d --base-search --base-range 1 --base-step 0.001
+    [ ! -e d ] || fail "a refused limit wrote something"
+    for threads in 1 2; do
+      expect 0 '' limit t/scene.yaml -o "l$threads" --base-search --base-range 0.3 --base-step 0.3 --threads $threads
+      grep -q 'Every fruit can be seen' out.txt || fail "the summary does not tell"
+      grep -q '<- present' out.txt || fail "the present place is not marked"
+    done
+    for f in limit.json observable.ply views.csv; do
+      cmp "l1/$f" "l2/$f" || fail "$f depends on the number of threads"
+    done
+    expect 1 'force' limit t/scene.yaml -o l1
+    expect 0 '' limit t/scene.yaml -o l1 --force --json
+    cmp out.txt l1/limit.json || fail "what --json prints is not limit.json"
+    python3 - <<'PY' || fail "the figures contradict each other"
+import csv, json, struct
+m = json.load(open("l2/limit.json"))
+assert 0.5 < m["observable"] < 0.9 and len(m["fruits"]) == 3, m
+places = m["base_search"]["places"]
+assert len(places) == 9 and sum(p["present"] for p in places) == 1
+best = [p["observable"] for p in places]
+assert best == sorted(best, reverse=True)
+raw = open("l2/observable.ply", "rb").read()
+head, body = raw.split(b"end_header\n", 1)
+for name in b"nx", b"red", b"int instance", b"int seen_by":
+    assert name in head, name
+records = list(struct.iter_unpack("<6f3B2i", body))
+assert len(records) == m["samples"] == sum(f["samples"] for f in m["fruits"])
+seen = [r for r in records if r[10] > 0]
+assert abs(len(seen) / len(records) - m["observable"]) < 1e-12
+for f in m["fruits"]:
+    own = [r[10] > 0 for r in records if r[9] == f["id"]]
+    assert abs(sum(own) / len(own) - f["observable"]) < 1e-12, f
+assert len({r[6:9] for r in records if r[10] == 0}) == 1
+views = list(csv.DictReader(open("l2/views.csv")))
+new = [int(v["points_new"]) for v in views]
+assert sum(new) == len(seen) and all(n > 0 for n in new)
+for row in m["views"]:  # the views of the file are those begun frontally
+    n = row["begun_frontal"]
+    assert sum(new[:n]) >= row["share"] * len(seen) > sum(new[: n - 1]), row
+    assert 1 <= row["begun_freely"] <= n + 2, row
+PY
+    expect 0 '' scan t/scene.yaml -o r --planner greedy --max-views 3
+    grep -q '"planner": "greedy"' r/run.json || fail "the planner is not recorded"
+    cut -d, -f2-4 r/views.csv | cmp - <(head -4 l2/views.csv | cut -d, -f2-4) || fail "the greedy planner takes other views"
+    expect 1 'scan' limit t/scene.yaml -o r --force
+    sed -E 's/(base: *\{? *xyz: *\[)[^]]*\]/\15, 5, 5]/' t/scene.yaml >t/far.yaml
+    expect 0 '' limit t/far.yaml -o far
+    grep -q 'nothing is within reach' out.txt || fail "an arm that reaches nothing is not told of"
+    [ "$(wc -l <far/views.csv)" = 1 ] && grep -q '"observable": 0.0' far/limit.json || fail "figures of nothing"
+    ;;
   *) fail "unknown case $3" ;;
 esac

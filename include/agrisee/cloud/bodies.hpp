@@ -26,11 +26,13 @@ struct BodyParameters {
   double radius_max = 0.050;      ///< largest expected radius of a fruit (m)
   double tolerance = 0.08;        ///< points within this share of the radius belong to the body's surface
   double max_angle = deg(35);     ///< and their normals within this angle of the body's (rad)
-  double min_coverage = 0.05;     ///< share of the surface that must be covered, contradictions taken off
+  double min_coverage = 0.08;     ///< share of the surface that must be covered, contradictions taken off
   double min_roundness = 0.35;    ///< smaller over larger principal curvature of the support
   double max_overlap = 0.30;      ///< deepest interpenetration of two bodies, as a share of the smaller radius
   FitParameters fit;
 
+  /// Whether a body of mean radius r (m) could be a fruit: within the expected range or hardly out of it.
+  bool plausible(double r) const { return r >= 0.85 * radius_min && r <= 1.15 * radius_max; }
   /// @throws ParameterError
   void check() const {
     check_parameter(radius_min > 0, "bodies.radius_min", "positive", radius_min);
@@ -78,7 +80,7 @@ namespace detail {
 /// How a body fares against the points that are still free.
 struct Verdict {
   double coverage = 0.0, inside = 0.0, seen_through = 0.0, roundness = 0.0;
-  Indices support;
+  std::size_t support = 0;  ///< points on its surface
   double score() const { return coverage - 2.0 * inside - 1.5 * seen_through; }
 };
 
@@ -90,46 +92,43 @@ Verdict judge(const PointCloud<S>& cloud, const Grid<S>& grid, const std::vector
   const double near = parameters.tolerance * r;
   const double cos_max = std::cos(parameters.max_angle), cos_loose = std::cos(std::min(kPi / 2, 1.6 * parameters.max_angle));
   std::bitset<DirectionBins::kCount> covered, filled;
+  // Sums over the points on the surface or nearly so, for the support's curvatures; positions from the centre.
   Eigen::Vector3d p_mean = Eigen::Vector3d::Zero(), n_mean = Eigen::Vector3d::Zero();
-  Indices loose;
+  Eigen::Matrix3d pp = Eigen::Matrix3d::Zero(), np = Eigen::Matrix3d::Zero();
+  double count = 0.0;
   grid.visit(body.center.cast<S>(), static_cast<S>(1.35 * r), [&](Index index, S) {
     const auto i = static_cast<std::size_t>(index);
-    const Eigen::Vector3d p = cloud.points[i].template cast<double>();
-    const double d = body.distance(p);
-    const double cosine = body.normal(p).dot(cloud.normals[i].template cast<double>());
-    if (d < -std::max(0.2 * r, 2.0 * near)) {
-      filled.set(static_cast<std::size_t>(DirectionBins::bin(p - body.center)));
+    const Eigen::Vector3d p = cloud.points[i].template cast<double>(), q = p - body.center;
+    const auto foot = body.foot(p);
+    if (foot.distance < -std::max(0.2 * r, 2.0 * near)) {
+      filled.set(static_cast<std::size_t>(DirectionBins::bin(q)));
       return;
     }
-    if (taken[i] || std::abs(d) > 2.0 * near) return;
+    if (taken[i] || std::abs(foot.distance) > 2.0 * near) return;
+    const Eigen::Vector3d normal = cloud.normals[i].template cast<double>();
+    const double cosine = foot.normal.dot(normal);
     if (cosine >= cos_loose) {
-      loose.push_back(index);
-      p_mean += p;
-      n_mean += cloud.normals[i].template cast<double>();
+      count += 1.0;
+      p_mean += q;
+      n_mean += normal;
+      pp += q.lazyProduct(q.transpose());
+      np += normal.lazyProduct(q.transpose());
     }
-    if (std::abs(d) <= near && cosine >= cos_max) {
-      covered.set(static_cast<std::size_t>(DirectionBins::bin(p - body.center)));
-      v.support.push_back(index);
+    if (std::abs(foot.distance) <= near && cosine >= cos_max) {
+      covered.set(static_cast<std::size_t>(DirectionBins::bin(q)));
+      ++v.support;
     }
   });
-  std::sort(v.support.begin(), v.support.end());
   for (std::size_t b = 0; b < DirectionBins::kCount; ++b) {
     if (covered[b]) v.coverage += DirectionBins::shares()[b];
     if (filled[b]) v.inside += DirectionBins::shares()[b];
   }
-  if (v.support.size() < 8) return v;
+  if (v.support < 8) return v;
   // Principal curvatures: normals as a linear function of position, in the plane of the support's two longest directions.
-  const auto n = static_cast<double>(loose.size());
-  std::sort(loose.begin(), loose.end());
-  p_mean /= n;
-  n_mean /= n;
-  Eigen::Matrix3d pp = Eigen::Matrix3d::Zero(), np = Eigen::Matrix3d::Zero();
-  for (Index index : loose) {
-    const auto i = static_cast<std::size_t>(index);
-    const Eigen::Vector3d dp = cloud.points[i].template cast<double>() - p_mean;
-    pp.noalias() += dp * dp.transpose();
-    np.noalias() += (cloud.normals[i].template cast<double>() - n_mean) * dp.transpose();
-  }
+  p_mean /= count;
+  n_mean /= count;
+  pp -= count * p_mean * p_mean.transpose();
+  np -= count * n_mean * p_mean.transpose();
   const Eigen::Matrix<double, 3, 2> plane = principal_axes<double>(p_mean, pp).axes.rightCols<2>();
   const Eigen::Matrix2d spread = plane.transpose() * pp * plane + 1e-12 * Eigen::Matrix2d::Identity();
   const Eigen::Matrix2d k = plane.transpose() * np * plane * spread.inverse();
@@ -164,14 +163,20 @@ std::vector<FoundBody> find_bodies(const PointCloud<S>& cloud, const std::vector
   check_input(cloud.normals.size() == cloud.points.size(), "find_bodies: the cloud has no normals");
   const Grid<S> grid(cloud, static_cast<S>(0.5 * parameters.radius_min));
   std::vector<char> taken(cloud.size(), 0);
-  const auto plausible = [&](double r) { return r >= 0.85 * parameters.radius_min && r <= 1.15 * parameters.radius_max; };
-  const auto refine = [&](const Ellipsoid& start) -> std::optional<EllipsoidFit> {
-    Indices near;
+  const auto plausible = [&](double r) { return parameters.plausible(r); };
+  FitParameters rough = parameters.fit;  // enough to see where a proposal ends up
+  rough.max_points = std::min(120, rough.max_points);
+  Indices near;
+  const auto refine = [&](const Ellipsoid& start, const FitParameters& fit) {
+    near.clear();
     grid.visit(start.center.cast<S>(), static_cast<S>(1.35 * start.mean_radius()), [&](Index i, S) {
       if (!taken[static_cast<std::size_t>(i)]) near.push_back(i);
     });
-    std::sort(near.begin(), near.end());
-    return fit_ellipsoid(cloud, near, start, parameters.fit);
+    return fit_ellipsoid(cloud, near, start, fit);
+  };
+  const auto alike = [](const Ellipsoid& a, const Ellipsoid& b) {
+    const double r = a.mean_radius(), gate = 0.05 * r;
+    return (a.center - b.center).norm() < gate && std::abs(b.mean_radius() - r) < gate;
   };
 
   struct Entry {
@@ -186,11 +191,15 @@ std::vector<FoundBody> find_bodies(const PointCloud<S>& cloud, const std::vector
               e.verdict.roundness >= parameters.min_roundness;
   };
   std::vector<Entry> entries;
+  std::vector<Ellipsoid> known;  // where proposals ended up; most of them meet
   for (const BodyCandidate& c : candidates) {
     if (!plausible(c.body.mean_radius())) continue;
     // Not worth a fit where hardly anything supports even the first guess.
     if (detail::judge(cloud, grid, taken, c.body, parameters, {}).coverage < 0.3 * parameters.min_coverage) continue;
-    const auto fit = refine(c.body);
+    const auto first = refine(c.body, rough);
+    if (!first || std::any_of(known.begin(), known.end(), [&](const Ellipsoid& k) { return alike(k, first->body); })) continue;
+    known.push_back(first->body);
+    const auto fit = refine(first->body, parameters.fit);
     if (!fit) continue;
     Entry e{*fit, &c.found_by, {}, true};
     assess(e);
@@ -215,21 +224,23 @@ std::vector<FoundBody> find_bodies(const PointCloud<S>& cloud, const std::vector
     found.push_back({best->fit, *best->found_by, best->verdict.coverage, best->verdict.score()});
     // What the new body explains is no longer free, its calyx end and a margin included.
     const Ellipsoid& body = best->fit.body;
-    const double near = 1.5 * parameters.tolerance * body.mean_radius();
+    const double margin = 1.5 * parameters.tolerance * body.mean_radius();
     const double cos_loose = std::cos(std::min(kPi / 2, 1.6 * parameters.max_angle));
     grid.visit(body.center.cast<S>(), static_cast<S>(1.35 * body.mean_radius()), [&](Index index, S) {
       const auto i = static_cast<std::size_t>(index);
       const Eigen::Vector3d p = cloud.points[i].template cast<double>();
-      const double d = body.distance(p);
-      if (d < near && (d < -near || body.normal(p).dot(cloud.normals[i].template cast<double>()) >= cos_loose)) taken[i] = 1;
+      const auto foot = body.foot(p);
+      if (foot.distance < margin && (foot.distance < -margin || foot.normal.dot(cloud.normals[i].template cast<double>()) >= cos_loose))
+        taken[i] = 1;
     });
     for (Entry& e : entries) {
       if (!e.alive) continue;
       const double gap = (e.fit.body.center - body.center).norm() - e.fit.body.mean_radius() - body.mean_radius();
       if (gap > 0.5 * body.mean_radius()) continue;
+      const std::size_t support = e.verdict.support;
       assess(e);  // most end here: their points are taken
-      if (!e.alive) continue;
-      if (const auto again = refine(e.fit.body)) {
+      if (!e.alive || e.verdict.support == support) continue;
+      if (const auto again = refine(e.fit.body, parameters.fit)) {
         e.fit = *again;
         assess(e);
       } else {
@@ -256,9 +267,10 @@ Labels assign_to_bodies(const PointCloud<S>& cloud, const std::vector<FoundBody>
     grid.visit(body.center.cast<S>(), static_cast<S>(1.4 * r), [&](Index index, S) {
       const auto i = static_cast<std::size_t>(index);
       const Eigen::Vector3d p = cloud.points[i].template cast<double>();
-      const double d = std::abs(body.distance(p));
+      const auto foot = body.foot(p);
+      const double d = std::abs(foot.distance);
       if (d > parameters.tolerance * r || d >= double(best[i])) return;
-      if (body.normal(p).dot(cloud.normals[i].template cast<double>()) < cos_loose) return;
+      if (foot.normal.dot(cloud.normals[i].template cast<double>()) < cos_loose) return;
       best[i] = static_cast<float>(d);
       labels[i] = static_cast<int>(b) + 1;
     });

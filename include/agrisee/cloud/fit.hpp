@@ -33,19 +33,24 @@ struct Ellipsoid {
 
   Ellipsoid() = default;
   explicit Ellipsoid(const Sphere& s) : center(s.center), A(Eigen::Matrix3d::Identity() / s.radius) {}
-  /// Signed distance (m) to first order, negative inside.
-  double distance(const Eigen::Vector3d& p) const {
-    const Eigen::Vector3d a = A * (p - center);
-    const double g = a.norm();
-    const double slope = (A * a).norm();
-    return slope > 0.0 ? (g - 1.0) * g / slope : -mean_radius();
+  /// A v, written out: general products are not inlined.
+  Eigen::Vector3d times(const Eigen::Vector3d& v) const {
+    return {A(0, 0) * v.x() + A(0, 1) * v.y() + A(0, 2) * v.z(), A(1, 0) * v.x() + A(1, 1) * v.y() + A(1, 2) * v.z(),
+            A(2, 0) * v.x() + A(2, 1) * v.y() + A(2, 2) * v.z()};
   }
-  /// Unit outward normal at the foot of p.
-  Eigen::Vector3d normal(const Eigen::Vector3d& p) const {
-    const Eigen::Vector3d n = A * (A * (p - center));
-    const double length = n.norm();
-    return length > 0.0 ? Eigen::Vector3d(n / length) : Eigen::Vector3d::UnitZ();
+  /// How a point lies to the surface.
+  struct Foot {
+    double distance;         ///< signed (m), to first order, negative inside
+    Eigen::Vector3d normal;  ///< unit, outward, at the point's foot
+  };
+  Foot foot(const Eigen::Vector3d& p) const {
+    const Eigen::Vector3d a = times(p - center), n = times(a);
+    const double g = a.norm(), slope = n.norm();
+    if (!(slope > 0.0)) return {-mean_radius(), Eigen::Vector3d::UnitZ()};
+    return {(g - 1.0) * g / slope, n / slope};
   }
+  double distance(const Eigen::Vector3d& p) const { return foot(p).distance; }
+  Eigen::Vector3d normal(const Eigen::Vector3d& p) const { return foot(p).normal; }
   /// Radius of the sphere whose inverse is the mean of the inverse semi-axes (m).
   double mean_radius() const { return 3.0 / A.trace(); }
   /// Point of the surface in direction `d` (unit) from the centre.
@@ -71,7 +76,8 @@ struct FitParameters {
   double shape_prior = 0.04;   ///< standard deviation of the relative semi-axes about a sphere
   double max_angle = deg(50);  ///< points whose normals differ by more from the body's do not count (rad)
   int independent = 150;       ///< points above this number add no certainty: neighbours err together
-  int iterations = 12;
+  int iterations = 12;         ///< at most
+  int max_points = 400;        ///< of more points so many are used, evenly picked; neighbours tell the same
 
   /// @throws ParameterError
   void check() const {
@@ -80,6 +86,7 @@ struct FitParameters {
     check_parameter(max_angle > 0 && max_angle <= kPi, "fit.max_angle", "in (0, pi]", max_angle);
     check_parameter(independent >= 1, "fit.independent", ">= 1", independent);
     check_parameter(iterations >= 1, "fit.iterations", ">= 1", iterations);
+    check_parameter(max_points >= 1, "fit.max_points", ">= 1", max_points);
   }
   template <typename P, typename F>
   static void fields(P& p, F&& f) {
@@ -88,6 +95,7 @@ struct FitParameters {
     f("max_angle", p.max_angle);
     f("independent", p.independent);
     f("iterations", p.iterations);
+    f("max_points", p.max_points);
   }
 };
 
@@ -138,49 +146,62 @@ std::optional<EllipsoidFit> fit_ellipsoid(const PointCloud<S>& cloud, const Indi
   using Vector9 = Eigen::Matrix<double, 9, 1>;
   using Matrix9 = Eigen::Matrix<double, 9, 9>;
 
+  // What is used of the cloud, gathered once.
+  struct Sample {
+    Eigen::Vector3d point, normal;
+  };
+  const std::size_t used = std::min(indices.size(), std::max(least, static_cast<std::size_t>(parameters.max_points)));
+  std::vector<Sample> samples(used);
+  for (std::size_t k = 0; k < used; ++k) {
+    const auto i = static_cast<std::size_t>(indices[k * indices.size() / used]);
+    samples[k] = {cloud.points[i].template cast<double>(), cloud.normals[i].template cast<double>()};
+  }
+
+  const double share = static_cast<double>(indices.size()) / static_cast<double>(used);  // points a sample stands for
+
   EllipsoidFit fit;
   fit.body = start;
   const double size = start.mean_radius();
   double gate = std::max(6.0 * parameters.noise, 0.12 * size);
   for (int iteration = 0; iteration < parameters.iterations; ++iteration) {
-    // Unknowns: the centre in units of `size`, and B = A * size - I as (xx, yy, zz, xy, xz, yz).
-    Matrix9 normal_matrix = Matrix9::Zero();
-    Vector9 rhs = Vector9::Zero();
+    // Unknowns: the centre in units of `size`, and B = A * size - I as (xx, yy, zz, xy, xz, yz). The tenth row and
+    // column of the products belong to the residual.
+    Eigen::Matrix<double, 10, 10> products = Eigen::Matrix<double, 10, 10>::Zero();
     double weights = 0.0, squares = 0.0;
     std::size_t inliers = 0;
-    const Eigen::Matrix3d& A = fit.body.A;
-    for (Index index : indices) {
-      const auto i = static_cast<std::size_t>(index);
+    const Ellipsoid body = fit.body;
+    const double inlier = 3.0 * std::max(parameters.noise, 0.01 * size);
+    for (const Sample& sample : samples) {
       // Everything is taken at the point's radial projection on the body: derivatives that saw the point's own error
       // would be correlated with its residual, and crescents turn that into millimetres.
-      Eigen::Vector3d d = cloud.points[i].template cast<double>() - fit.body.center;
-      const double g = (A * d).norm();
+      Eigen::Vector3d d = sample.point - body.center;
+      const double g = body.times(d).norm();
       if (!(g > 1e-9)) continue;
       d /= g;
-      const Eigen::Vector3d a = A * d, slope = A * a;
+      const Eigen::Vector3d a = body.times(d), slope = body.times(a);
       const double steep = slope.norm();
-      if (slope.dot(cloud.normals[i].template cast<double>()) < cos_max * steep) continue;
+      if (slope.dot(sample.normal) < cos_max * steep) continue;
       const double residual = (g - 1.0) / steep;
       const double t = residual / gate;
       if (std::abs(t) >= 1.0) continue;
-      const double w = (1.0 - t * t) * (1.0 - t * t);
-      Vector9 j;
-      j.head<3>() = -slope * (size / steep);
-      j.tail<6>() << a.x() * d.x(), a.y() * d.y(), a.z() * d.z(), a.x() * d.y() + a.y() * d.x(),
-          a.x() * d.z() + a.z() * d.x(), a.y() * d.z() + a.z() * d.y();
-      j.tail<6>() /= steep * size;
-      normal_matrix.noalias() += w * j * j.transpose();
-      rhs -= w * residual * j;
+      const double w = (1.0 - t * t) * (1.0 - t * t), scale = 1.0 / (steep * size);
+      Eigen::Matrix<double, 10, 1> j;
+      j << slope * (-size / steep), a.x() * d.x() * scale, a.y() * d.y() * scale, a.z() * d.z() * scale,
+          (a.x() * d.y() + a.y() * d.x()) * scale, (a.x() * d.z() + a.z() * d.x()) * scale,
+          (a.y() * d.z() + a.z() * d.y()) * scale, residual;
+      products.noalias() += (w * j).lazyProduct(j.transpose());
       weights += w;
-      if (std::abs(residual) < 3.0 * std::max(parameters.noise, 0.01 * size)) ++inliers, squares += residual * residual;
+      if (std::abs(residual) < inlier) ++inliers, squares += residual * residual;
     }
-    if (weights < 0.3 * static_cast<double>(least)) return std::nullopt;
-    const double certainty = std::min(1.0, parameters.independent / weights) / (parameters.noise * parameters.noise);
+    Matrix9 normal_matrix = products.topLeftCorner<9, 9>();
+    Vector9 rhs = -products.topRightCorner<9, 1>();
+    if (share * weights < 0.3 * static_cast<double>(least)) return std::nullopt;
+    const double certainty = std::min(share, parameters.independent / weights) / (parameters.noise * parameters.noise);
     normal_matrix *= certainty;
     rhs *= certainty;
     // The prior: the deviatoric part of B is small.
-    const Eigen::Matrix3d B = A * size - Eigen::Matrix3d::Identity();
-    const double relative = A.trace() * size / 3.0;  // mean of the inverse semi-axes, in units of 1 / size
+    const Eigen::Matrix3d B = body.A * size - Eigen::Matrix3d::Identity();
+    const double relative = body.A.trace() * size / 3.0;  // mean of the inverse semi-axes, in units of 1 / size
     Matrix9 prior = Matrix9::Zero();
     prior.block<3, 3>(3, 3) = Eigen::Matrix3d::Identity() - Eigen::Matrix3d::Constant(1.0 / 3.0);
     prior.diagonal().tail<3>().setConstant(2.0);
@@ -201,11 +222,11 @@ std::optional<EllipsoidFit> fit_ellipsoid(const PointCloud<S>& cloud, const Indi
     fit.body.A += damp * dA / size;
     const Eigen::Vector3d inverse_axes = Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(fit.body.A).eigenvalues();
     if (!(inverse_axes[0] > 0.2 / size) || !(inverse_axes[2] < 5.0 / size)) return std::nullopt;
-    fit.inliers = inliers;
+    fit.inliers = static_cast<std::size_t>(share * static_cast<double>(inliers));
     fit.rms = inliers ? std::sqrt(squares / static_cast<double>(inliers)) : 0.0;
     fit.center_covariance = solver.solve(Matrix9::Identity()).topLeftCorner<3, 3>() * size * size;
     gate = std::max(0.7 * gate, std::max(4.0 * parameters.noise, 0.05 * size));
-    if (iteration > 4 && longest < 1e-5) break;
+    if (iteration > 3 && longest < 1e-4) break;
   }
   if (fit.inliers < least / 2) return std::nullopt;
   return fit;

@@ -12,6 +12,7 @@
 #include <agrisee/core/random.hpp>
 
 #include <algorithm>
+#include <array>
 
 namespace agrisee {
 
@@ -73,10 +74,6 @@ std::vector<VotedCenter> vote_for_centers(const PointCloud<S>& cloud, double rad
     cells.push_back({votes[i], static_cast<float>(j - i)});
     i = j;
   }
-  const auto at = [&](std::uint64_t key) {
-    const auto it = std::lower_bound(cells.begin(), cells.end(), key, [](const Cell& c, std::uint64_t k) { return c.key < k; });
-    return it != cells.end() && it->key == key ? it->votes : 0.0f;
-  };
   // A centre's votes spread over neighbouring cells: sum the 27 around each cell that could matter.
   struct Sum {
     std::uint64_t key;
@@ -84,6 +81,8 @@ std::vector<VotedCenter> vote_for_centers(const PointCloud<S>& cloud, double rad
     Eigen::Vector3d center;
   };
   std::vector<Sum> sums;
+  // The cells of the nine rows about a cell are consecutive in the list, and move forward as the cell does.
+  std::array<std::size_t, 9> rows{};
   for (const Cell& c : cells) {
     if (double(c.votes) < min_votes / 27.0) continue;
     double total = 0.0;
@@ -91,13 +90,17 @@ std::vector<VotedCenter> vote_for_centers(const PointCloud<S>& cloud, double rad
     const auto x = static_cast<std::int64_t>(c.key & 0x1FFFFF) - kHalf;
     const auto y = static_cast<std::int64_t>((c.key >> 21) & 0x1FFFFF) - kHalf;
     const auto z = static_cast<std::int64_t>(c.key >> 42) - kHalf;
-    for (std::int64_t dz = -1; dz <= 1; ++dz)
-      for (std::int64_t dy = -1; dy <= 1; ++dy)
-        for (std::int64_t dx = -1; dx <= 1; ++dx) {
-          const double v = double(at(pack(x + dx, y + dy, z + dz)));
-          total += v;
-          mean += v * Eigen::Vector3d(double(x + dx), double(y + dy), double(z + dz));
-        }
+    for (std::size_t row = 0; row < 9; ++row) {
+      const auto dy = static_cast<std::int64_t>(row % 3) - 1, dz = static_cast<std::int64_t>(row / 3) - 1;
+      const std::uint64_t first = pack(x - 1, y + dy, z + dz);
+      std::size_t& at = rows[row];
+      while (at < cells.size() && cells[at].key < first) ++at;
+      for (std::size_t k = at; k < cells.size() && cells[k].key <= first + 2; ++k) {
+        const double v = double(cells[k].votes);
+        total += v;
+        mean += v * Eigen::Vector3d(double(x - 1) + static_cast<double>(cells[k].key - first), double(y + dy), double(z + dz));
+      }
+    }
     if (total >= min_votes) sums.push_back({c.key, total, origin + pitch * mean / total});
   }
   std::sort(sums.begin(), sums.end(),

@@ -73,6 +73,49 @@ struct Split {
   int regions_found = 0, clusters_found = 0;  ///< instances from either of the paper's stages
 };
 
+/// What the paper's two stages run with on a certain cloud.
+struct StageParameters {
+  RegionGrowingParameters growing;
+  DbscanParameters clustering;
+  std::size_t min_residual = 0;  ///< DBSCAN runs when the residual holds more points than this
+  int min_cluster = 1;           ///< smaller clusters are noise
+};
+
+/// The stages' parameters for a cloud: as given, or where they are adaptive derived from its spacing; none for a cloud
+/// that has no spacing (no two different points).
+template <typename S>
+std::optional<StageParameters> stages_for(const PointCloud<S>& cloud, const SplitParameters& parameters) {
+  StageParameters stages{parameters.growing, parameters.clustering, static_cast<std::size_t>(parameters.min_residual), 1};
+  if (!parameters.adaptive) return stages;
+  const double spacing = estimate_spacing(cloud);
+  if (!(spacing > 0.0)) return std::nullopt;
+  const double smallest = 4.0 * kPi * parameters.bodies.radius_min * parameters.bodies.radius_min;
+  const double least = parameters.min_region * smallest / (spacing * spacing);
+  stages.growing.radius = parameters.growing_reach * spacing;
+  stages.growing.min_size = std::max(12, static_cast<int>(std::min(least, 1e9)));
+  stages.clustering.eps = parameters.clustering_reach * spacing;
+  stages.clustering.min_points = 8;
+  stages.min_residual = static_cast<std::size_t>(stages.growing.min_size);
+  stages.min_cluster = stages.growing.min_size;
+  return stages;
+}
+
+/// Drop labels of fewer than `least` points and number the others anew from 1 in their old order.
+/// @return the largest label left
+inline int drop_small(Labels& labels, int least) {
+  std::vector<int> sizes(1, 0);
+  for (int c : labels) {
+    if (static_cast<std::size_t>(c) >= sizes.size()) sizes.resize(static_cast<std::size_t>(c) + 1, 0);
+    ++sizes[static_cast<std::size_t>(c)];
+  }
+  std::vector<int> renumbered(sizes.size(), 0);
+  int largest = 0;
+  for (std::size_t c = 1; c < sizes.size(); ++c)
+    if (sizes[c] >= least) renumbered[c] = ++largest;
+  for (int& c : labels) c = renumbered[static_cast<std::size_t>(c)];
+  return largest;
+}
+
 namespace detail {
 
 /// Who found a body: the stage one of whose segments is mostly this body, and makes up most of it.
@@ -158,19 +201,9 @@ Split split(const PointCloud<S>& cloud, const SplitParameters& parameters = {}, 
   out.regions.assign(cloud.size(), 0);
   if (cloud.empty()) return out;
 
-  RegionGrowingParameters growing = parameters.growing;
-  DbscanParameters clustering = parameters.clustering;
-  auto min_residual = static_cast<std::size_t>(parameters.min_residual);
-  if (parameters.adaptive) {
-    const double spacing = estimate_spacing(cloud);
-    if (!(spacing > 0.0)) return out;
-    const double smallest = 4.0 * kPi * parameters.bodies.radius_min * parameters.bodies.radius_min;
-    growing.radius = parameters.growing_reach * spacing;
-    growing.min_size = std::max(12, static_cast<int>(parameters.min_region * smallest / (spacing * spacing)));
-    clustering.eps = parameters.clustering_reach * spacing;
-    clustering.min_points = 8;
-    min_residual = static_cast<std::size_t>(growing.min_size);
-  }
+  const auto stages = stages_for(cloud, parameters);
+  if (!stages) return out;
+  const RegionGrowingParameters& growing = stages->growing;
 
   // Region growing, then DBSCAN on what it leaves.
   const Grid<S> grid(cloud, static_cast<S>(growing.radius));
@@ -179,20 +212,11 @@ Split split(const PointCloud<S>& cloud, const SplitParameters& parameters = {}, 
   const Indices rest = residual(out.regions);
   out.residual = rest.size();
   Labels segments = out.regions;
-  if (rest.size() > min_residual) {
-    const PointCloud<S> part = select(cloud, rest);
-    const Labels clusters = dbscan(part, clustering);
-    std::vector<int> sizes;
-    for (int c : clusters) {
-      if (static_cast<std::size_t>(c) >= sizes.size()) sizes.resize(static_cast<std::size_t>(c) + 1, 0);
-      ++sizes[static_cast<std::size_t>(c)];
-    }
-    // Every cluster counts for the paper; bodies are proposed by those that could be a fruit.
-    std::vector<int> renumbered(sizes.size(), 0);
-    for (std::size_t c = 1; c < sizes.size(); ++c)
-      if (!parameters.adaptive || sizes[c] >= growing.min_size) renumbered[c] = out.regions_found + ++out.clusters_found;
+  if (rest.size() > stages->min_residual) {
+    Labels clusters = dbscan(select(cloud, rest), stages->clustering);
+    out.clusters_found = drop_small(clusters, stages->min_cluster);
     for (std::size_t i = 0; i < rest.size(); ++i)
-      segments[static_cast<std::size_t>(rest[i])] = renumbered[static_cast<std::size_t>(clusters[i])];
+      if (clusters[i] > 0) segments[static_cast<std::size_t>(rest[i])] = out.regions_found + clusters[i];
   }
   const int first_cluster = out.regions_found + 1;
   const auto members = indices_by_label(segments);
@@ -229,12 +253,15 @@ Split split(const PointCloud<S>& cloud, const SplitParameters& parameters = {}, 
   out.found = find_bodies(cloud, candidates, bodies, seen_through);
   out.labels = assign_to_bodies(cloud, out.found, bodies);
 
-  // Each body is fitted once more to the points that are its own, and the points are assigned anew.
+  // Each body is fitted once more to all the points that are its own, and the points are assigned anew.
+  FitParameters last_fit = bodies.fit;
+  last_fit.max_points = std::max(last_fit.max_points, static_cast<int>(cloud.size()));
   for (int round = 0; round < 2; ++round) {
     auto own = indices_by_label(out.labels);
     own.resize(out.found.size());
     for (std::size_t b = 0; b < out.found.size(); ++b)
-      if (const auto fit = fit_ellipsoid(cloud, own[b], out.found[b].fit.body, bodies.fit)) out.found[b].fit = *fit;
+      if (const auto fit = fit_ellipsoid(cloud, own[b], out.found[b].fit.body, last_fit))
+        if (bodies.plausible(fit->body.mean_radius())) out.found[b].fit = *fit;
     out.labels = assign_to_bodies(cloud, out.found, bodies);
   }
   detail::extend_labels(out.labels, cloud, out.found, out.regions, out.regions_found, bodies);

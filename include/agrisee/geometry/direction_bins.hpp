@@ -20,10 +20,10 @@ struct DirectionBins {
     Eigen::Index axis;
     const double largest = d.cwiseAbs().maxCoeff(&axis);
     const int face = static_cast<int>(axis) * 2 + (d[axis] < 0.0 ? 1 : 0);
-    const auto cell = [&](double x) {
-      const double a = std::atan(x / largest) * (4.0 / kPi);  // -1 .. 1
-      const int c = static_cast<int>((a + 1.0) * 0.5 * kSide);
-      return c < 0 ? 0 : c >= kSide ? kSide - 1 : c;
+    const auto cell = [&](double x) {  // borders at tan(-30), tan(-15) ... tan(30) degrees of the face
+      constexpr double kTan15 = 0.26794919243112270647, kTan30 = 0.57735026918962576451;
+      const double a = std::abs(x), steps = (a >= kTan15 * largest) + (a >= kTan30 * largest);
+      return static_cast<int>(x >= 0.0 ? 3.0 + steps : 2.0 - steps);
     };
     return (face * kSide + cell(d[(axis + 1) % 3])) * kSide + cell(d[(axis + 2) % 3]);
   }
