@@ -13,7 +13,8 @@ namespace agrisee {
 namespace detail {
 
 /// The fitted body of a fruit, with the share of its surface that its points cover and how far it can be trusted.
-inline Body body_of(const Cloud& cloud, const Indices& points, const FoundBody& found, const BodyParameters& parameters) {
+inline Body body_of(const Cloud& cloud, const Indices& points, const FoundBody& found, const BodyParameters& parameters,
+                    const MassParameters& mass_parameters) {
   Body body;
   body.center = found.fit.body.center;
   std::tie(body.radii, body.axes) = semi_axes(found.fit.body);
@@ -30,6 +31,10 @@ inline Body body_of(const Cloud& cloud, const Indices& points, const FoundBody& 
   const double seen = std::clamp((found.score - parameters.min_coverage) / 0.25, 0.0, 1.0);
   const double misfit = body.rms / (parameters.tolerance * found.fit.body.mean_radius());
   body.confidence = (0.5 + 0.5 * seen) * std::exp(-misfit * misfit);
+  const double fit_error = relative_volume_error(cloud, points, found.fit.body, parameters.fit);
+  const Estimate volume = volume_of(found.fit.body, fit_error, mass_parameters), mass = mass_of(volume, mass_parameters);
+  std::tie(body.volume, body.volume_error) = std::tie(volume.value, volume.error);
+  std::tie(body.mass, body.mass_error) = std::tie(mass.value, mass.error);
   return body;
 }
 
@@ -54,7 +59,8 @@ inline std::vector<Fruit> locate(const Cloud& cloud, const Split& split, const E
     fruit.centroid = c.mean;
     fruit.sigma = c.sigma;
     fruit.centroid_cluster = c.mean - cluster_origin;  // {R} is parallel to world
-    if (parameters.split.fit_bodies) fruit.body = detail::body_of(cloud, members[f], found, parameters.split.bodies);
+    if (parameters.split.fit_bodies)
+      fruit.body = detail::body_of(cloud, members[f], found, parameters.split.bodies, parameters.mass);
     if (parameters.growth_axis && parameters.split.fit_bodies) {
       const Eigen::Vector3d z = growth_axis(cloud, split.labels, found.fit.body, parameters.axis);
       fruit.orientation = frame_from_z_and_x(z, densest_point(cloud, members[f], 0.006) - c.mean);

@@ -8,6 +8,8 @@
 #include <agrisee/cloud/sor.hpp>
 #include <agrisee/cloud/split.hpp>
 #include <agrisee/cloud/surfels.hpp>
+#include <agrisee/cloud/volume.hpp>
+#include <agrisee/plan/approach.hpp>
 #include <agrisee/plan/gain_planner.hpp>
 #include <agrisee/see/params.hpp>
 #include <agrisee/sensor/surface_image.hpp>
@@ -34,8 +36,10 @@ struct Parameters {
   NormalParameters normals;
   SplitParameters split;
   GrowthAxisParameters axis;
+  MassParameters mass;
   plan::FreeSpaceParameters free_space;
   plan::GainPlannerParameters gain;
+  plan::PickingParameters picking;
   see::Parameters see;
 
   /// The paper's stages with the paper's values.
@@ -53,6 +57,7 @@ struct Parameters {
     p.sor = SorParameters::paper();
     p.normals = NormalParameters::paper();
     p.split = SplitParameters::paper();
+    p.picking = plan::PickingParameters::paper();
     p.see = see::Parameters::paper();
     return p;
   }
@@ -61,6 +66,23 @@ struct Parameters {
     if (preset == "default") return {};
     if (preset == "paper") return paper();
     throw ParameterError("preset must be default or paper, got " + preset);
+  }
+  /// Expect fruit with radii from `smallest` to `largest` (m) and set what follows from it: the range of bodies and, for
+  /// fruit smaller than the 20 mm that the defaults are made for, the lengths at which surfaces are sampled, fused and
+  /// fitted, in proportion. Sampling twice as finely gives four times the points, in about as much more time.
+  /// @throws ParameterError when the range is empty or spans more than a factor of 20
+  void expect_radii(double smallest, double largest) {
+    BodyParameters bodies = split.bodies;
+    bodies.radius_min = smallest;
+    bodies.radius_max = largest;
+    bodies.check();
+    const double scale = std::min(1.0, smallest / BodyParameters().radius_min);
+    bodies.fit.noise = scale * FitParameters().noise;
+    split.bodies = bodies;
+    surface.spacing = scale * sensor::SurfaceParameters().spacing;
+    surface.smallest_radius = scale * sensor::SurfaceParameters().smallest_radius;
+    surfels.separation = scale * SurfelParameters().separation;
+    surfels.agreement = scale * SurfelParameters().agreement;
   }
   /// @throws ParameterError naming the first field out of its range
   void check() const {
@@ -76,8 +98,10 @@ struct Parameters {
     normals.check();
     split.check();
     axis.check();
+    mass.check();
     free_space.check();
     gain.check();
+    picking.check();
     see.check();
   }
   /// f(name, field) for every field; nested parameter structs have `fields` of their own.
@@ -99,8 +123,10 @@ struct Parameters {
     f("normals", p.normals);
     f("split", p.split);
     f("axis", p.axis);
+    f("mass", p.mass);
     f("free_space", p.free_space);
     f("gain", p.gain);
+    f("picking", p.picking);
     f("see", p.see);
   }
 };

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// @file
-/// The whole of AgriSEE behind one facade: look, clean, split, locate.
+/// The whole of AgriSEE behind one facade: look, clean, split, locate, plan the picking.
 ///
 /// A robot's own loop: `observe` each frame with the pose it was taken from, ask `next_view`, move, repeat until there is
 /// none; then `result`. A ready cloud: `process` (process.hpp). A simulated scan: `study::scan` (study/simulated_scan.hpp),
@@ -9,6 +9,8 @@
 
 #include <agrisee/cloud/icp.hpp>
 #include <agrisee/cloud/merge.hpp>
+#include <agrisee/plan/arm_approach.hpp>
+#include <agrisee/plan/picking.hpp>
 #include <agrisee/planners.hpp>
 #include <agrisee/process.hpp>
 #include <agrisee/sensor/points_to_frame.hpp>
@@ -25,14 +27,18 @@ class Pipeline {
   /// @param reach answers whether and how the arm can take a view; the default asks our UR3 model
   /// @param planner decides where to look next; the default is the one that `parameters.planner` names
   /// @param seed of whatever the planner draws
+  /// @param approach answers whether and how the arm can approach a fruit to pick it; the default asks our UR3 model, or
+  ///   nobody where `reach` is the caller's own (an arm that we do not know)
   /// @throws ParameterError; InputError for an empty scan volume or poses that are not rigid
   explicit Pipeline(const Workcell& workcell, const Parameters& parameters = {}, plan::Reach reach = {},
-                    std::unique_ptr<plan::Planner> planner = nullptr, std::uint64_t seed = 0, int threads = 1)
-      : workcell_(workcell), parameters_(parameters), reach_(std::move(reach)), planner_(std::move(planner)),
-        threads_(threads), surfels_(parameters.surfels), points_(parameters.see.min_separation()) {
+                    std::unique_ptr<plan::Planner> planner = nullptr, std::uint64_t seed = 0, int threads = 1,
+                    plan::ReachApproach approach = {})
+      : workcell_(workcell), parameters_(parameters), reach_(std::move(reach)), approach_(std::move(approach)),
+        planner_(std::move(planner)), threads_(threads), surfels_(parameters.surfels), points_(parameters.see.min_separation()) {
     parameters_.check();
     check_input(!workcell.scan_volume.empty() && workcell.scan_volume.size().allFinite(), "the scan volume is empty or infinite");
     check_input(is_rigid(workcell.world_T_base) && is_rigid(workcell.tool0_T_optical), "a pose of the workcell is not rigid");
+    if (!reach_ && !approach_) approach_ = default_approach();
     if (!reach_) reach_ = plan::reach_of(workcell_);
     if (!planner_) planner_ = make_planner(workcell_, parameters_, seed, threads);
   }
@@ -116,7 +122,7 @@ class Pipeline {
   const Parameters& parameters() const { return parameters_; }
   const plan::Reach& reach() const { return reach_; }
 
-  /// Clean, split and locate what has been seen so far.
+  /// Clean, split and locate what has been seen so far, and plan the picking from where the arm stood last.
   ScanResult result() const {
     CloudOrigin origin;
     for (const View& v : views_) origin.sensors.push_back(v.world_T_optical.translation());
@@ -127,6 +133,7 @@ class Pipeline {
     ScanResult out = process(cloud_, parameters_, origin, seen_through, threads_);
     out.raw = raw_cloud();
     center_on_all_views(out);
+    if (parameters_.picking.enabled) plan_the_picking(out);
     out.views = views_;
     out.stop_reason = stop_reason_;
     out.seconds.plan = seconds_.plan;
@@ -144,6 +151,29 @@ class Pipeline {
   /// How far ahead a view looks: to the middle of the scan volume, as seen along its axis.
   double target_distance(const Pose& world_T_optical) const {
     return std::max((workcell_.scan_volume.center() - world_T_optical.translation()).dot(world_T_optical.linear().col(2)), 0.0);
+  }
+
+  /// How the UR3 of the workcell, its gripper ahead of the sensor, approaches fruit.
+  plan::ReachApproach default_approach() const {
+    const Pose tool0_T_tool = workcell_.tool0_T_optical * Eigen::Translation3d(0.0, 0.0, parameters_.picking.tool_length);
+    return plan::approach_of(plan::mount_of(workcell_), tool0_T_tool, parameters_.picking);
+  }
+
+  /// Counts as locating.
+  void plan_the_picking(ScanResult& out) const {
+    double spent = 0.0;
+    {
+      const Stopwatch watch(spent);
+      const bool known = !views_.empty() && views_.back().joints;
+      const auto plan = plan::plan_picking(out.fruits,
+                                           {workcell_.keep_out, workcell_.world_T_base.translation(),
+                                            known ? *views_.back().joints : workcell_.start,
+                                            plan::seen_directions(out.cloud, out.labels, out.fruits)},
+                                           approach_, parameters_.picking);
+      for (std::size_t i = 0; i < plan.size(); ++i) out.fruits[i].picking = plan[i];
+    }
+    out.seconds.locate += spent;
+    out.seconds.total += spent;
   }
 
   plan::Progress progress(const std::vector<Eigen::Vector3f>& added, const Indices* kept) const {
@@ -248,6 +278,7 @@ class Pipeline {
   Workcell workcell_;
   Parameters parameters_;
   plan::Reach reach_;
+  plan::ReachApproach approach_;
   std::unique_ptr<plan::Planner> planner_;
   int threads_;
   SurfelMap surfels_;                         // fused surfaces

@@ -8,6 +8,7 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
 namespace agrisee {
 
@@ -52,6 +53,50 @@ struct Body {
   double rms = 0.0;                                     ///< root mean square distance of its points (m)
   double completeness = 0.0;                            ///< share of its surface that was observed, 0..1
   double confidence = 0.0;                              ///< 0..1
+  double volume = 0.0;                                  ///< m3
+  double volume_error = 0.0;                            ///< its standard error (m3); 0 = not known
+  double mass = 0.0;                                    ///< kg, through a density parameter
+  double mass_error = 0.0;                              ///< its standard error (kg), the density's included; 0 = not known
+};
+
+/// Whether a fruit can be picked, or what is in the way: of all directions of approach, what stopped the one that came
+/// farthest. In the order in which an approach is tested.
+enum class PickingReason {
+  reachable,             ///< it can be picked
+  not_tested,            ///< an approach is free, but no arm was asked whether it can reach it
+  no_body,               ///< no body was fitted: where to grip is not known
+  blocked_by_keep_out,   ///< every approach meets a space to keep out of
+  blocked_by_fruit,      ///< every approach meets fruit that cannot be picked before
+  out_of_reach,          ///< no joint angles within the limits put the tool at a pre-grasp pose
+  arm_collision,         ///< the arm would meet a space to keep out of, or itself
+  approach_interrupted,  ///< the arm can stand at a pre-grasp pose but not follow the straight approach
+  arm_meets_fruit        ///< the arm would meet fruit that cannot be picked before
+};
+
+inline const char* to_string(PickingReason reason) {
+  switch (reason) {
+    case PickingReason::reachable: return "reachable";
+    case PickingReason::not_tested: return "not_tested";
+    case PickingReason::no_body: return "no_body";
+    case PickingReason::blocked_by_keep_out: return "blocked_by_keep_out";
+    case PickingReason::blocked_by_fruit: return "blocked_by_fruit";
+    case PickingReason::out_of_reach: return "out_of_reach";
+    case PickingReason::arm_collision: return "arm_collision";
+    case PickingReason::approach_interrupted: return "approach_interrupted";
+    case PickingReason::arm_meets_fruit: return "arm_meets_fruit";
+  }
+  return "unknown";
+}
+
+/// How to pick a fruit: the tool moves straight from the pre-grasp pose along the direction towards the fruit's centre.
+struct Picking {
+  int order = 0;  ///< from 1 over all fruit of a result; those that cannot be picked come last
+  bool reachable = false;
+  PickingReason reason = PickingReason::not_tested;
+  Eigen::Vector3d direction = Eigen::Vector3d::Zero();  ///< unit, from pre-grasp to the centre; zero without a body
+  Pose world_T_pre_grasp = Pose::Identity();  ///< of the tool: z along the direction (REP-103's optical frame); with a body
+  std::optional<Joints> joints;               ///< at the pre-grasp pose, where it is reachable and the arm tells them
+  std::vector<int> after;                     ///< ids of the fruit that stand in the way and have to be picked before
 };
 
 /// A located fruit.
@@ -64,6 +109,7 @@ struct Fruit {
   Eigen::Vector3d sigma = Eigen::Vector3d::Zero();             ///< standard deviation of its points per world axis (m)
   Eigen::Matrix3d orientation = Eigen::Matrix3d::Identity();   ///< the pose frame's axes in world
   std::optional<Body> body;                   ///< where one was fitted
+  std::optional<Picking> picking;             ///< where it was planned (plan/picking.hpp)
 
   /// The pose frame in world: origin at the centroid.
   Pose pose() const {

@@ -17,6 +17,42 @@ Json finite(double value, const char* what) {
   return value + 0.0;
 }
 
+/// The upper triangle of a covariance: xx, xy, xz, yy, yz, zz.
+Eigen::Matrix<double, 6, 1> triangle(const Eigen::Matrix3d& m) {
+  return (Eigen::Matrix<double, 6, 1>() << m(0, 0), m(0, 1), m(0, 2), m(1, 1), m(1, 2), m(2, 2)).finished();
+}
+
+void add_picking(Json& j, const Picking& picking) {
+  j["picking_order"] = picking.order;
+  j["picking_after"] = picking.after;
+  j["reachable"] = picking.reachable;
+  j["picking_reason"] = to_string(picking.reason);
+  check_input(picking.direction.allFinite(), "fruit: approach_direction_world is not finite");
+  if (picking.direction.isZero(0.0)) return;  // no approach
+  j["approach_direction_world"] = json_list(picking.direction, "");
+  const Pose& pose = picking.world_T_pre_grasp;
+  j["pre_grasp_position_world"] = json_list(pose.translation(), "fruit: pre_grasp_position_world is not finite");
+  j["pre_grasp_orientation_world"] = json_list(xyzw(pose.linear()), "fruit: pre_grasp_orientation_world is not finite");
+  if (picking.joints) j["pre_grasp_joints"] = json_list(*picking.joints, "fruit: pre_grasp_joints is not finite");
+}
+
+void add_picking(CsvWriter& csv, const Picking& picking) {
+  csv.cell(static_cast<std::size_t>(picking.order));
+  std::string after;
+  for (int id : picking.after) after += (after.empty() ? "" : " ") + std::to_string(id);
+  csv.cell(after);
+  csv.cell(picking.reachable ? "true" : "false");
+  csv.cell(to_string(picking.reason));
+  if (picking.direction.isZero(0.0)) return csv.empty_cells(16);
+  csv.cells(picking.direction);
+  csv.cells(picking.world_T_pre_grasp.translation());
+  csv.cells(xyzw(picking.world_T_pre_grasp.linear()));
+  if (picking.joints)
+    csv.cells(*picking.joints);
+  else
+    csv.empty_cells(6);
+}
+
 Json to_json(const Fruit& fruit) {
   Json j;
   j["id"] = fruit.id;
@@ -38,7 +74,12 @@ Json to_json(const Fruit& fruit) {
     j["rms"] = finite(body.rms, "fruit: rms is not finite");
     j["completeness"] = finite(body.completeness, "fruit: completeness is not finite");
     j["confidence"] = finite(body.confidence, "fruit: confidence is not finite");
+    j["volume"] = finite(body.volume, "fruit: volume is not finite");
+    j["volume_error"] = finite(body.volume_error, "fruit: volume_error is not finite");
+    j["mass"] = finite(body.mass, "fruit: mass is not finite");
+    j["mass_error"] = finite(body.mass_error, "fruit: mass_error is not finite");
   }
+  if (fruit.picking) add_picking(j, *fruit.picking);
   return j;
 }
 
@@ -62,7 +103,41 @@ Body body_of(const JsonValue& value) {
   if (value.has("rms")) body.rms = value.at("rms").number();
   if (value.has("completeness")) body.completeness = value.at("completeness").number();
   if (value.has("confidence")) body.confidence = value.at("confidence").number();
+  if (value.has("volume")) body.volume = value.at("volume").number();
+  if (value.has("volume_error")) body.volume_error = value.at("volume_error").number();
+  if (value.has("mass")) body.mass = value.at("mass").number();
+  if (value.has("mass_error")) body.mass_error = value.at("mass_error").number();
   return body;
+}
+
+int count_up_to_a_million(const JsonValue& value) {
+  const std::uint64_t n = value.count();
+  if (n < 1 || n > 1000000) value.fail("has to be positive");
+  return static_cast<int>(n);
+}
+
+PickingReason reason_of(const JsonValue& value) {
+  const std::string text = value.text();
+  for (int i = 0; i <= static_cast<int>(PickingReason::arm_meets_fruit); ++i)
+    if (text == to_string(static_cast<PickingReason>(i))) return static_cast<PickingReason>(i);
+  value.fail("no reason is called '" + text + "'");
+}
+
+Picking picking_of(const JsonValue& value) {
+  Picking picking;
+  picking.order = count_up_to_a_million(value.at("picking_order"));
+  picking.reachable = value.at("reachable").boolean();
+  picking.reason = reason_of(value.at("picking_reason"));
+  if (value.has("picking_after")) {
+    const JsonValue ids = value.at("picking_after");
+    for (std::size_t i = 0; i < ids.list_size(); ++i) picking.after.push_back(count_up_to_a_million(ids.at(i)));
+  }
+  if (!value.has("approach_direction_world")) return picking;
+  picking.direction = value.at("approach_direction_world").numbers<3>();
+  picking.world_T_pre_grasp.translation() = value.at("pre_grasp_position_world").numbers<3>();
+  picking.world_T_pre_grasp.linear() = rotation(value.at("pre_grasp_orientation_world"));
+  if (value.has("pre_grasp_joints")) picking.joints = value.at("pre_grasp_joints").numbers<6>();
+  return picking;
 }
 
 }  // namespace
@@ -83,7 +158,15 @@ std::string fruits_csv_text(const std::vector<Fruit>& fruits) {
     const char* const suffixes[] = {radii ? "a" : "x", radii ? "b" : "y", radii ? "c" : "z", "w"};
     for (int i = 0; i < (quaternion ? 4 : 3); ++i) csv.cell(std::string(name) + "_" + suffixes[i]);
   }
-  for (const char* name : {"completeness", "confidence"}) csv.cell(name);
+  for (const char* name : {"completeness", "confidence", "rms", "volume", "volume_error", "mass", "mass_error"})
+    csv.cell(name);
+  for (const char* name : {"xx", "xy", "xz", "yy", "yz", "zz"})
+    csv.cell("center_covariance_world_" + std::string(name));
+  for (const char* name : {"picking_order", "picking_after", "reachable", "picking_reason"}) csv.cell(name);
+  for (const char* name : {"approach_direction_world", "pre_grasp_position_world"})
+    for (const char* axis : {"_x", "_y", "_z"}) csv.cell(std::string(name) + axis);
+  for (const char* axis : {"_x", "_y", "_z", "_w"}) csv.cell("pre_grasp_orientation_world" + std::string(axis));
+  for (int i = 1; i <= 6; ++i) csv.cell("pre_grasp_q" + std::to_string(i));
   csv.end_row();
   for (const Fruit& fruit : fruits) {
     csv.cell(std::to_string(fruit.id));
@@ -99,9 +182,17 @@ std::string fruits_csv_text(const std::vector<Fruit>& fruits) {
       csv.cells(xyzw(fruit.body->axes));
       csv.cell(fruit.body->completeness);
       csv.cell(fruit.body->confidence);
+      for (double value :
+           {fruit.body->rms, fruit.body->volume, fruit.body->volume_error, fruit.body->mass, fruit.body->mass_error})
+        csv.cell(value);
+      csv.cells(triangle(fruit.body->center_covariance));
     } else {
-      csv.empty_cells(12);
+      csv.empty_cells(23);
     }
+    if (fruit.picking)
+      add_picking(csv, *fruit.picking);
+    else
+      csv.empty_cells(20);
     csv.end_row();
   }
   return csv.text();
@@ -123,10 +214,8 @@ std::vector<Fruit> read_fruits(const std::filesystem::path& path) {
   for (std::size_t i = 0; i < list.list_size(); ++i) {
     const JsonValue value = list.at(i);
     Fruit fruit;
-    const std::uint64_t id = value.at("id").count();
-    if (id < 1 || id > 1000000) value.at("id").fail("has to be positive");
-    fruit.id = static_cast<int>(id);
-    if (!ids.insert(fruit.id).second) value.at("id").fail("two fruits have the id " + std::to_string(id));
+    fruit.id = count_up_to_a_million(value.at("id"));
+    if (!ids.insert(fruit.id).second) value.at("id").fail("two fruits have the id " + std::to_string(fruit.id));
     fruit.points = static_cast<std::size_t>(value.at("points").count());
     fruit.found_by = value.at("found_by").text();
     fruit.centroid_cluster = value.at("centroid_cluster").numbers<3>();
@@ -134,6 +223,7 @@ std::vector<Fruit> read_fruits(const std::filesystem::path& path) {
     fruit.sigma = value.at("sigma_world").numbers<3>();
     fruit.orientation = rotation(value.at("orientation_world"));
     if (value.has("center_world") && value.has("radii")) fruit.body = body_of(value);
+    if (value.has("picking_order")) fruit.picking = picking_of(value);
     fruits.push_back(fruit);
   }
   return fruits;

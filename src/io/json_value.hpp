@@ -56,6 +56,10 @@ class JsonValue {
     if (!json_.is_string()) fail("expected a text");
     return json_.get<std::string>();
   }
+  bool boolean() const {
+    if (!json_.is_boolean()) fail("expected true or false");
+    return json_.get<bool>();
+  }
   double number() const {
     if (!json_.is_number()) fail("expected a number");
     return json_.get<double>();

@@ -59,7 +59,25 @@ ScanResult some_result() {
       b.rms = 0.0004;
       b.completeness = 0.6;
       b.confidence = 0.9;
+      b.center_covariance(0, 1) = b.center_covariance(1, 0) = 1e-7;
+      b.volume = 2.4e-4;
+      b.volume_error = 1.0 / 3e5;
+      b.mass = 0.2352;
+      b.mass_error = 0.007;
       f.body = b;
+      Picking p;
+      p.order = 2;
+      p.reachable = true;
+      p.reason = PickingReason::reachable;
+      p.direction = Eigen::Vector3d(0.1, 0.9, -0.2).normalized();
+      p.world_T_pre_grasp = look_along({0.03, -0.64, 1.0 / 3.0}, p.direction);
+      p.joints = Joints::Constant(1.0 / 7.0);
+      p.after = {2, 12};
+      f.picking = p;
+    } else {
+      f.picking = Picking{};
+      f.picking->order = 3;
+      f.picking->reason = PickingReason::no_body;
     }
     r.fruits.push_back(f);
   }
@@ -137,6 +155,26 @@ TEST_CASE("a result folder holds every file of the contract and reads back") {
   CHECK(fruits[0].body->rms == 0.0004);
   CHECK(fruits[0].body->completeness == 0.6);
   CHECK(fruits[0].body->confidence == 0.9);
+  CHECK(fruits[0].body->volume == 2.4e-4);
+  CHECK(fruits[0].body->volume_error == 1.0 / 3e5);
+  CHECK(fruits[0].body->mass == 0.2352);
+  CHECK(fruits[0].body->mass_error == 0.007);
+  REQUIRE(fruits[0].picking);
+  const Picking &pick = *fruits[0].picking, &written = *result.fruits[0].picking;
+  CHECK(pick.order == 2);
+  CHECK(pick.reachable);
+  CHECK(pick.reason == PickingReason::reachable);
+  CHECK(pick.direction == written.direction);
+  CHECK(pick.world_T_pre_grasp.translation() == written.world_T_pre_grasp.translation());
+  CHECK(pick.world_T_pre_grasp.isApprox(written.world_T_pre_grasp, 1e-14));
+  CHECK(pick.joints == written.joints);
+  CHECK(pick.after == written.after);
+  REQUIRE(fruits[1].picking);
+  CHECK(fruits[1].picking->order == 3);
+  CHECK_FALSE(fruits[1].picking->reachable);
+  CHECK(fruits[1].picking->reason == PickingReason::no_body);
+  CHECK(fruits[1].picking->direction.isZero());
+  CHECK_FALSE(fruits[1].picking->joints);
 
   const io::RunFile run = io::read_run(dir / "run.json");
   CHECK(run.info.scene == some_info().scene);
@@ -167,7 +205,11 @@ TEST_CASE("the text files have the contract's keys and columns") {
   for (const char* key :
        {"id", "points", "found_by", "centroid_cluster", "centroid_world", "sigma_world", "orientation_world"})
     for (const auto& fruit : fruits) CHECK(fruit.contains(key));
-  for (const char* key : {"center_world", "radii", "body_orientation_world", "completeness", "confidence"}) {
+  for (const char* key : {"picking_order", "picking_after", "reachable", "picking_reason"})
+    for (const auto& fruit : fruits) CHECK(fruit.contains(key));
+  for (const char* key : {"center_world", "radii", "body_orientation_world", "center_covariance_world", "completeness",
+                          "confidence", "volume", "volume_error", "mass", "mass_error", "approach_direction_world",
+                          "pre_grasp_position_world", "pre_grasp_orientation_world", "pre_grasp_joints"}) {
     CHECK(fruits[0].contains(key));
     CHECK_FALSE(fruits[1].contains(key));
   }
@@ -191,6 +233,33 @@ TEST_CASE("the text files have the contract's keys and columns") {
   for (std::size_t at = 0, end; (end = table.find('\n', at)) != std::string::npos; at = end + 1, ++lines)
     CHECK(commas(table.substr(at, end - at)) == commas(head));
   CHECK(lines == 3);
+  // The cells stand under their names.
+  const auto cells = [](const std::string& line) {
+    std::vector<std::string> out{""};
+    for (char c : line)
+      if (c == ',')
+        out.emplace_back();
+      else
+        out.back().push_back(c);
+    return out;
+  };
+  const auto names = cells(head),
+             row = cells(table.substr(head.size() + 1, table.find('\n', head.size() + 1) - head.size() - 1));
+  const auto cell = [&](const char* name) {
+    const auto at = std::find(names.begin(), names.end(), name);
+    REQUIRE(at != names.end());
+    return row.at(static_cast<std::size_t>(at - names.begin()));
+  };
+  CHECK(cell("volume") == "0.00024");
+  CHECK(cell("mass_error") == "0.007");
+  CHECK(cell("center_covariance_world_xy") == "1e-07");
+  CHECK(cell("center_covariance_world_zz") == "3e-06");
+  CHECK(cell("picking_order") == "2");
+  CHECK(cell("picking_after") == "2 12");
+  CHECK(cell("reachable") == "true");
+  CHECK(cell("picking_reason") == "reachable");
+  CHECK(cell("pre_grasp_position_world_y") == "-0.64");
+  CHECK(cell("pre_grasp_q6") == "0.14285714285714285");
 }
 
 TEST_CASE("equal results leave equal bytes") {
@@ -236,6 +305,10 @@ TEST_CASE("a result that is not finite or does not fit together is not written")
   refuse("orientation", [](ScanResult& r) { r.fruits[1].orientation(0, 0) = kNan; });
   refuse("radii", [](ScanResult& r) { r.fruits[0].body->radii.y() = kNan; });
   refuse("confidence", [](ScanResult& r) { r.fruits[0].body->confidence = 1.0 / 0.0; });
+  refuse("volume", [](ScanResult& r) { r.fruits[0].body->volume = kNan; });
+  refuse("approach", [](ScanResult& r) { r.fruits[0].picking->direction.x() = kNan; });
+  refuse("pre-grasp", [](ScanResult& r) { r.fruits[0].picking->world_T_pre_grasp.translation().x() = kNan; });
+  refuse("pre-grasp joints", [](ScanResult& r) { (*r.fruits[0].picking->joints)[5] = kNan; });
   refuse("pose", [](ScanResult& r) { r.views[2].world_T_optical.translation().z() = kNan; });
   refuse("joints", [](ScanResult& r) { (*r.views[2].joints)[0] = kNan; });
   refuse("time", [](ScanResult& r) { r.seconds.plan = kNan; });
@@ -285,6 +358,12 @@ TEST_CASE("result files that are not right are refused by name") {
   require_file_error(spoilt(json, "\"dbscan\"", "5"), "[1].found_by: expected a text", fruits);
   require_file_error(spoilt(json, "[0.041,", "[null,"), "radii[0]: expected a number", fruits);
 
+  require_file_error(spoilt(json, "\"reachable\": true", "\"reachable\": 1"), "[0].reachable: expected true or false",
+                     fruits);
+  require_file_error(spoilt(json, "\"no_body\"", "\"no_mind\""), "[1].picking_reason: no reason is called 'no_mind'",
+                     fruits);
+  require_file_error(spoilt(json, "\"picking_order\": 2", "\"picking_order\": 0"),
+                     "[0].picking_order: has to be positive", fruits);
   const std::string text = slurp(folder / "run.json");
   require_file_error(spoilt(text, "\"format_version\": 1", "\"format_version\": 2"), "only version 1", run);
   require_file_error(spoilt(text, "\"seed\"", "\"sown\""), "missing key 'seed'", run);

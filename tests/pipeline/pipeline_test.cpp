@@ -73,7 +73,33 @@ TEST_CASE("a scan finds every fruit, the hidden one too, and stops by itself") {
     CHECK((f.centroid_cluster - (f.centroid - Eigen::Vector3d(-0.17, 0.72, -0.02))).norm() < 1e-9);
     CHECK(f.body->completeness > 0.2);
     CHECK(f.body->confidence > 0.3);
+    CHECK(f.body->mass == Approx(980.0 * f.body->volume));
+    const double r = kFruit[0].radius;  // all are within 2 mm of it
+    CHECK(f.body->volume == Approx(4.0 / 3.0 * kPi * r * r * r).epsilon(0.25));
+    CHECK(f.body->volume_error > 0.0);
+    CHECK(f.body->volume_error < 0.1 * f.body->volume);
+    // The picking, planned after all else: poses that the arm takes at its joints.
+    REQUIRE(f.picking);
+    REQUIRE(f.picking->reachable);
+    CHECK((arm::forward(*f.picking->joints) * cell().tool0_T_optical).isApprox(f.picking->world_T_pre_grasp, 1e-9));
+    const Eigen::Vector3d to_center = f.body->center - f.picking->world_T_pre_grasp.translation();
+    CHECK(to_center.normalized().dot(f.picking->direction) == Approx(1.0));
+    CHECK(to_center.norm() == Approx(0.12 + r).margin(0.004));
   }
+  std::vector<int> orders;
+  for (const Fruit& f : result.fruits) orders.push_back(f.picking->order);
+  std::sort(orders.begin(), orders.end());
+  CHECK(orders == std::vector<int>{1, 2, 3});
+}
+
+TEST_CASE("the picking can be left out") {
+  Parameters p;
+  p.max_views = 3;
+  p.planner = "fixed";
+  p.picking.enabled = false;
+  const ScanResult result = run(p, no_fault, never);
+  CHECK_FALSE(result.fruits.empty());
+  for (const Fruit& f : result.fruits) CHECK_FALSE(f.picking);
 }
 
 TEST_CASE("faults of a robot do not end a scan") {
@@ -117,7 +143,10 @@ TEST_CASE("the paper's stages on the paper's values") {
   CHECK(result.views.size() == 4);
   CHECK(result.cloud.size() > 500);
   CHECK(result.cloud.size() < result.raw.size());
-  for (const Fruit& f : result.fruits) CHECK_FALSE(f.body);
+  for (const Fruit& f : result.fruits) {
+    CHECK_FALSE(f.body);
+    CHECK_FALSE(f.picking);
+  }
 }
 
 TEST_CASE("a truss out of reach and one that is not there are said to be so") {
@@ -185,6 +214,8 @@ TEST_CASE("an external robot's own reach replaces ours") {
   }
   CHECK(asked > 0);
   check_found(pipeline.result());
+  for (const Fruit& f : pipeline.result().fruits)  // nothing is known of how this robot picks
+    CHECK(f.picking->reason == PickingReason::not_tested);
   CHECK_FALSE(pipeline.views()[0].joints);
 }
 

@@ -40,10 +40,17 @@ struct RunFile {
 /// @throws InputError for a view that is not finite  @throws FileError when it cannot be written
 void write_views(const std::filesystem::path& path, const std::vector<View>& views);
 
-/// Write fruits.json. @throws InputError for a fruit that is not finite  @throws FileError when it cannot be written
+/// Write fruits.json. Beside the contract's keys, with a body: `center_covariance_world` (m2, three rows), `rms` (m),
+/// `volume` and `volume_error` (m3), `mass` and `mass_error` (kg); errors are standard errors. Where the picking was
+/// planned: `picking_order` (from 1), `picking_after` (ids of fruit that stand in the way and go before), `reachable`,
+/// `picking_reason` (see PickingReason), and, but for `no_body`, `approach_direction_world` (unit, from the pre-grasp
+/// position to the fruit's centre), `pre_grasp_position_world` (m) and `pre_grasp_orientation_world` (of the tool, z
+/// along the direction), and `pre_grasp_joints` (rad) where the arm's are known.
+/// @throws InputError for a fruit that is not finite  @throws FileError when it cannot be written
 void write_fruits(const std::filesystem::path& path, const std::vector<Fruit>& fruits);
 
-/// The same as a table; the cells of a body that was not fitted are empty.
+/// The same as a table; the cells of a body that was not fitted and of what was not planned are empty. Of the
+/// covariance the upper triangle is written, the ids of `picking_after` are separated by spaces.
 void write_fruits_csv(const std::filesystem::path& path, const std::vector<Fruit>& fruits);
 
 /// Write run.json. Beside the contract's keys `cluster_origin_world` says where the cluster frame {R} is, when the
@@ -61,7 +68,8 @@ void write_result(const std::filesystem::path& folder, const ScanResult& result,
 /// Read views.csv; columns may stand in any order, further ones are skipped. @throws FileError
 std::vector<View> read_views(const std::filesystem::path& path);
 
-/// Read fruits.json; further keys are skipped. A fruit has a body where it has `center_world` and `radii`.
+/// Read fruits.json; further keys are skipped. A fruit has a body where it has `center_world` and `radii`, a
+/// picking where it has `picking_order`.
 /// @throws FileError for a missing key, a value of the wrong type, or two fruits with one id
 std::vector<Fruit> read_fruits(const std::filesystem::path& path);
 

@@ -15,6 +15,8 @@
 #include <agrisee/plan/directions.hpp>
 #include <agrisee/sensor/l515.hpp>
 
+#include <array>
+
 namespace agrisee::plan {
 
 /// Parameters of ExpectedSurface.
@@ -79,15 +81,24 @@ class ExpectedSurface {
       if (found.labels[i] == 0) rest.points.push_back(progress.cloud.points[i]);
     obstacles_ = average_in_voxels(rest, 0.006).points;
     // Expectations that earlier views disappointed.
-    for (const auto& image : progress.images) {
-      const Shown shown = look(image.world_T_optical);
-      for (std::size_t i = 0; i < samples_.size(); ++i)
-        if (shown.samples[i]) samples_[i].area *= parameters_.disappointment;
-    }
+    for (const auto& image : progress.images)
+      look(image.world_T_optical, [&](std::size_t i) { areas_[i] *= static_cast<float>(parameters_.disappointment); });
   }
 
+  /// The samples of unseen surface that a view is expected to show, ascending.
+  std::vector<std::uint32_t> shown(const Pose& world_T_optical) const {
+    std::vector<std::uint32_t> out;
+    look(world_T_optical, [&](std::size_t i) { out.push_back(static_cast<std::uint32_t>(i)); });
+    return out;
+  }
+  /// Fruit surface (m2) that each sample stands for.
+  const std::vector<float>& areas() const { return areas_; }
   /// Fruit surface (m2) that a view is expected to show for the first time.
-  double gain(const Pose& world_T_optical) const { return look(world_T_optical).area; }
+  double gain(const Pose& world_T_optical) const {
+    double area = 0.0;
+    look(world_T_optical, [&](std::size_t i) { area += double(areas_[i]); });
+    return area;
+  }
 
   const std::vector<FoundBody>& bodies() const { return bodies_; }
   /// Surface (m2) of all bodies found so far, and the part of it that points cover.
@@ -95,16 +106,17 @@ class ExpectedSurface {
   double covered_area() const { return covered_; }
   /// Centre of what is worth looking at: the mean of the bodies, else of the cloud's extent, else of the volume.
   const Eigen::Vector3d& center() const { return center_; }
+  /// Box about the bodies, else about the cloud, else the volume (m).
+  const Aabb& extent() const { return extent_; }
 
  private:
   struct Sample {
-    Eigen::Vector3d point, normal;  // zero normal: a voxel, seen from any side
-    double area;
+    Eigen::Vector3f point, normal;  // zero normal: a voxel, seen from any side
     int body;  // -1: a voxel
   };
-  struct Shown {
-    std::vector<char> samples;
-    double area = 0.0;
+  struct Occluder {
+    Eigen::Vector3f center;
+    float radius;
   };
 
   /// Raw points have no normals yet: estimated, and turned to the view that saw each.
@@ -132,17 +144,24 @@ class ExpectedSurface {
 
   void collect_samples(const Progress& progress) {
     samples_.clear();
+    areas_.clear();
+    spheres_.clear();
+    for (const FoundBody& b : bodies_)
+      spheres_.push_back({b.fit.body.center.cast<float>(), static_cast<float>(0.97 * b.fit.body.mean_radius())});
     area_ = covered_ = 0.0;
-    Aabb extent;
-    for (const auto& p : progress.cloud.points) extent.extend(p.cast<double>());
-    center_ = extent.empty() ? volume_.center() : extent.center();
-    if (!bodies_.empty()) center_.setZero();
+    extent_ = {};
+    for (const auto& p : progress.cloud.points) extent_.extend(p.cast<double>());
+    const Aabb cloud = extent_;
+    if (extent_.empty()) extent_ = volume_;
+    center_ = extent_.center();
+    if (!bodies_.empty()) extent_ = {}, center_.setZero();
     // Anything near a body's surface covers it, calyx and stem included: behind them nothing more will show.
     const Grid<float> grid(progress.cloud, static_cast<float>(parameters_.cover_radius));
     const std::vector<Eigen::Vector3d> directions = spread_directions(parameters_.samples);
     for (std::size_t b = 0; b < bodies_.size(); ++b) {
       const Ellipsoid& body = bodies_[b].fit.body;
       center_ += body.center / static_cast<double>(bodies_.size());
+      for (int side : {-1, 1}) extent_.extend(body.center + Eigen::Vector3d::Constant(side * body.mean_radius()));
       const double r = body.mean_radius(), share = 4.0 * kPi * r * r / parameters_.samples;
       for (const Eigen::Vector3d& d : directions) {
         area_ += share;
@@ -150,7 +169,7 @@ class ExpectedSurface {
         if (grid.count(p.cast<float>(), static_cast<float>(parameters_.cover_radius), 1) > 0)
           covered_ += share;
         else if (!inside_other(p, static_cast<int>(b)))
-          samples_.push_back({p, body.normal(p), share, static_cast<int>(b)});
+          add_sample(p, body.normal(p), share, static_cast<int>(b));
       }
     }
     std::size_t i = 0;
@@ -162,10 +181,15 @@ class ExpectedSurface {
           double nearest = std::numeric_limits<double>::infinity();
           for (const FoundBody& b : bodies_)
             nearest = std::min(nearest, (p - b.fit.body.center).norm() - b.fit.body.mean_radius());
-          if (bodies_.empty() && extent.distance(p) < parameters_.neighborhood) nearest = edge_;
+          if (bodies_.empty() && cloud.distance(p) < parameters_.neighborhood) nearest = edge_;
           if (nearest < 0.0 || nearest > parameters_.neighborhood) continue;
-          samples_.push_back({p, Eigen::Vector3d::Zero(), parameters_.unknown_weight * edge_ * edge_, -1});
+          add_sample(p, Eigen::Vector3d::Zero(), parameters_.unknown_weight * edge_ * edge_, -1);
         }
+  }
+
+  void add_sample(const Eigen::Vector3d& point, const Eigen::Vector3d& normal, double area, int body) {
+    samples_.push_back({point.cast<float>(), normal.cast<float>(), body});
+    areas_.push_back(static_cast<float>(area));
   }
 
   bool inside_other(const Eigen::Vector3d& p, int own) const {
@@ -175,55 +199,54 @@ class ExpectedSurface {
     return false;
   }
 
-  /// Which samples a view shows, and their area.
-  Shown look(const Pose& world_T_optical) const {
-    Shown out;
-    out.samples.assign(samples_.size(), 0);
+  /// f(i) for every sample that a view shows.
+  template <typename F>
+  void look(const Pose& world_T_optical, F&& f) const {
     const sensor::Intrinsics& k = sensor_.intrinsics;
-    const Pose optical_T_world = world_T_optical.inverse(Eigen::Isometry);
-    const Eigen::Vector3d eye = world_T_optical.translation();
-    const double cos_max = std::cos(parameters_.max_incidence);
+    const Eigen::Isometry3f optical_T_world = world_T_optical.inverse(Eigen::Isometry).cast<float>();
+    const Eigen::Vector3f eye = world_T_optical.translation().cast<float>();
+    const auto cos_max = static_cast<float>(std::cos(parameters_.max_incidence));
+    const auto near_sq = static_cast<float>(sensor_.range_min * sensor_.range_min);
+    const auto far_sq = static_cast<float>(sensor_.range_max * sensor_.range_max);
     // Obstacles: a coarse depth image.
     constexpr int kWidth = 96, kHeight = 72;
-    std::vector<float> depth(kWidth * kHeight, std::numeric_limits<float>::infinity());
-    const auto pixel = [&](const Eigen::Vector3d& p) -> int {
-      if (!(p.z() > 0.0)) return -1;
-      const Eigen::Vector2d uv = k.project(p);
-      const double u = (uv.x() + 0.5) / k.width * kWidth, v = (uv.y() + 0.5) / k.height * kHeight;
-      if (!(u >= 0 && v >= 0 && u < kWidth && v < kHeight)) return -1;
+    const auto fx = static_cast<float>(k.fx / k.width * kWidth), fy = static_cast<float>(k.fy / k.height * kHeight);
+    const auto cx = static_cast<float>((k.cx + 0.5) / k.width * kWidth), cy = static_cast<float>((k.cy + 0.5) / k.height * kHeight);
+    std::array<float, kWidth * kHeight> depth;
+    depth.fill(std::numeric_limits<float>::infinity());
+    const auto pixel = [&](const Eigen::Vector3f& p) -> int {
+      if (!(p.z() > 0.0f)) return -1;
+      const float u = fx * p.x() / p.z() + cx, v = fy * p.y() / p.z() + cy;
+      if (!(u >= 0.0f && v >= 0.0f && u < float(kWidth) && v < float(kHeight))) return -1;
       return static_cast<int>(v) * kWidth + static_cast<int>(u);
     };
     for (const Eigen::Vector3f& o : obstacles_) {
-      const Eigen::Vector3d p = optical_T_world * o.cast<double>();
+      const Eigen::Vector3f p = optical_T_world * o;
       const int c = pixel(p);
-      if (c >= 0) depth[static_cast<std::size_t>(c)] = std::min(depth[static_cast<std::size_t>(c)], static_cast<float>(p.z()));
+      if (c >= 0) depth[static_cast<std::size_t>(c)] = std::min(depth[static_cast<std::size_t>(c)], p.z());
     }
     for (std::size_t i = 0; i < samples_.size(); ++i) {
       const Sample& s = samples_[i];
-      const Eigen::Vector3d d = s.point - eye;
-      const double distance = d.norm();
+      const Eigen::Vector3f d = s.point - eye;
+      const float distance_sq = d.squaredNorm();
+      if (distance_sq < near_sq || distance_sq > far_sq) continue;
+      const float distance = std::sqrt(distance_sq);
       if (s.body >= 0 && -d.dot(s.normal) < cos_max * distance) continue;
-      if (distance < sensor_.range_min || distance > sensor_.range_max) continue;
-      const Eigen::Vector3d p = optical_T_world * s.point;
+      const Eigen::Vector3f p = optical_T_world * s.point;
       const int c = pixel(p);
-      if (c < 0 || double(depth[static_cast<std::size_t>(c)]) < p.z() - 0.012) continue;
-      if (hidden(eye, d / distance, distance, s.body)) continue;
-      out.samples[i] = 1;
-      out.area += s.area;
+      if (c < 0 || depth[static_cast<std::size_t>(c)] < p.z() - 0.012f) continue;
+      if (!hidden(eye, d / distance, distance, s.body)) f(i);
     }
-    return out;
   }
 
-  bool hidden(const Eigen::Vector3d& eye, const Eigen::Vector3d& u, double distance, int own) const {
-    for (std::size_t b = 0; b < bodies_.size(); ++b) {
+  bool hidden(const Eigen::Vector3f& eye, const Eigen::Vector3f& u, float distance, int own) const {
+    for (std::size_t b = 0; b < spheres_.size(); ++b) {
       if (static_cast<int>(b) == own) continue;
-      const Ellipsoid& body = bodies_[b].fit.body;
-      const double r = 0.97 * body.mean_radius();
-      const Eigen::Vector3d c = body.center - eye;
-      const double along = c.dot(u);
-      const double off_sq = c.squaredNorm() - along * along;
-      if (off_sq >= r * r || along < 0.0) continue;
-      if (along - std::sqrt(r * r - off_sq) < distance - 1e-3) return true;
+      const Eigen::Vector3f c = spheres_[b].center - eye;
+      const float r_sq = spheres_[b].radius * spheres_[b].radius, along = c.dot(u);
+      const float off_sq = c.squaredNorm() - along * along;
+      if (off_sq >= r_sq || along < 0.0f) continue;
+      if (along - std::sqrt(r_sq - off_sq) < distance - 1e-3f) return true;
     }
     return false;
   }
@@ -237,9 +260,12 @@ class ExpectedSurface {
   std::size_t images_read_ = 0;
   std::vector<FoundBody> bodies_;
   std::vector<Sample> samples_;
+  std::vector<float> areas_;        // one a sample (m2)
+  std::vector<Occluder> spheres_;  // the bodies, a little smaller
   std::vector<Eigen::Vector3f> obstacles_;
   double area_ = 0.0, covered_ = 0.0;
   Eigen::Vector3d center_ = Eigen::Vector3d::Zero();
+  Aabb extent_;
 };
 
 }  // namespace agrisee::plan

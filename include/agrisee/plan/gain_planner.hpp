@@ -2,44 +2,55 @@
 /// @file
 /// The default planner: of the views that the arm can take, the one expected to show the most new fruit surface for its time.
 ///
-/// Candidates look at the truss from directions spread over the sphere; those within reach are kept. Each is scored by
-/// ExpectedSurface::gain over the time of dwelling and moving; around the best the search is repeated more finely. The scan
+/// Candidates look at the truss from directions spread over the sphere, each at a place of its own among the bodies and
+/// from a distance of its own; those within reach are kept. Each is scored by ExpectedSurface::gain over the time of
+/// dwelling and moving. The best are asked for anew from where the arm stands, and searched around more finely. The scan
 /// ends when the best view promises less than `min_gain` of the fruit surface known so far. Metres, seconds, world.
 #pragma once
 
 #include <agrisee/plan/directions.hpp>
 #include <agrisee/plan/expected_surface.hpp>
 
+#include <numeric>
 
 namespace agrisee::plan {
 
 /// Parameters of GainPlanner.
 struct GainPlannerParameters {
-  int directions = 180;            ///< candidate directions over the whole sphere
-  double distance = 0.38;          ///< preferred distance from the target (m)
+  int candidates = 4000;           ///< views tried, their directions spread over the whole sphere; a tenth may be in reach
+  double spread = 0.6;             ///< how far from the middle of the bodies they look, as a share of the way to the border
+  double distance = 0.38;          ///< of the first view from its target (m)
   double distance_min = 0.27;      ///< nearest (m)
   double distance_max = 0.55;      ///< farthest (m)
   double dwell = 1.5;              ///< time that a view costs beside the move (s): settling, exposure, computing
-  double min_gain = 0.003;         ///< stop when the best view promises less than this share of the known fruit surface
+  int lookahead = 4;               ///< views planned ahead, so that the nearest of them comes first; 1 = none
+  double patience = 0.6;           ///< but only where it scores at least this share of the best
+  double min_gain = 0.0015;        ///< stop when the best view promises less than this share of the known fruit surface
   ExpectedSurfaceParameters expected;
 
   /// @throws ParameterError
   void check() const {
-    check_parameter(directions >= 1 && directions <= 100000, "planner.directions", "in [1, 100000]", directions);
+    check_parameter(candidates >= 1 && candidates <= 1000000, "planner.candidates", "in [1, 1000000]", candidates);
+    check_parameter(spread >= 0 && spread <= 1, "planner.spread", "in [0, 1]", spread);
     check_parameter(distance_min > 0, "planner.distance_min", "positive", distance_min);
     check_parameter(distance >= distance_min, "planner.distance", ">= distance_min", distance);
     check_parameter(distance_max >= distance, "planner.distance_max", ">= distance", distance_max);
     check_parameter(dwell > 0, "planner.dwell", "positive", dwell);
+    check_parameter(lookahead >= 1 && lookahead <= 6, "planner.lookahead", "in [1, 6]", lookahead);
+    check_parameter(patience >= 0 && patience <= 1, "planner.patience", "in [0, 1]", patience);
     check_parameter(min_gain >= 0, "planner.min_gain", ">= 0", min_gain);
     expected.check();
   }
   template <typename P, typename F>
   static void fields(P& p, F&& f) {
-    f("directions", p.directions);
+    f("candidates", p.candidates);
+    f("spread", p.spread);
     f("distance", p.distance);
     f("distance_min", p.distance_min);
     f("distance_max", p.distance_max);
     f("dwell", p.dwell);
+    f("lookahead", p.lookahead);
+    f("patience", p.patience);
     f("min_gain", p.min_gain);
     f("expected", p.expected);
   }
@@ -73,43 +84,46 @@ class GainPlanner : public Planner {
       if (!view) return stop(StopReason::no_reachable_view);
       return view;
     }
-    if (candidates_.empty() || (center_ - model_.center()).norm() > 0.02) {
-      center_ = model_.center();
+    const Aabb& extent = model_.extent();
+    if (candidates_.empty() || (extent_.min - extent.min).norm() > 0.02 || (extent_.max - extent.max).norm() > 0.02) {
+      extent_ = extent;
       candidates_.clear();
-      for (const Eigen::Vector3d& d : spread_directions(parameters_.directions))
-        if (auto view = reach(request(d), current)) candidates_.push_back({d, *view});
+      const std::vector<Eigen::Vector3d> directions = spread_directions(parameters_.candidates);
+      for (std::size_t i = 0; i < directions.size(); ++i) {
+        const ViewRequest wish = candidate(static_cast<double>(i), directions[i]);
+        if (auto view = reach(wish, current)) candidates_.push_back({wish, std::move(*view)});
+      }
     }
     std::vector<Scored> scored;
-    for (const Candidate& c : candidates_) consider(scored, c.direction, c.view, current);
+    for (const Candidate& c : candidates_) consider(scored, c.request, c.view, current);
     if (scored.empty()) return stop(StopReason::no_reachable_view);
+    // The best, by the shortest way from where the arm stands now, and more finely around them.
     const auto better = [](const Scored& a, const Scored& b) { return a.score > b.score; };
     std::stable_sort(scored.begin(), scored.end(), better);
-    // More finely around the best.
-    const std::size_t seeds = std::min<std::size_t>(4, scored.size());
-    const double step = 0.5 * std::sqrt(4.0 * kPi / parameters_.directions);
-    for (std::size_t i = 0; i < seeds; ++i) {
-      const Eigen::Vector3d d = scored[i].direction;
-      const Eigen::Vector3d a = any_orthogonal<double>(d), b = d.cross(a);
+    const double step = 0.5 * std::sqrt(4.0 * kPi / parameters_.candidates);
+    for (std::size_t i = 0, n = std::min(kRefined, scored.size()); i < n; ++i) {
+      if (const auto view = reach(scored[i].request, current)) rate(scored[i], *view, current);
+      const ViewRequest around = scored[i].request;
+      const Eigen::Vector3d a = any_orthogonal<double>(around.direction), b = around.direction.cross(a);
       for (int k = 0; k < 6; ++k) {
         const double angle = kPi / 3.0 * k;
-        const Eigen::Vector3d nearby = (d + step * (std::cos(angle) * a + std::sin(angle) * b)).normalized();
-        if (const auto view = reach(request(nearby), current)) consider(scored, nearby, *view, current);
+        ViewRequest wish = around;
+        wish.direction = (around.direction + step * (std::cos(angle) * a + std::sin(angle) * b)).normalized();
+        if (const auto view = reach(wish, current)) consider(scored, wish, *view, current);
       }
     }
     std::stable_sort(scored.begin(), scored.end(), better);
     const double least = parameters_.min_gain * std::max(model_.area(), 1e-6);
-    double best_gain = 0.0;
-    for (const Scored& s : scored) {
-      best_gain = std::max(best_gain, s.view.gain);
-      if (s.view.gain < least) continue;
-      // From where the arm stands now, the way there may be another.
-      auto view = reach(request(s.direction), current);
-      if (!view) continue;
-      view->gain = s.view.gain;
-      last_ = s.direction;
-      return view;
-    }
-    return stop(best_gain > 0.0 ? StopReason::low_gain : StopReason::no_frontier);
+    const double most = std::max_element(scored.begin(), scored.end(), [](const Scored& a, const Scored& b) {
+      return a.view.gain < b.view.gain;
+    })->view.gain;
+    scored.erase(std::remove_if(scored.begin(), scored.end(), [&](const Scored& s) { return s.view.gain < least; }), scored.end());
+    if (scored.empty()) return stop(most > 0.0 ? StopReason::low_gain : StopReason::no_frontier);
+    Scored& chosen = scored[nearest_of_next(scored, current, least)];
+    // From where the arm stands now, the way there may be another.
+    if (const auto view = reach(chosen.request, current)) rate(chosen, *view, current);
+    last_ = chosen.request;
+    return std::move(chosen.view);
   }
 
   void refused() override {
@@ -123,26 +137,94 @@ class GainPlanner : public Planner {
   const ExpectedSurface& model() const { return model_; }
 
  private:
+  static constexpr std::size_t kRefined = 8;
+
   struct Candidate {
-    Eigen::Vector3d direction;
+    ViewRequest request;
     ReachableView view;
   };
   struct Scored {
-    Eigen::Vector3d direction;
+    ViewRequest request;
     ReachableView view;
-    double score;
+    std::vector<std::uint32_t> shown;
+    double score = 0.0;
   };
 
   ViewRequest request(const Eigen::Vector3d& direction) const {
-    return {center_, direction, parameters_.distance, parameters_.distance_min, parameters_.distance_max};
+    return {model_.center(), direction, parameters_.distance, parameters_.distance_min, parameters_.distance_max};
   }
 
-  void consider(std::vector<Scored>& scored, const Eigen::Vector3d& direction, ReachableView view, const Joints& current) const {
-    for (const Eigen::Vector3d& r : refused_)
-      if (r.dot(direction) > 0.9999) return;
-    view.gain = model_.gain(view.world_T_optical);
-    const double move = view.joints ? (*view.joints - current).cwiseAbs().maxCoeff() / kPi : 0.0;
-    scored.push_back({direction, view, view.gain / (parameters_.dwell + move)});
+  /// The i-th wish: its place and distance follow a low-discrepancy sequence (Roberts' R4, powers of 1 / 1.1673).
+  ViewRequest candidate(double i, const Eigen::Vector3d& direction) const {
+    const auto part = [](double x) { return x - std::floor(x); };
+    const Eigen::Vector3d where(part(i * 0.8566748838545029), part(i * 0.7338918566271260), part(i * 0.6287067210378087));
+    ViewRequest wish = request(direction);
+    wish.target += parameters_.spread * (where.array() - 0.5).matrix().cwiseProduct(extent_.size());
+    wish.distance = wish.distance_min + part(i * 0.5385972572236101) * (wish.distance_max - wish.distance_min);
+    return wish;
+  }
+
+  bool was_refused(const ViewRequest& wish) const {
+    return std::any_of(refused_.begin(), refused_.end(), [&](const ViewRequest& r) {
+      return r.direction.dot(wish.direction) > 0.9999 && (r.target - wish.target).norm() < 0.01 &&
+             std::abs(r.distance - wish.distance) < 0.01;
+    });
+  }
+
+  void rate(Scored& s, const ReachableView& view, const Joints& current) const {
+    s.view = view;
+    s.shown = model_.shown(view.world_T_optical);
+    s.view.gain = 0.0;
+    for (std::uint32_t i : s.shown) s.view.gain += double(model_.areas()[i]);
+    s.score = s.view.gain / (parameters_.dwell + way(view, current));
+  }
+
+  void consider(std::vector<Scored>& scored, const ViewRequest& wish, const ReachableView& view, const Joints& current) const {
+    if (was_refused(wish)) return;
+    scored.emplace_back();
+    scored.back().request = wish;
+    rate(scored.back(), view, current);
+  }
+
+  /// Joint-space way to a view, in half turns; 0 where the caller moves without telling.
+  static double way(const ReachableView& view, const Joints& from) {
+    return view.joints ? (*view.joints - from).norm() / kPi : 0.0;
+  }
+
+  /// The views that would be chosen next, one after the other as far as the model knows; the one that the shortest way
+  /// through all of them begins with.
+  std::size_t nearest_of_next(const std::vector<Scored>& scored, const Joints& current, double least) const {
+    std::vector<std::size_t> next{0};
+    std::vector<float> areas = model_.areas();
+    while (static_cast<int>(next.size()) < parameters_.lookahead) {
+      for (std::uint32_t i : scored[next.back()].shown) areas[i] = 0.0f;
+      const Joints from = scored[next.back()].view.joints.value_or(current);
+      double best = 0.0;
+      std::size_t choice = scored.size();
+      for (std::size_t c = 0; c < scored.size(); ++c) {
+        double gain = 0.0;
+        for (std::uint32_t i : scored[c].shown) gain += double(areas[i]);
+        const double score = gain / (parameters_.dwell + way(scored[c].view, from));
+        if (gain >= least && score > best) best = score, choice = c;
+      }
+      if (choice == scored.size()) break;
+      next.push_back(choice);
+    }
+    double shortest = std::numeric_limits<double>::infinity();
+    std::size_t first = next.front();
+    std::vector<std::size_t> order(next.size());
+    std::iota(order.begin(), order.end(), std::size_t{0});  // by score first: of equal ways the best view begins
+    do {
+      double length = 0.0;
+      Joints at = current;
+      for (std::size_t k : order) {
+        length += way(scored[next[k]].view, at);
+        at = scored[next[k]].view.joints.value_or(at);
+      }
+      if (scored[next[order.front()]].score < parameters_.patience * scored.front().score) continue;
+      if (length < shortest - 1e-12) shortest = length, first = next[order.front()];
+    } while (std::next_permutation(order.begin(), order.end()));
+    return first;
   }
 
   std::optional<ReachableView> stop(StopReason reason) {
@@ -157,9 +239,9 @@ class GainPlanner : public Planner {
   Eigen::Vector3d eye_;
   ExpectedSurface model_;
   std::vector<Candidate> candidates_;
-  Eigen::Vector3d center_ = Eigen::Vector3d::Zero();
-  std::vector<Eigen::Vector3d> refused_;
-  std::optional<Eigen::Vector3d> last_;
+  Aabb extent_;  // of the bodies when the candidates were made
+  std::vector<ViewRequest> refused_;
+  std::optional<ViewRequest> last_;
   int refused_first_ = 0;
   StopReason reason_ = StopReason::not_stopped;
 };

@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// @file
+/// How large and how heavy a fitted fruit is, and how well that is known: for yield.
+#pragma once
+
+#include <agrisee/cloud/fit.hpp>
+
+namespace agrisee {
+
+/// Parameters of mass_of.
+struct MassParameters {
+  double density = 980.0;       ///< of the fruit (kg/m3): tomatoes mostly float, just; set that of your cultivar
+  double density_error = 20.0;  ///< standard deviation of the density among fruit (kg/m3)
+  double shape_error = 0.01;  ///< standard deviation of a fruit's volume about its ellipsoid's, relative: lobes, dents
+
+  /// @throws ParameterError
+  void check() const {
+    check_parameter(density > 0 && std::isfinite(density), "mass.density", "positive", density);
+    check_parameter(density_error >= 0 && std::isfinite(density_error), "mass.density_error", ">= 0", density_error);
+    check_parameter(shape_error >= 0 && std::isfinite(shape_error), "mass.shape_error", ">= 0", shape_error);
+  }
+  template <typename P, typename F>
+  static void fields(P& p, F&& f) {
+    f("density", p.density);
+    f("density_error", p.density_error);
+    f("shape_error", p.shape_error);
+  }
+};
+
+/// A value with its standard error.
+struct Estimate {
+  double value = 0.0;
+  double error = 0.0;
+};
+
+/// Volume (m3) of an ellipsoid.
+inline double volume(const Ellipsoid& body) { return 4.0 / 3.0 * kPi / body.A.determinant(); }
+
+/// Relative standard error of the volume of a body that was fitted to the points `indices` of a cloud: of the logarithm
+/// of 1 / det A, whose derivative by A is -A^-1, under the covariance of centre and A together. Points, derivatives,
+/// certainty and prior are those of fit_ellipsoid; what the points leave open is as wide as the prior on the shape.
+/// Relative to the size nothing is known beforehand, so that too few points give a large error (at most 1).
+/// @throws InputError when the cloud has no normals; ParameterError
+template <typename S>
+double relative_volume_error(const PointCloud<S>& cloud, const Indices& indices, const Ellipsoid& body,
+                             const FitParameters& parameters = {}) {
+  parameters.check();
+  check_input(cloud.normals.size() == cloud.points.size(), "relative_volume_error: the cloud has no normals");
+  using Vector9 = Eigen::Matrix<double, 9, 1>;
+  using Matrix9 = Eigen::Matrix<double, 9, 9>;
+  if (indices.empty()) return 1.0;
+  const std::size_t used = std::min(indices.size(), static_cast<std::size_t>(parameters.max_points));
+  const double share = static_cast<double>(indices.size()) / static_cast<double>(used);
+  const double size = body.mean_radius(), cos_max = std::cos(parameters.max_angle);
+  const double gate = std::max(4.0 * parameters.noise, 0.05 * size);
+  Matrix9 information = Matrix9::Zero();
+  double weights = 0.0;
+  for (std::size_t k = 0; k < used; ++k) {
+    const auto i = static_cast<std::size_t>(indices[k * indices.size() / used]);
+    Eigen::Vector3d d = cloud.points[i].template cast<double>() - body.center;
+    const double g = body.times(d).norm();
+    if (!(g > 1e-9)) continue;
+    d /= g;
+    const Eigen::Vector3d a = body.times(d), slope = body.times(a);
+    const double steep = slope.norm(), t = (g - 1.0) / steep / gate;
+    if (slope.dot(cloud.normals[i].template cast<double>()) < cos_max * steep || !(std::abs(t) < 1.0)) continue;
+    const double w = (1.0 - t * t) * (1.0 - t * t), scale = 1.0 / (steep * size);
+    Vector9 j;
+    j << slope * (-size / steep), a.x() * d.x() * scale, a.y() * d.y() * scale, a.z() * d.z() * scale,
+        (a.x() * d.y() + a.y() * d.x()) * scale, (a.x() * d.z() + a.z() * d.x()) * scale,
+        (a.y() * d.z() + a.z() * d.y()) * scale;
+    information.noalias() += (w * j).lazyProduct(j.transpose());
+    weights += w;
+  }
+  if (!(weights > 0.0)) return 1.0;
+  information *= std::min(share, parameters.independent / weights) / (parameters.noise * parameters.noise);
+  const double relative = body.A.trace() * size / 3.0, tight = 1.0 / std::pow(parameters.shape_prior * relative, 2);
+  information.block<3, 3>(3, 3) += tight * (Eigen::Matrix3d::Identity() - Eigen::Matrix3d::Constant(1.0 / 3.0));
+  information.diagonal().tail<3>().array() += 2.0 * tight;
+  information.diagonal().array() += 1e-9 * information.diagonal().maxCoeff();
+  const Eigen::Matrix3d inverse = body.A.inverse() / size;
+  Vector9 gradient = Vector9::Zero();
+  gradient.tail<6>() << inverse(0, 0), inverse(1, 1), inverse(2, 2), 2.0 * inverse(0, 1), 2.0 * inverse(0, 2),
+      2.0 * inverse(1, 2);
+  const Vector9 spread = Eigen::LDLT<Matrix9>(information).solve(gradient);
+  const double variance = gradient.dot(spread);
+  return variance > 0.0 && variance < 1.0 ? std::sqrt(variance) : 1.0;
+}
+
+/// Volume (m3) of a fitted body, with its standard error: that of the fit and that of the shape.
+/// @param relative_fit_error see relative_volume_error
+inline Estimate volume_of(const Ellipsoid& body, double relative_fit_error, const MassParameters& parameters = {}) {
+  const double v = volume(body);
+  return {v, v * std::hypot(relative_fit_error, parameters.shape_error)};
+}
+
+/// Mass (kg) of a volume (m3), with its standard error: that of the volume and that of the density.
+inline Estimate mass_of(const Estimate& volume, const MassParameters& parameters = {}) {
+  return {parameters.density * volume.value,
+          std::hypot(parameters.density * volume.error, parameters.density_error * volume.value)};
+}
+
+}  // namespace agrisee
