@@ -6,11 +6,12 @@ CMAKE_ARGS ?=
 CONFIGURE := cmake -S . -B build/release -G Ninja -DCMAKE_BUILD_TYPE=Release $(CMAKE_ARGS)
 AGRISEE := build/release/agrisee
 
-.PHONY: help build demo test bench format clean
+.PHONY: help build demo test experiment bench format clean
 
 help:
 	@echo "make demo    install what is missing, build, scan a 7-fruit truss, evaluate it, draw it"
 	@echo "make test    install what is missing, build and run all tests"
+	@echo "make experiment  rerun what is missing of the paper's experiment, and write docs/experiment.md"
 	@echo "make bench   build and run the benchmarks"
 	@echo "make format  run clang-format on all sources"
 	@echo "make clean   remove build/ and demo/"
@@ -31,6 +32,12 @@ test:
 	@$(CONFIGURE) -DAGRISEE_BUILD_TESTS=ON -DAGRISEE_BUILD_EXAMPLES=ON
 	@cmake --build build/release -j $(JOBS)
 	@cd build/release && ctest --output-on-failure -j $(JOBS)
+
+experiment: build
+	@$(AGRISEE) experiment -o build/experiment --report docs/experiment.md --presets paper,default \
+	  --noise none,l515,gaussian:0.01,rough --trials 3 --paper-trials 1
+	@$(AGRISEE) experiment -o build/experiment --report build/planners/planners.md --presets default \
+	  --planner gain,see,fixed,random,greedy --noise l515 --trials 1 --max-views 15
 
 bench:
 	@cmake/packages.sh build bench

@@ -29,7 +29,9 @@ namespace fs = std::filesystem;
 struct ExperimentOptions {
   std::string output, report, params;
   std::vector<std::string> presets{"paper", "default"}, planners, noises{"l515"}, scenes;
-  int trials = 3, threads = 0, max_views = 0;
+  int trials = 3, paper_trials = 0, threads = 0, max_views = 0;
+
+  int trials_of(const std::string& preset) const { return preset == "paper" && paper_trials > 0 ? paper_trials : trials; }
 };
 
 /// FNV-1a, 64 bits: tells whether a record belongs to what would be run now.
@@ -124,7 +126,7 @@ std::vector<CellJob> list_cells(const ExperimentOptions& options, const std::vec
       const std::vector<std::string> own{parameters.planner};
       for (const std::string& planner : options.planners.empty() ? own : options.planners)
         for (const std::string& noise : options.noises)
-          for (int trial = 1; trial <= options.trials; ++trial) {
+          for (int trial = 1; trial <= options.trials_of(preset); ++trial) {
             CellJob job;
             job.cell = {scenes[s].name, preset, planner, sensor::to_string(sensor::parse_noise(noise)), trial};
             if (!names.insert(job.cell.name()).second) continue;
@@ -232,6 +234,7 @@ std::string command_of(const ExperimentOptions& options) {
   list("--planner", options.planners);
   list("--noise", options.noises);
   text += " --trials " + std::to_string(options.trials);
+  if (options.paper_trials > 0) text += " --paper-trials " + std::to_string(options.paper_trials);
   list("--scenes", options.scenes);
   if (!options.params.empty()) text += " --params " + options.params;
   if (options.max_views > 0) text += " --max-views " + std::to_string(options.max_views);
@@ -285,6 +288,9 @@ void add_experiment(CLI::App& app, Run& run) {
   command->add_option("--trials", options->trials, "trials; their numbers are the seeds")
       ->check(CLI::Range(1, 1000))
       ->capture_default_str();
+  command->add_option("--paper-trials", options->paper_trials,
+                      "trials of the paper preset, which takes longer (default: as many as of others)")
+      ->check(CLI::Range(1, 1000));
   command->add_option("--scenes", options->scenes,
                       "scene files, trusses of the paper (7_1) or of other seeds (7_1_s5); default: the paper's eleven")
       ->delimiter(',');
