@@ -3,6 +3,7 @@
 /// From a split cloud to located fruit: centroids, pose frames, bodies (paper, "Localization").
 #pragma once
 
+#include <agrisee/cloud/measured_volume.hpp>
 #include <agrisee/parameters.hpp>
 #include <agrisee/result.hpp>
 
@@ -32,7 +33,10 @@ inline Body body_of(const Cloud& cloud, const Indices& points, const FoundBody& 
   const double misfit = body.rms / (parameters.tolerance * found.fit.body.mean_radius());
   body.confidence = (0.5 + 0.5 * seen) * std::exp(-misfit * misfit);
   const double fit_error = relative_volume_error(cloud, points, found.fit.body, parameters.fit);
-  const Estimate volume = volume_of(found.fit.body, fit_error, mass_parameters), mass = mass_of(volume, mass_parameters);
+  Estimate volume = volume_of(found.fit.body, fit_error, mass_parameters);
+  if (const auto measured = measured_volume(cloud, points, found.fit.body.center))
+    volume = {*measured, volume.error * *measured / volume.value};
+  const Estimate mass = mass_of(volume, mass_parameters);
   std::tie(body.volume, body.volume_error) = std::tie(volume.value, volume.error);
   std::tie(body.mass, body.mass_error) = std::tie(mass.value, mass.error);
   return body;

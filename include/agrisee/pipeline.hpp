@@ -113,6 +113,9 @@ class Pipeline {
   void refused() { planner_->refused(); }
 
   StopReason stop_reason() const { return stop_reason_; }
+  /// How much of the fruit's surface the planner believes to have been seen, and that the arm can see at all, as of the
+  /// last next_view(); nothing where the planner does not reckon with surfaces.
+  std::optional<plan::Completeness> completeness() const { return planner_->completeness(); }
   const std::vector<View>& views() const { return views_; }
   /// The cloud merged so far, before any filter at the end.
   const Cloud& merged() const { return cloud_; }

@@ -34,13 +34,14 @@ void add_limit(CLI::App& app, Run& run);
 struct PipelineOptions {
   std::string preset = "default", params;
   std::string output;
+  std::vector<double> radius;  ///< smallest and largest expected radius (m), or empty
   std::uint64_t seed = 0;
   int threads = 0;  ///< 0 = as many as the machine has
   bool force = false, json = false;
 };
 void add_pipeline_options(CLI::App& command, PipelineOptions& options);
 
-/// Preset and parameter file combined. @throws FileError, ParameterError
+/// Preset, parameter file and expected radii combined. @throws FileError, UsageError
 Parameters parameters_of(const PipelineOptions& options);
 int threads_of(int asked);
 

@@ -21,6 +21,11 @@ void add_pipeline_options(CLI::App& command, PipelineOptions& options) {
       ->check(CLI::IsMember({"default", "paper"}))
       ->capture_default_str();
   command.add_option("--params", options.params, "YAML file with parameters to change");
+  command
+      .add_option("--radius", options.radius,
+                  "smallest,largest expected radius of a fruit (m; default 0.02,0.05) and what follows from it")
+      ->delimiter(',')
+      ->expected(2);
   command.add_option("--seed", options.seed, "seed of everything random")->capture_default_str();
   command.add_option("--threads", options.threads, "threads (0: all); the result does not depend on it")
       ->check(CLI::Range(0, 1024))
@@ -31,7 +36,14 @@ void add_pipeline_options(CLI::App& command, PipelineOptions& options) {
 
 Parameters parameters_of(const PipelineOptions& options) {
   const Parameters base = Parameters::named(options.preset);
-  return options.params.empty() ? base : io::read_parameters(options.params, base);
+  Parameters parameters = options.params.empty() ? base : io::read_parameters(options.params, base);
+  if (options.radius.empty()) return parameters;
+  try {
+    parameters.expect_radii(options.radius[0], options.radius[1]);
+  } catch (const ParameterError& e) {  // the numbers came from the command line
+    throw UsageError(std::string("--radius: ") + e.what());
+  }
+  return parameters;
 }
 
 int threads_of(int asked) {

@@ -18,20 +18,16 @@ namespace {
 struct ProcessOptions : PipelineOptions {
   std::string cloud, views;
   std::vector<double> viewpoint;
-  std::vector<double> radius;
 };
 
 int run_process(const ProcessOptions& options) {
-  Parameters parameters = parameters_of(options);
-  if (!options.radius.empty()) {
-    parameters.split.bodies.radius_min = options.radius[0];
-    parameters.split.bodies.radius_max = options.radius[1];
-  }
+  const Parameters parameters = parameters_of(options);
   parameters.check();
   const io::CloudFile file = io::read_cloud(options.cloud);
   if (file.dropped > 0)
     std::cerr << options.cloud << ": " << file.dropped << " points that are not finite were dropped\n";
   CloudOrigin origin;
+  origin.check_normals = true;
   if (!options.viewpoint.empty())
     origin.viewpoint = Eigen::Vector3d(options.viewpoint[0], options.viewpoint[1], options.viewpoint[2]);
   if (!options.views.empty()) {
@@ -80,11 +76,10 @@ void add_process(CLI::App& app, Run& run) {
   command->add_option("--viewpoint", options->viewpoint, "position x,y,z (m) from which all points were seen")
       ->delimiter(',')
       ->expected(3);
-  command->add_option("--views", options->views, "views.csv with the sensor of each point's property 'view'");
-  command->add_option("--radius", options->radius, "smallest,largest expected radius of a fruit (m)")
-      ->delimiter(',')
-      ->expected(2);
+  command->add_option("--views", options->views, "views.csv with the sensor of each point's property 'view'")->excludes("--viewpoint");
   command->footer(
+      "Normals that the file has are kept, but turned where they face away from the viewpoint or view; missing ones\n"
+      "are estimated and, without viewpoint or views, made to agree with one another.\n"
       "Examples:\n"
       "  agrisee process cloud.ply -o result\n"
       "  agrisee process frame.pcd -o result --viewpoint 0,0,0 --radius 0.025,0.06");

@@ -119,6 +119,7 @@ void add_scan(CLI::App& app, Run& run) {
       "Examples:\n"
       "  agrisee scan truss/scene.yaml -o result --noise l515 --seed 1\n"
       "  agrisee scan truss/scene.yaml -o paper --preset paper --noise gaussian:0.002 --max-views 20\n"
+      "  agrisee scan cherries/scene.yaml -o result --radius 0.01,0.02\n"
       "DIR holds cloud.ply, cloud_raw.ply, views.csv, fruits.json, fruits.csv, run.json and truss.png.");
   command->callback([options, &run] { run = [options] { return run_scan(*options); }; });
 }

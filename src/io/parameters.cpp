@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <agrisee/io/parameters.hpp>
 
-#include <fstream>
+#include <cmath>
 #include <nlohmann/json.hpp>
 #include <set>
-#include <sstream>
 #include <type_traits>
-#include <yaml-cpp/yaml.h>
+
+#include "yaml_map.hpp"
 
 namespace agrisee::io {
 namespace {
@@ -74,6 +74,8 @@ struct YamlReader {
           value = robust_kernel(child.as<std::string>());
         else
           value = child.as<T>();
+        if constexpr (std::is_floating_point_v<T>)
+          if (!std::isfinite(value)) throw ParameterError("has to be finite, got " + child.Scalar());
       } catch (const YAML::Exception&) {
         throw FileError(place(path, child) + ": '" + key + "' has a value of the wrong type");
       } catch (const ParameterError& e) {
@@ -102,16 +104,7 @@ struct YamlReader {
 }  // namespace
 
 Parameters read_parameters(const std::string& path, const Parameters& base) {
-  std::ifstream file(path, std::ios::binary);
-  if (!file) throw FileError(path + ": cannot be read");
-  YAML::Node root;
-  try {
-    std::stringstream text;
-    text << file.rdbuf();
-    root = YAML::Load(text.str());
-  } catch (const YAML::Exception& e) {
-    throw FileError(path + ":" + std::to_string(e.mark.line + 1) + ": not valid YAML: " + e.msg);
-  }
+  const YAML::Node root = load_yaml(path, true);
   Parameters parameters = base;
   if (root.IsNull()) return parameters;
   try {

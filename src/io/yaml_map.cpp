@@ -38,12 +38,12 @@ bool has_second_document(const std::string& text) {
 
 }  // namespace
 
-YAML::Node load_yaml(const std::filesystem::path& path) {
+YAML::Node load_yaml(const std::filesystem::path& path, bool may_be_empty) {
   const std::string text(read_bytes(path).view());
   try {
     const YAML::Node document = YAML::Load(text);
     if (has_second_document(text)) io::fail(path, "holds more than one YAML document");
-    if (document.IsNull()) io::fail(path, "is empty");
+    if (document.IsNull() && !may_be_empty) io::fail(path, "is empty");
     return document;
   } catch (const YAML::Exception& e) {
     if (e.mark.is_null()) io::fail(path, "not YAML: " + e.msg);

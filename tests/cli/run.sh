@@ -35,6 +35,10 @@ case $3 in
     printf 'sor:\n  mean_kk: 3\n' >p.yaml && expect 2 'p.yaml:2.*sor.mean_kk' scan t/scene.yaml -o d --params p.yaml
     printf 'sor:\n  mean_k: many\n' >p.yaml && expect 2 'p.yaml:2.*sor.mean_k' scan t/scene.yaml -o d --params p.yaml
     printf 'normals:\n  radius: -1\n' >p.yaml && expect 2 'p.yaml.*radius' scan t/scene.yaml -o d --params p.yaml
+    mkdir folder && expect 2 'folder.*directory' scan t/scene.yaml -o d --params folder
+    printf 'normals:\n  radius: .inf\n' >p.yaml && expect 2 'p.yaml:2.*normals.radius.*finite' scan t/scene.yaml -o d --params p.yaml
+    printf 'max_views: 3\n---\nmax_views: 4\n' >p.yaml && expect 2 'p.yaml.*more than one' scan t/scene.yaml -o d --params p.yaml
+    expect 1 'radius' scan t/scene.yaml -o d --radius 0.03,0.02 && expect 1 'radius' scan t/scene.yaml -o d --radius 0.001,0.5
     [ ! -e d ] || fail "a refused scan wrote something"
     expect 2 'no_such_folder' evaluate t/scene.yaml no_such_folder
     expect 1 'total|hidden' make-truss --total 2 --hidden 5 -o x
@@ -72,6 +76,8 @@ assert m["n_real"] == 4 and m["ce"] == 0 and m["p_obj"] == 1 and m["r_obj"] == 1
 PY
     expect 0 '' process r1/cloud.ply -o again --viewpoint 0,0,0.2
     expect 1 'input' process r1/cloud.ply -o r1 --force
+    expect 0 '' process r1/cloud_raw.ply -o raw --views r1/views.csv --radius 0.02,0.05 && grep -qE '^[45] fruit' out.txt || fail "process of the raw points misses fruit"
+    expect 1 'excludes' process r1/cloud_raw.ply -o raw2 --views r1/views.csv --viewpoint 0,0,0
     ;;
   paper)
     "$agrisee" make-truss --total 4 --hidden 1 --seed 3 -o t >/dev/null || fail make-truss
@@ -103,6 +109,32 @@ PY
     "$agrisee" scan t/scene.yaml -o r >out.txt 2>err.txt; code=$?
     [ $code = 0 ] || fail "an empty scene: exit $code"
     grep -q nothing_seen r/run.json || fail "the reason is not recorded"
+    ;;
+  experiment)
+    "$agrisee" make-truss --total 3 --hidden 0 --seed 1 -o t3 >/dev/null || fail make-truss
+    "$agrisee" make-truss --total 4 --hidden 1 --seed 3 -o t4 >/dev/null || fail make-truss
+    small_sensor t3/scene.yaml && small_sensor t4/scene.yaml
+    run() { expect 0 "$1" experiment -o e --presets default,paper --scenes t3/scene.yaml,t4/scene.yaml --noise l515 --trials 1 --max-views 3 "${@:2}"; }
+    run '4 cells, 4 of them to run' --threads 1
+    [ "$(tail -n +2 e/report/scanning.csv | wc -l)" = 4 ] || fail "not a row a cell"
+    cp -r e first && run '4 cells, 0 of them to run'
+    for f in report.md report/scanning.csv report/segmentation.csv report/scanning.svg; do
+      cmp "e/$f" "first/$f" || fail "$f did not come back as it was"
+    done
+    echo broken >"$(ls -d e/cells/*default*l515*1.json | head -1)" && run '4 cells, 1 of them to run'
+    run '4 cells, 2 of them to run' --planner gain,see --presets default
+    expect 1 'noise' experiment -o x --noise loud && expect 1 '' experiment -o x --presets mine
+    expect 2 'missing.yaml' experiment -o x --scenes missing.yaml && expect 1 '7_9' experiment -o x --scenes 7_9
+    # A cell is what scan and evaluate say of the same scene, noise and seed.
+    expect 0 '' scan t3/scene.yaml -o r --noise l515 --seed 1 --max-views 3 && expect 0 '' evaluate t3/scene.yaml r --json
+    python3 - out.txt first/cells/*3_0*default*.json <<'PY' || fail "experiment and evaluate disagree"
+import json, sys
+judged, cell = (json.load(open(f)) for f in sys.argv[1:])
+for a, b in ("recall", "recall"), ("recall_obs", "recall_obs"), ("precision", "precision"), ("n_det", "n_det"), ("scanned", "scanned"):
+    assert abs(judged[a] - cell["metrics"][b]) < 1e-6, (a, judged[a], cell["metrics"][b])
+assert cell["views"] == 3 == len(cell["recall_after"]) and cell["metrics"]["recall_obs"] == cell["recall_after"][-1]
+PY
+    expect 0 '' paper-scenes -o p && [ "$(ls p | wc -l)" = 11 ] && expect 1 'force' paper-scenes -o p
     ;;
   limit)
     "$agrisee" make-truss --total 3 --hidden 0 --seed 1 -o t >/dev/null || fail make-truss

@@ -100,6 +100,24 @@ class ExpectedSurface {
     return area;
   }
 
+  /// How complete the scan is, given which of the samples some reachable view shows.
+  Completeness completeness(const std::vector<char>& can_be_seen) const {
+    Completeness out;
+    std::vector<double> open(bodies_.size(), 0.0);
+    for (std::size_t i = 0; i < samples_.size(); ++i)
+      if (samples_[i].body >= 0 && can_be_seen[i]) open[static_cast<std::size_t>(samples_[i].body)] += double(areas_[i]);
+    double all = 0.0;
+    for (std::size_t b = 0; b < bodies_.size(); ++b) {
+      const double seen = covered_of_[b], observable = seen + open[b];
+      out.fruits.push_back({bodies_[b].fit.body.center, seen / area_of_[b], observable / area_of_[b]});
+      out.seen += seen;
+      out.observable += observable;
+      all += area_of_[b];
+    }
+    if (all > 0.0) out.seen /= all, out.observable /= all;
+    return out;
+  }
+
   const std::vector<FoundBody>& bodies() const { return bodies_; }
   /// Surface (m2) of all bodies found so far, and the part of it that points cover.
   double area() const { return area_; }
@@ -149,6 +167,8 @@ class ExpectedSurface {
     for (const FoundBody& b : bodies_)
       spheres_.push_back({b.fit.body.center.cast<float>(), static_cast<float>(0.97 * b.fit.body.mean_radius())});
     area_ = covered_ = 0.0;
+    area_of_.clear();
+    covered_of_.clear();
     extent_ = {};
     for (const auto& p : progress.cloud.points) extent_.extend(p.cast<double>());
     const Aabb cloud = extent_;
@@ -163,14 +183,18 @@ class ExpectedSurface {
       center_ += body.center / static_cast<double>(bodies_.size());
       for (int side : {-1, 1}) extent_.extend(body.center + Eigen::Vector3d::Constant(side * body.mean_radius()));
       const double r = body.mean_radius(), share = 4.0 * kPi * r * r / parameters_.samples;
+      double covered = 0.0;
       for (const Eigen::Vector3d& d : directions) {
-        area_ += share;
         const Eigen::Vector3d p = body.surface(d);
         if (grid.count(p.cast<float>(), static_cast<float>(parameters_.cover_radius), 1) > 0)
-          covered_ += share;
+          covered += share;
         else if (!inside_other(p, static_cast<int>(b)))
           add_sample(p, body.normal(p), share, static_cast<int>(b));
       }
+      area_of_.push_back(share * parameters_.samples);
+      covered_of_.push_back(covered);
+      area_ += area_of_.back();
+      covered_ += covered;
     }
     std::size_t i = 0;
     for (int z = 0; z < dims_[2]; ++z)
@@ -264,6 +288,7 @@ class ExpectedSurface {
   std::vector<Occluder> spheres_;  // the bodies, a little smaller
   std::vector<Eigen::Vector3f> obstacles_;
   double area_ = 0.0, covered_ = 0.0;
+  std::vector<double> area_of_, covered_of_;  // one a body (m2)
   Eigen::Vector3d center_ = Eigen::Vector3d::Zero();
   Aabb extent_;
 };

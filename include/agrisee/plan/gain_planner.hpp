@@ -96,6 +96,10 @@ class GainPlanner : public Planner {
     }
     std::vector<Scored> scored;
     for (const Candidate& c : candidates_) consider(scored, c.request, c.view, current);
+    std::vector<char> can_be_seen(model_.areas().size(), 0);
+    for (const Scored& s : scored)
+      for (std::uint32_t i : s.shown) can_be_seen[i] = 1;
+    completeness_ = model_.completeness(can_be_seen);
     if (scored.empty()) return stop(StopReason::no_reachable_view);
     // The best, by the shortest way from where the arm stands now, and more finely around them.
     const auto better = [](const Scored& a, const Scored& b) { return a.score > b.score; };
@@ -132,6 +136,8 @@ class GainPlanner : public Planner {
   }
 
   StopReason stop_reason() const override { return reason_; }
+
+  std::optional<Completeness> completeness() const override { return completeness_; }
 
   /// The planner's model of the truss.
   const ExpectedSurface& model() const { return model_; }
@@ -242,6 +248,7 @@ class GainPlanner : public Planner {
   Aabb extent_;  // of the bodies when the candidates were made
   std::vector<ViewRequest> refused_;
   std::optional<ViewRequest> last_;
+  std::optional<Completeness> completeness_;
   int refused_first_ = 0;
   StopReason reason_ = StopReason::not_stopped;
 };

@@ -43,6 +43,23 @@ struct Progress {
                                                     ///< counting those from before the view, then `added`
 };
 
+/// How much of the fruit's surface a planner believes to have been seen, and that the arm can see at all: shares of the
+/// surface of the bodies that it knows of, 0..1. Nothing true is read for it.
+struct Completeness {
+  /// Of one body.
+  struct Part {
+    Eigen::Vector3d center = Eigen::Vector3d::Zero();  ///< m, world
+    double seen = 0.0;        ///< share of its surface that points cover
+    double observable = 0.0;  ///< the same once everything that the arm can still see has been seen
+  };
+  std::vector<Part> fruits;  ///< in the planner's own order
+  double seen = 0.0;         ///< of all bodies
+  double observable = 0.0;   ///< of all bodies
+
+  /// Share of what can be seen that has been seen; 0 when nothing can.
+  double of_observable() const { return observable > 0.0 ? seen / observable : 0.0; }
+};
+
 /// Decides where to look next.
 class Planner {
  public:
@@ -62,6 +79,10 @@ class Planner {
 
   /// Why `next` returned nothing.
   virtual StopReason stop_reason() const = 0;
+
+  /// How complete the scan is, as of the last call of `next`; nothing where the planner does not reckon with surfaces, or
+  /// knows of none yet.
+  virtual std::optional<Completeness> completeness() const { return std::nullopt; }
 };
 
 }  // namespace agrisee::plan

@@ -120,7 +120,7 @@ inline CellRecord run_cell(const Subject& subject, const Cell& cell, Parameters 
   options.threads = threads;
   options.planner = study_planner(subject, cell.planner);
   options.on_view = [&](const Pipeline& pipeline) {
-    ScanResult now = pipeline.result();
+    ScanResult now = pipeline.result();  // its time counts for nobody
     now.views.clear();  // what was seen from where is judged at the end alone
     const Metrics m = evaluate(truth, now, observable, {}, threads);
     r.scanned_after.push_back(m.scanned_obs);

@@ -1,0 +1,125 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <agrisee/core/random.hpp>
+#include <agrisee/process.hpp>
+
+#include "catch.hpp"
+
+using namespace agrisee;
+
+namespace {
+
+const Eigen::Vector3d kEye(0.0, 0.0, 0.2);
+const std::vector<Sphere> kFruit = {{{-0.05, 0.5, 0.2}, 0.035}, {{0.04, 0.52, 0.2}, 0.03}};
+
+/// What the eye sees of the fruit, with normals and with view 0, about 2.4 mm apart.
+Cloud seen(double noise = 0.0) {
+  Cloud cloud;
+  Rng rng(5);
+  for (const Sphere& s : kFruit) {
+    const auto n = static_cast<int>(4.0 * kPi * s.radius * s.radius / 5.8e-6);
+    for (int i = 0; i < n; ++i) {
+      const double z = 1.0 - (2.0 * i + 1.0) / n, phi = 2.399963229728653 * i, q = std::sqrt(1.0 - z * z);
+      const Eigen::Vector3d d(q * std::cos(phi), q * std::sin(phi), z), p = s.center + (s.radius + noise * rng.normal()) * d;
+      if (d.dot((kEye - p).normalized()) < 0.2) continue;
+      cloud.points.push_back(p.cast<float>());
+      cloud.normals.push_back(d.cast<float>());
+      cloud.views.push_back(0);
+    }
+  }
+  return cloud;
+}
+
+void check_found(const ScanResult& result, double margin = 0.002) {
+  REQUIRE(result.fruits.size() == kFruit.size());
+  for (const Sphere& s : kFruit) {
+    double nearest = 1.0;
+    for (const Fruit& f : result.fruits) nearest = std::min(nearest, (f.body->center - s.center).norm());
+    CHECK(nearest < margin);
+  }
+}
+
+CloudOrigin from_eye(bool views) {
+  CloudOrigin origin;
+  if (views)
+    origin.sensors = {kEye};
+  else
+    origin.viewpoint = kEye;
+  origin.check_normals = true;
+  return origin;
+}
+
+}  // namespace
+
+TEST_CASE("normals that face away from viewpoint or view are turned, the others kept") {
+  const Cloud cloud = seen();
+  Cloud turned = cloud;
+  for (auto& n : turned.normals) n = -n;
+  for (const bool views : {false, true}) {
+    check_found(process(turned, {}, from_eye(views)));
+    Cloud completed = turned;
+    double noise = 1.0;
+    detail::complete_normals(completed, {}, from_eye(views), noise, 1);
+    CHECK((completed.normals == cloud.normals));
+    CHECK(noise == 0.0);
+  }
+  CHECK(process(turned).fruits.empty());  // trusted as they are when nothing else is known
+  CloudOrigin unchecked = from_eye(true);
+  unchecked.check_normals = false;
+  CHECK(process(turned, {}, unchecked).fruits.empty());
+}
+
+TEST_CASE("normals that are missing are estimated on their neighbours' side") {
+  const Cloud cloud = seen();
+  Cloud some = cloud, none = cloud;
+  for (std::size_t i = 0; i < some.size(); ++i) {
+    if (i % 3 == 0) some.normals[i].setZero();
+    if (i % 3 == 1) some.normals[i].setConstant(std::numeric_limits<float>::quiet_NaN());
+  }
+  none.normals.assign(none.size(), Eigen::Vector3f::Zero());
+  for (const CloudOrigin& origin : {CloudOrigin{}, from_eye(false), from_eye(true)})
+    for (const Cloud* c : {&some, &none}) {
+      Cloud completed = *c;
+      double noise = 0.0;
+      detail::complete_normals(completed, {}, origin, noise, 1);
+      std::size_t right = 0;
+      for (std::size_t i = 0; i < cloud.size(); ++i) right += completed.normals[i].dot(cloud.normals[i]) > 0.8f;
+      CHECK(static_cast<double>(right) > 0.98 * static_cast<double>(cloud.size()));
+      check_found(process(*c, {}, origin));
+    }
+}
+
+TEST_CASE("a cloud's own noise widens its neighbourhoods") {
+  for (const double sigma : {0.0, 0.001, 0.002}) {
+    const Cloud cloud = seen(sigma);
+    const double noise = estimate_noise(cloud, KdTree<float>(cloud), 0.008, 0.0325);
+    CHECK(noise == Approx(sigma).margin(2.5e-4 + 0.2 * sigma));
+  }
+  Cloud bare = seen(0.002);
+  bare.normals.clear();
+  check_found(process(bare, {}, from_eye(false)), 0.008);
+}
+
+TEST_CASE("thinned clouds keep the views of their points") {
+  Cloud dense;
+  for (int i = 0; i < 60; ++i)
+    for (int j = 0; j < 60; ++j) {
+      dense.points.emplace_back(0.0005f * static_cast<float>(i), 0.5f, 0.0005f * static_cast<float>(j));
+      dense.views.push_back(i < 30 ? 0 : 1);
+    }
+  const Cloud thin = thinned(dense, {});
+  REQUIRE(thin.size() < dense.size() / 8);
+  REQUIRE(thin.views.size() == thin.size());
+  for (std::size_t i = 0; i < thin.size(); ++i)
+    if (std::abs(thin.points[i].x() - 0.01475f) > 0.001f) CHECK(thin.views[i] == (thin.points[i].x() < 0.01475f ? 0 : 1));
+}
+
+TEST_CASE("points that nearly coincide derive no absurd parameters") {
+  for (const float apart : {1e-30f, 1e-12f, 1e-7f}) {
+    Cloud cloud;
+    for (int i = 0; i < 300; ++i)
+      cloud.points.emplace_back(apart * static_cast<float>(i % 7), apart * static_cast<float>(i % 11), apart * static_cast<float>(i % 13));
+    CHECK(process(cloud).fruits.empty());
+    cloud.points.emplace_back(1.0f, 1.0f, 1.0f);
+    CHECK(process(cloud).fruits.empty());
+  }
+}
