@@ -18,17 +18,18 @@
 
 namespace agrisee {
 
-/// Parameters of the whole pipeline. `Parameters{}` are our defaults, `Parameters::paper()` the paper's stages and values.
+/// Parameters of the whole pipeline. `Parameters{}` are our defaults, `Parameters::paper()` the paper's stages and
+/// values.
 struct Parameters {
-  std::string preset = "default";   ///< name of the preset that these values started from
-  std::string planner = "gain";     ///< gain (default), see (SEE++), fixed or random
-  int max_views = 15;               ///< view budget, whatever the planner
-  bool fuse_surfaces = true;        ///< smooth frames and fuse them as surfels; off: merge raw points, the first wins
-  bool register_views = true;       ///< lay each view on what is fused so far (ICP) before fusing it
-  bool filter_each_view = false;    ///< outlier removal after every view, besides the one at the end (raw points only)
-  bool adaptive_normals = true;     ///< derive the normals' radius from the cloud's spacing
-  double normal_reach = 3.0;        ///< adaptive: that many spacings
-  bool growth_axis = true;          ///< pose frames: z towards the calyx; off: towards the cloud's highest point (paper)
+  std::string preset = "default";  ///< name of the preset that these values started from
+  std::string planner = "gain";    ///< gain (default), see (SEE++), fixed or random
+  int max_views = 20;              ///< view budget, whatever the planner
+  bool fuse_surfaces = true;       ///< smooth frames and fuse them as surfels; off: merge raw points, the first wins
+  bool register_views = true;      ///< lay each view on what is fused so far (ICP) before fusing it
+  bool filter_each_view = false;   ///< outlier removal after every view, besides the one at the end (raw points only)
+  bool adaptive_normals = true;    ///< derive the normals' radius from the cloud's spacing
+  double normal_reach = 3.0;       ///< adaptive: that many spacings
+  bool growth_axis = true;         ///< pose frames: z towards the calyx; off: towards the cloud's highest point (paper)
   sensor::SurfaceParameters surface;
   SurfelParameters surfels;
   IcpParameters icp;
@@ -67,9 +68,9 @@ struct Parameters {
     if (preset == "paper") return paper();
     throw ParameterError("preset must be default or paper, got " + preset);
   }
-  /// Expect fruit with radii from `smallest` to `largest` (m) and set what follows from it: the range of bodies and, for
-  /// fruit smaller than the 20 mm that the defaults are made for, the lengths at which surfaces are sampled, fused and
-  /// fitted, in proportion. Sampling twice as finely gives four times the points, in about as much more time.
+  /// Expect fruit with radii from `smallest` to `largest` (m) and set what follows from it: the range of bodies and,
+  /// for fruit smaller than the 20 mm that the defaults are made for, the lengths at which surfaces are sampled, fused
+  /// and fitted, in proportion. Sampling twice as finely gives four times the points, in about as much more time.
   /// @throws ParameterError when the range is empty or spans more than a factor of 20
   void expect_radii(double smallest, double largest) {
     BodyParameters bodies = split.bodies;
@@ -86,7 +87,8 @@ struct Parameters {
   }
   /// @throws ParameterError naming the first field out of its range
   void check() const {
-    if (preset != "default" && preset != "paper") throw ParameterError("preset must be default or paper, got " + preset);
+    if (preset != "default" && preset != "paper")
+      throw ParameterError("preset must be default or paper, got " + preset);
     if (planner != "gain" && planner != "see" && planner != "fixed" && planner != "random")
       throw ParameterError("planner must be gain, see, fixed or random, got " + planner);
     check_parameter(max_views >= 1, "max_views", ">= 1", max_views);

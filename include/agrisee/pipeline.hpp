@@ -2,9 +2,9 @@
 /// @file
 /// The whole of AgriSEE behind one facade: look, clean, split, locate, plan the picking.
 ///
-/// A robot's own loop: `observe` each frame with the pose it was taken from, ask `next_view`, move, repeat until there is
-/// none; then `result`. A ready cloud: `process` (process.hpp). A simulated scan: `study::scan` (study/simulated_scan.hpp),
-/// which drives the same loop. World frame, metres, radians.
+/// A robot's own loop: `observe` each frame with the pose it was taken from, ask `next_view`, move, repeat until there
+/// is none; then `result`. A ready cloud: `process` (process.hpp). A simulated scan: `study::scan`
+/// (study/simulated_scan.hpp), which drives the same loop. World frame, metres, radians.
 #pragma once
 
 #include <agrisee/cloud/icp.hpp>
@@ -27,17 +27,26 @@ class Pipeline {
   /// @param reach answers whether and how the arm can take a view; the default asks our UR3 model
   /// @param planner decides where to look next; the default is the one that `parameters.planner` names
   /// @param seed of whatever the planner draws
-  /// @param approach answers whether and how the arm can approach a fruit to pick it; the default asks our UR3 model, or
+  /// @param approach answers whether and how the arm can approach a fruit to pick it; the default asks our UR3 model,
+  /// or
   ///   nobody where `reach` is the caller's own (an arm that we do not know)
   /// @throws ParameterError; InputError for an empty scan volume or poses that are not rigid
   explicit Pipeline(const Workcell& workcell, const Parameters& parameters = {}, plan::Reach reach = {},
                     std::unique_ptr<plan::Planner> planner = nullptr, std::uint64_t seed = 0, int threads = 1,
                     plan::ReachApproach approach = {})
-      : workcell_(workcell), parameters_(parameters), reach_(std::move(reach)), approach_(std::move(approach)),
-        planner_(std::move(planner)), threads_(threads), surfels_(parameters.surfels), points_(parameters.see.min_separation()) {
+      : workcell_(workcell),
+        parameters_(parameters),
+        reach_(std::move(reach)),
+        approach_(std::move(approach)),
+        planner_(std::move(planner)),
+        threads_(threads),
+        surfels_(parameters.surfels),
+        points_(parameters.see.min_separation()) {
     parameters_.check();
-    check_input(!workcell.scan_volume.empty() && workcell.scan_volume.size().allFinite(), "the scan volume is empty or infinite");
-    check_input(is_rigid(workcell.world_T_base) && is_rigid(workcell.tool0_T_optical), "a pose of the workcell is not rigid");
+    check_input(!workcell.scan_volume.empty() && workcell.scan_volume.size().allFinite(),
+                "the scan volume is empty or infinite");
+    check_input(is_rigid(workcell.world_T_base) && is_rigid(workcell.tool0_T_optical),
+                "a pose of the workcell is not rigid");
     if (!reach_ && !approach_) approach_ = default_approach();
     if (!reach_) reach_ = plan::reach_of(workcell_);
     if (!planner_) planner_ = make_planner(workcell_, parameters_, seed, threads);
@@ -46,7 +55,8 @@ class Pipeline {
   /// Take in a depth frame that was seen from `world_T_optical` (at `joints`, where an arm is known).
   /// A frame without returns inside the scan volume is a view that brought nothing.
   /// @return the view as recorded
-  /// @throws InputError for a frame whose size disagrees with its intrinsics or a pose that is not rigid; the scan so far is kept
+  /// @throws InputError for a frame whose size disagrees with its intrinsics or a pose that is not rigid; the scan so
+  /// far is kept
   const View& observe(const sensor::DepthFrame& frame, const Pose& world_T_optical,
                       const std::optional<Joints>& joints = std::nullopt) {
     check(frame);
@@ -86,7 +96,8 @@ class Pipeline {
 
   /// The same for unorganised points (m, optical frame), any cloud type.
   template <typename C>
-  const View& observe_points(const C& points, const Pose& world_T_optical, const std::optional<Joints>& joints = std::nullopt) {
+  const View& observe_points(const C& points, const Pose& world_T_optical,
+                             const std::optional<Joints>& joints = std::nullopt) {
     return observe(sensor::frame_from_points(points, workcell_.sensor.intrinsics), world_T_optical, joints);
   }
 
@@ -115,7 +126,7 @@ class Pipeline {
   StopReason stop_reason() const { return stop_reason_; }
   /// How much of the fruit's surface the planner believes to have been seen, and that the arm can see at all, as of the
   /// last next_view(); nothing where the planner does not reckon with surfaces.
-  std::optional<plan::Completeness> completeness() const { return planner_->completeness(); }
+  std::optional<Completeness> completeness() const { return planner_->completeness(); }
   const std::vector<View>& views() const { return views_; }
   /// The cloud merged so far, before any filter at the end.
   const Cloud& merged() const { return cloud_; }
@@ -132,13 +143,16 @@ class Pipeline {
     origin.cluster_origin = cluster_origin(workcell_.scan_volume, workcell_.world_T_base.translation());
     SeenThrough seen_through;
     if (!images_.empty())
-      seen_through = [this](const Ellipsoid& body) { return plan::seen_through(images_, body, parameters_.free_space); };
+      seen_through = [this](const Ellipsoid& body) {
+        return plan::seen_through(images_, body, parameters_.free_space);
+      };
     ScanResult out = process(cloud_, parameters_, origin, seen_through, threads_);
     out.raw = raw_cloud();
     center_on_all_views(out);
     if (parameters_.picking.enabled) plan_the_picking(out);
     out.views = views_;
     out.stop_reason = stop_reason_;
+    out.completeness = completeness();
     out.seconds.plan = seconds_.plan;
     out.seconds.fuse = seconds_.fuse;
     out.seconds.filter += seconds_.filter;
@@ -153,12 +167,14 @@ class Pipeline {
  private:
   /// How far ahead a view looks: to the middle of the scan volume, as seen along its axis.
   double target_distance(const Pose& world_T_optical) const {
-    return std::max((workcell_.scan_volume.center() - world_T_optical.translation()).dot(world_T_optical.linear().col(2)), 0.0);
+    return std::max(
+        (workcell_.scan_volume.center() - world_T_optical.translation()).dot(world_T_optical.linear().col(2)), 0.0);
   }
 
   /// How the UR3 of the workcell, its gripper ahead of the sensor, approaches fruit.
   plan::ReachApproach default_approach() const {
-    const Pose tool0_T_tool = workcell_.tool0_T_optical * Eigen::Translation3d(0.0, 0.0, parameters_.picking.tool_length);
+    const Pose tool0_T_tool =
+        workcell_.tool0_T_optical * Eigen::Translation3d(0.0, 0.0, parameters_.picking.tool_length);
     return plan::approach_of(plan::mount_of(workcell_), tool0_T_tool, parameters_.picking);
   }
 
@@ -168,11 +184,11 @@ class Pipeline {
     {
       const Stopwatch watch(spent);
       const bool known = !views_.empty() && views_.back().joints;
-      const auto plan = plan::plan_picking(out.fruits,
-                                           {workcell_.keep_out, workcell_.world_T_base.translation(),
-                                            known ? *views_.back().joints : workcell_.start,
-                                            plan::seen_directions(out.cloud, out.labels, out.fruits)},
-                                           approach_, parameters_.picking);
+      const auto plan = plan::plan_picking(
+          out.fruits,
+          {workcell_.keep_out, workcell_.world_T_base.translation(), known ? *views_.back().joints : workcell_.start,
+           plan::seen_directions(out.cloud, out.labels, out.fruits)},
+          approach_, parameters_.picking);
       for (std::size_t i = 0; i < plan.size(); ++i) out.fruits[i].picking = plan[i];
     }
     out.seconds.locate += spent;
@@ -191,8 +207,7 @@ class Pipeline {
     if (parameters_.register_views && surfels_.size() > 0) register_image(image);
     const int id = static_cast<int>(views_.size());
     for (std::size_t c = 0; c < image.points.size(); ++c)
-      if (surfels_.add(image.points[c], image.normals[c], image.sigma[c], id))
-        added.push_back(image.points[c]);
+      if (surfels_.add(image.points[c], image.normals[c], image.sigma[c], id)) added.push_back(image.points[c]);
     // Only the depths are needed from now on, as evidence of free space.
     image.points = {};
     image.normals = {};
@@ -218,14 +233,15 @@ class Pipeline {
     image.world_T_optical = icp.target_T_source * image.world_T_optical;
   }
 
-  /// Registration lays every view on the first; the errors of that one view's pose would be the whole scan's. Over all views
-  /// they average out: the result is moved to the mean of where each view, as reported, would have put it.
+  /// Registration lays every view on the first; the errors of that one view's pose would be the whole scan's. Over all
+  /// views they average out: the result is moved to the mean of where each view, as reported, would have put it.
   void center_on_all_views(ScanResult& out) const {
     if (images_.empty() || out.cloud.empty()) return;
     Eigen::Vector3d center = Eigen::Vector3d::Zero(), shift = Eigen::Vector3d::Zero();
     for (const auto& p : out.cloud.points) center += p.cast<double>() / static_cast<double>(out.cloud.size());
     for (std::size_t v = 0; v < images_.size(); ++v) {
-      const Pose reported_T_registered = views_[v].world_T_optical * images_[v].world_T_optical.inverse(Eigen::Isometry);
+      const Pose reported_T_registered =
+          views_[v].world_T_optical * images_[v].world_T_optical.inverse(Eigen::Isometry);
       shift += (reported_T_registered * center - center) / static_cast<double>(images_.size());
     }
     for (Cloud* cloud : {&out.cloud, &out.raw})

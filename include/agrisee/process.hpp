@@ -26,15 +26,17 @@ class Stopwatch {
 
 /// What is known of a ready cloud beside its points.
 struct CloudOrigin {
-  std::vector<Eigen::Vector3d> sensors;      ///< sensor position (m) of each view that `cloud.views` refers to; may be empty
+  std::vector<Eigen::Vector3d>
+      sensors;  ///< sensor position (m) of each view that `cloud.views` refers to; may be empty
   std::optional<Eigen::Vector3d> viewpoint;  ///< one sensor position (m) for all points, where there are no views
-  bool check_normals = false;  ///< turn the cloud's own normals, too, where they face away from where they were seen from
+  bool check_normals =
+      false;  ///< turn the cloud's own normals, too, where they face away from where they were seen from
   Eigen::Vector3d cluster_origin = Eigen::Vector3d::Zero();  ///< origin of the cluster frame in world (m)
 };
 
-/// A ready cloud at the spacing that fused surfaces have: denser ones are averaged in voxels of `surfels.separation`, which
-/// takes off noise and time (a mean keeps the view of the point nearest to it); others are returned as they are, without
-/// the points that are not finite.
+/// A ready cloud at the spacing that fused surfaces have: denser ones are averaged in voxels of `surfels.separation`,
+/// which takes off noise and time (a mean keeps the view of the point nearest to it); others are returned as they are,
+/// without the points that are not finite.
 inline Cloud thinned(const Cloud& cloud, const Parameters& parameters) {
   Cloud finite = select(cloud, finite_indices(cloud));
   const double separation = parameters.surfels.separation;
@@ -63,11 +65,11 @@ inline std::optional<Eigen::Vector3d> seen_from(const Cloud& cloud, std::size_t 
   return origin.viewpoint;
 }
 
-/// Unit normals for a whole cloud, turned to where its points were seen from; those of points of which that is not known
-/// agree with their neighbours. A cloud that is noisy for its spacing gets wider neighbourhoods.
+/// Unit normals for a whole cloud, turned to where its points were seen from; those of points of which that is not
+/// known agree with their neighbours. A cloud that is noisy for its spacing gets wider neighbourhoods.
 /// @param noise receives the standard deviation (m) of the points about their own surface, 0 when it is not adaptive
-inline std::vector<Eigen::Vector3f> estimated_normals(const Cloud& cloud, const Parameters& parameters, const CloudOrigin& origin,
-                                                      double& noise, int threads) {
+inline std::vector<Eigen::Vector3f> estimated_normals(const Cloud& cloud, const Parameters& parameters,
+                                                      const CloudOrigin& origin, double& noise, int threads) {
   NormalParameters normals = parameters.normals;
   OrientationParameters orientation;
   bool all_known = true;
@@ -95,11 +97,11 @@ inline std::vector<Eigen::Vector3f> estimated_normals(const Cloud& cloud, const 
 }
 
 /// Normals that came with a cloud: kept, but for those that clearly face away from where their point was seen from (by
-/// more than `beyond` (rad); at grazing incidence either side is possible), which are turned. Those that are zero or not
-/// finite are estimated and take the side of the nearest normal that is known.
+/// more than `beyond` (rad); at grazing incidence either side is possible), which are turned. Those that are zero or
+/// not finite are estimated and take the side of the nearest normal that is known.
 /// @param noise as of estimated_normals; 0 when nothing had to be estimated
-inline void complete_normals(Cloud& cloud, const Parameters& parameters, const CloudOrigin& origin, double& noise, int threads,
-                             double beyond = deg(100)) {
+inline void complete_normals(Cloud& cloud, const Parameters& parameters, const CloudOrigin& origin, double& noise,
+                             int threads, double beyond = deg(100)) {
   noise = 0.0;
   const double away = std::cos(beyond);
   Indices known;
@@ -126,7 +128,8 @@ inline void complete_normals(Cloud& cloud, const Parameters& parameters, const C
     cloud.normals[i] = estimated[i];
     if (seen_from(cloud, i, origin) || sure.empty()) continue;
     search.knn(cloud.points[i], 1, nearest);
-    if (estimated[i].dot(sure.normals[static_cast<std::size_t>(nearest.front().index)]) < -0.5f) cloud.normals[i] = -estimated[i];
+    if (estimated[i].dot(sure.normals[static_cast<std::size_t>(nearest.front().index)]) < -0.5f)
+      cloud.normals[i] = -estimated[i];
   }
 }
 
@@ -134,12 +137,13 @@ inline void complete_normals(Cloud& cloud, const Parameters& parameters, const C
 
 /// Clean, split and locate (paper: SOR, region growing, DBSCAN, localization).
 ///
-/// Points that are not finite are dropped. Normals that the cloud has are kept, unless `origin.check_normals` asks to turn
-/// those that face away from where their points were seen from; missing ones are estimated and turned to the views, to the
-/// one viewpoint, or, where neither is known, by consistency. Where normals had to be estimated, the fit of bodies
-/// (`split.bodies.fit.noise`) reckons with four times the noise that the cloud shows locally: a ready cloud's errors go on
-/// beyond the neighbourhood in which they can be told from the surface.
-/// Works for any number of points; too few to be anything give no fruit.
+/// Points that are not finite are dropped. Normals that the cloud has are kept, unless `origin.check_normals` asks to
+/// turn those that face away from where their points were seen from; missing ones are estimated and turned to the
+/// views, to the one viewpoint, or, where neither is known, by consistency. Where normals had to be estimated, the fit
+/// of bodies
+/// (`split.bodies.fit.noise`) reckons with four times the noise that the cloud shows locally: a ready cloud's errors go
+/// on beyond the neighbourhood in which they can be told from the surface. Works for any number of points; too few to
+/// be anything give no fruit.
 /// @param seen_through evidence of free space from the views, or empty
 /// @throws ParameterError
 inline ScanResult process(const Cloud& cloud, const Parameters& parameters = {}, const CloudOrigin& origin = {},

@@ -6,7 +6,6 @@
 #include <agrisee/parameters.hpp>
 
 #include <CLI/CLI.hpp>
-
 #include <functional>
 #include <string>
 
@@ -48,7 +47,8 @@ int threads_of(int asked);
 /// @throws UsageError when it exists and is not a folder, FileError when it cannot be made
 void make_folder(const std::string& folder);
 
-/// Makes the folder ready for a result; with `force` an older one is removed. @throws UsageError when it holds a result already and `force` is off
+/// Makes the folder ready for a result; with `force` an older one is removed. @throws UsageError when it holds a result
+/// already and `force` is off
 void prepare_output(const std::string& folder, bool force);
 
 /// The summary of a result on stdout: a table of fruit, or JSON.

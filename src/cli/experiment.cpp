@@ -31,7 +31,9 @@ struct ExperimentOptions {
   std::vector<std::string> presets{"paper", "default"}, planners, noises{"l515"}, scenes;
   int trials = 3, paper_trials = 0, threads = 0, max_views = 0;
 
-  int trials_of(const std::string& preset) const { return preset == "paper" && paper_trials > 0 ? paper_trials : trials; }
+  int trials_of(const std::string& preset) const {
+    return preset == "paper" && paper_trials > 0 ? paper_trials : trials;
+  }
 };
 
 /// FNV-1a, 64 bits: tells whether a record belongs to what would be run now.
@@ -55,7 +57,7 @@ class Fingerprint {
 /// A scene of the experiment; what is costly of it is made when its first cell runs.
 struct SceneJob {
   std::string name;
-  fs::path path;            ///< of scene.yaml
+  fs::path path;  ///< of scene.yaml
   io::SceneFile file;
   std::string fingerprint;
   std::unique_ptr<std::once_flag> once = std::make_unique<std::once_flag>();
@@ -101,7 +103,8 @@ std::vector<SceneJob> open_scenes(const ExperimentOptions& options) {
     } else {
       jobs.push_back(open_scene(text, ""));
     }
-    if (!names.insert(jobs.back().name).second) throw UsageError(text + ": a second scene of the name " + jobs.back().name);
+    if (!names.insert(jobs.back().name).second)
+      throw UsageError(text + ": a second scene of the name " + jobs.back().name);
   }
   return jobs;
 }
@@ -183,9 +186,10 @@ std::vector<std::string> run_cells(std::vector<CellJob>& cells, std::vector<Scen
           record.fingerprint = job.fingerprint;
           io::write_record(job.path, record);
           std::ostringstream text;
-          text << record.metrics.n_true << "/" << record.metrics.n_real << " fruit, " << record.metrics.n_det - record.metrics.n_true
-               << " false, " << record.views << " views, recall " << std::fixed << std::setprecision(1)
-               << 100.0 * record.metrics.recall_obs << " %, " << record.seconds.total << " s";
+          text << record.metrics.n_true << "/" << record.metrics.n_real << " fruit, "
+               << record.metrics.n_det - record.metrics.n_true << " false, " << record.views << " views, recall "
+               << std::fixed << std::setprecision(1) << 100.0 * record.metrics.recall_obs << " %, "
+               << record.seconds.total << " s";
           outcome = text.str();
           job.record = std::move(record);
         } catch (const std::exception& e) {
@@ -197,7 +201,8 @@ std::vector<std::string> run_cells(std::vector<CellJob>& cells, std::vector<Scen
         const double spent = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
         std::cerr << "[" << done << "/" << open.size() << "] " << job.cell.name() << ": " << outcome;
         if (done < open.size())
-          std::cerr << "; " << duration(spent / static_cast<double>(done) * static_cast<double>(open.size() - done)) << " left";
+          std::cerr << "; " << duration(spent / static_cast<double>(done) * static_cast<double>(open.size() - done))
+                    << " left";
         std::cerr << "\n";
       },
       1);
@@ -205,7 +210,8 @@ std::vector<std::string> run_cells(std::vector<CellJob>& cells, std::vector<Scen
 }
 
 /// What can be seen of each scene, measured once.
-std::vector<study::SceneRecord> judge_scenes(const ExperimentOptions& options, std::vector<SceneJob>& scenes, int threads) {
+std::vector<study::SceneRecord> judge_scenes(const ExperimentOptions& options, std::vector<SceneJob>& scenes,
+                                             int threads) {
   std::vector<study::SceneRecord> records(scenes.size());
   parallel_for(
       scenes.size(), threads,
@@ -272,7 +278,8 @@ int run_experiment(const ExperimentOptions& options) {
 }  // namespace
 
 void add_experiment(CLI::App& app, Run& run) {
-  auto* command = app.add_subcommand("experiment", "the paper's experiment: scenes, presets, planners, noises and trials, tabled");
+  auto* command =
+      app.add_subcommand("experiment", "the paper's experiment: scenes, presets, planners, noises and trials, tabled");
   auto options = std::make_shared<ExperimentOptions>();
   command->add_option("-o,--output", options->output, "folder; what is finished in it is not run again")->required();
   command->add_option("--presets", options->presets, "paper, default")
@@ -288,11 +295,13 @@ void add_experiment(CLI::App& app, Run& run) {
   command->add_option("--trials", options->trials, "trials; their numbers are the seeds")
       ->check(CLI::Range(1, 1000))
       ->capture_default_str();
-  command->add_option("--paper-trials", options->paper_trials,
-                      "trials of the paper preset, which takes longer (default: as many as of others)")
+  command
+      ->add_option("--paper-trials", options->paper_trials,
+                   "trials of the paper preset, which takes longer (default: as many as of others)")
       ->check(CLI::Range(1, 1000));
-  command->add_option("--scenes", options->scenes,
-                      "scene files, trusses of the paper (7_1) or of other seeds (7_1_s5); default: the paper's eleven")
+  command
+      ->add_option("--scenes", options->scenes,
+                   "scene files, trusses of the paper (7_1) or of other seeds (7_1_s5); default: the paper's eleven")
       ->delimiter(',');
   command->add_option("--params", options->params, "YAML file with parameters to change in every preset");
   command->add_option("--max-views", options->max_views, "view budget (default: the preset's)")
@@ -306,7 +315,8 @@ void add_experiment(CLI::App& app, Run& run) {
       "  agrisee experiment -o build/experiment\n"
       "  agrisee experiment -o small --scenes 7_1,8_4 --presets default --noise none,rough --trials 1\n"
       "  agrisee experiment -o planners --presets default --planner gain,see,fixed,random,greedy\n"
-      "Cells run side by side, each on one thread; `agrisee scan DIR/scenes/NAME/scene.yaml --seed TRIAL` repeats one.");
+      "Cells run side by side, each on one thread; `agrisee scan DIR/scenes/NAME/scene.yaml --seed TRIAL` repeats "
+      "one.");
   command->callback([options, &run] { run = [options] { return run_experiment(*options); }; });
 }
 

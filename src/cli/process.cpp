@@ -76,7 +76,8 @@ void add_process(CLI::App& app, Run& run) {
   command->add_option("--viewpoint", options->viewpoint, "position x,y,z (m) from which all points were seen")
       ->delimiter(',')
       ->expected(3);
-  command->add_option("--views", options->views, "views.csv with the sensor of each point's property 'view'")->excludes("--viewpoint");
+  command->add_option("--views", options->views, "views.csv with the sensor of each point's property 'view'")
+      ->excludes("--viewpoint");
   command->footer(
       "Normals that the file has are kept, but turned where they face away from the viewpoint or view; missing ones\n"
       "are estimated and, without viewpoint or views, made to agree with one another.\n"

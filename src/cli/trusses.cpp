@@ -45,10 +45,12 @@ int run_paper_scenes(const PaperScenesOptions& options) {
       if (*f.hidden) most = std::max(most, *f.visible_share), ++hidden;
     const std::string path = (folder / name / "scene.yaml").string();
     if (options.json) {
-      out.push_back({{"scene", path}, {"fruits", truss.truth.fruits.size()}, {"hidden", hidden}, {"hidden_share_most", most}});
+      out.push_back(
+          {{"scene", path}, {"fruits", truss.truth.fruits.size()}, {"hidden", hidden}, {"hidden_share_most", most}});
     } else {
-      std::cout << name << ": " << truss.truth.fruits.size() << " fruit, " << hidden << " hidden (at most " << std::fixed
-                << std::setprecision(1) << 100.0 * most << " % seen from the front), in " << path << std::endl;
+      std::cout << name << ": " << truss.truth.fruits.size() << " fruit, " << hidden << " hidden (at most "
+                << std::fixed << std::setprecision(1) << 100.0 * most << " % seen from the front), in " << path
+                << std::endl;
     }
   }
   if (options.json) std::cout << out.dump(2) << "\n";
@@ -92,7 +94,8 @@ void write_truss(const std::filesystem::path& folder, const study::Truss& truss)
 }
 
 void add_paper_scenes(CLI::App& app, Run& run) {
-  auto* command = app.add_subcommand("paper-scenes", "make the eleven trusses of the paper's experiment, from fixed seeds");
+  auto* command =
+      app.add_subcommand("paper-scenes", "make the eleven trusses of the paper's experiment, from fixed seeds");
   auto options = std::make_shared<PaperScenesOptions>();
   command->add_option("-o,--output", options->output, "folder; each truss has a folder of its own in it")->required();
   command->add_flag("--force", options->force, "overwrite existing scenes");

@@ -87,6 +87,8 @@ std::string scanning(const Data& data) {
     c.percent("precision_all_points_pct", m.precision_all);
     c.percent("precision_all_points_2mm_pct", m.precision_all_strict);
     c("views_to_95pct", views_to(r, 0.95), 0);
+    c.percent("believed_scanned_pct", r.believed_seen);
+    c.percent("believed_observable_pct", r.believed_observable);
     c("path_rad", r.path, 4);
     c("shortest_path_rad", r.shortest_path, 4);
     c("path_ratio", figure::path_ratio.of(r), 4);

@@ -130,6 +130,7 @@ inline std::optional<double> finite(double x) { return std::isfinite(x) ? std::o
 namespace figure {
 extern const Figure views, merged, filtered, seconds, scanned, precision, recall, f1;
 extern const Figure precision_all, precision_strict, recall_obs, observable, views_95, path, path_ratio, residual;
+extern const Figure belief_seen, belief_observable;
 extern const Figure n_real, n_det, counting_error, object_precision, object_recall, miou_surface, miou_point, views_all;
 extern const Figure growing_n, growing_recall, growing_miou, clustering_n, clustering_recall, clustering_miou;
 }  // namespace figure

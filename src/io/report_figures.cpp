@@ -83,6 +83,19 @@ const Figure residual{"residual %", 1, kNeither,
                       },
                       paper_residual};
 
+const Figure belief_seen{"believed - scanned, points", 1, kNeither,
+                         [](C c) -> Value {
+                           if (c.believed_observable <= 0.0) return std::nullopt;
+                           return 100.0 * (c.believed_seen - c.metrics.scanned);
+                         },
+                         nullptr};
+const Figure belief_observable{"believed - observable, points", 1, kNeither,
+                               [](C c) -> Value {
+                                 if (c.believed_observable <= 0.0) return std::nullopt;
+                                 return 100.0 * (c.believed_observable - c.metrics.observable);
+                               },
+                               nullptr};
+
 const Figure n_real{"N_real", 0, kNeither, count<&M::n_real>, segmentation<&PaperSegmentation::n_real>};
 const Figure n_det{"N_det", 1, kNeither, count<&M::n_det>, segmentation<&PaperSegmentation::n_det>};
 const Figure counting_error{"CE", 1, kLess, count<&M::counting_error>,

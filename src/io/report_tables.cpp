@@ -162,9 +162,13 @@ std::string scanning_section(const Data& data) {
         "\nWhat the paper leaves out: how much of the surface the arm can observe at all, and how much of that was "
         "covered; precision over all points of the cloud, stems and leaves included, and at 2 mm; views until 95 % of "
         "the observable surface had been seen; the path through joint space and its ratio to the shortest path "
-        "through the same poses; the share of points that region growing leaves to DBSCAN.\n\n";
+        "through the same poses; the share of points that region growing leaves to DBSCAN; and how far the planner's "
+        "own "
+        "belief of what it has scanned, and of what the arm can see at all, is from the truth, in percentage "
+        "points.\n\n";
     out += figure_table(*group, {&observable, &recall_obs, &precision_all, &precision_strict, &views_95});
-    out += "\n" + figure_table(*group, {&path, &path_ratio, &residual}, "stopped by") + "\n";
+    out += "\n" +
+           figure_table(*group, {&path, &path_ratio, &residual, &belief_seen, &belief_observable}, "stopped by") + "\n";
   }
   return out;
 }

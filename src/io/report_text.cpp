@@ -148,8 +148,9 @@ std::string planner_section(const Data& data) {
                      "is in brackets when not all did.\n\n"
                    : "Only one planner is among the records, so there is nothing to compare it with.\n\n";
   if (std::any_of(data.groups.begin(), data.groups.end(), [](const Group& g) { return g.planner == "greedy"; }))
-    out += "`greedy` knows the true surfaces and takes, after the frontal view, always the one that shows most of what is "
-           "left: the limit that the others are measured by, not a planner that a robot could use.\n\n";
+    out +=
+        "`greedy` knows the true surfaces and takes, after the frontal view, always the one that shows most of what is "
+        "left: the limit that the others are measured by, not a planner that a robot could use.\n\n";
   out += picture(data, "planners.svg", "Recall of the observable surface after each view, per planner");
   out += "Every scan's curve: [curves.csv](" + data.folder + "/curves.csv).\n\n";
   if (count < 2) return out;

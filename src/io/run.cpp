@@ -40,6 +40,10 @@ std::string run_text(const ScanResult& result, const Workcell& workcell, const R
   j["points"]["merged"] = result.raw.size();
   j["points"]["filtered"] = result.cloud.size();
   j["points"]["labelled"] = labelled;
+  if (result.completeness) {
+    j["completeness"]["seen"] = result.completeness->seen;
+    j["completeness"]["observable"] = result.completeness->observable;
+  }
   if (!workcell.scan_volume.empty())
     j["cluster_origin_world"] = json_list(cluster_origin(workcell.scan_volume, workcell.world_T_base.translation()),
                                           "the scan volume is not finite");

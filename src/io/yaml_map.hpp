@@ -12,8 +12,8 @@
 
 namespace agrisee::io {
 
-/// The one document of a YAML file. @throws FileError when it cannot be read or parsed, holds more than one document, or is
-/// empty and must not be
+/// The one document of a YAML file. @throws FileError when it cannot be read or parsed, holds more than one document,
+/// or is empty and must not be
 YAML::Node load_yaml(const std::filesystem::path& path, bool may_be_empty = false);
 
 /// A YAML value together with the file and key it came from.

@@ -18,7 +18,9 @@ Cloud surface(Radius&& radius, Seen&& seen, std::size_t points = 4000, double no
     if (!seen(d)) continue;
     const double h = 1e-4;
     const Eigen::Vector3d u = d.unitOrthogonal(), v = d.cross(u);
-    const auto at = [&](const Eigen::Vector3d& e) -> Eigen::Vector3d { return radius(e.normalized()) * e.normalized(); };
+    const auto at = [&](const Eigen::Vector3d& e) -> Eigen::Vector3d {
+      return radius(e.normalized()) * e.normalized();
+    };
     const Eigen::Vector3d n = (at(d + h * u) - at(d - h * u)).cross(at(d + h * v) - at(d - h * v)).normalized();
     const Eigen::Vector3d p = at(d) + noise * rng.normal() * n;
     cloud.points.push_back(p.cast<float>());
@@ -63,7 +65,9 @@ TEST_CASE("bodies seen from all sides: volume within two in a hundred, from any 
   const auto ellipsoid = [](const Eigen::Vector3d& d) {
     return 1.0 / std::sqrt(d.x() * d.x() / 9e-4 + d.y() * d.y() / 7e-4 + d.z() * d.z() / 11e-4);
   };
-  const auto pear = [](const Eigen::Vector3d& d) { return 0.03 * (1.0 + 0.12 * d.z() * std::abs(d.z()) + 0.1 * d.z()); };
+  const auto pear = [](const Eigen::Vector3d& d) {
+    return 0.03 * (1.0 + 0.12 * d.z() * std::abs(d.z()) + 0.1 * d.z());
+  };
   const Cloud a = surface(ellipsoid, everywhere), b = surface(pear, everywhere);
   for (const Eigen::Vector3d& c : {Eigen::Vector3d(0, 0, 0), Eigen::Vector3d(0.002, -0.001, 0.001)}) {
     CHECK(*measured_volume(a, all(a), c) == Approx(true_volume(ellipsoid)).epsilon(0.02));

@@ -1,12 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <agrisee/io/parameters.hpp>
 
-#include <nlohmann/json.hpp>
-
-#include <unistd.h>
-
 #include <filesystem>
 #include <fstream>
+#include <nlohmann/json.hpp>
+#include <unistd.h>
 
 #include "catch.hpp"
 
@@ -67,8 +65,10 @@ TEST_CASE("mistakes are named with file, line and key") {
 }
 
 TEST_CASE("parameter files that hold more, or other things, than parameters are refused") {
-  CHECK(error_of("normals: {radius: .inf}\n").find(".yaml:1: 'normals.radius': has to be finite, got .inf") != std::string::npos);
-  CHECK(error_of("split:\n  bodies:\n    min_roundness: .nan\n").find(".yaml:3: 'split.bodies.min_roundness'") != std::string::npos);
+  CHECK(error_of("normals: {radius: .inf}\n").find(".yaml:1: 'normals.radius': has to be finite, got .inf") !=
+        std::string::npos);
+  CHECK(error_of("split:\n  bodies:\n    min_roundness: .nan\n").find(".yaml:3: 'split.bodies.min_roundness'") !=
+        std::string::npos);
   CHECK(error_of("max_views: 3\n---\nmax_views: 4\n").find("more than one YAML document") != std::string::npos);
   CHECK(error_of("--- {max_views: 3}\n...\n").empty());
   CHECK_FALSE(error_of(",").empty());

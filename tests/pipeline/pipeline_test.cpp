@@ -121,6 +121,68 @@ TEST_CASE("faults of a robot do not end a scan") {
   CHECK(refusals > 0);
 }
 
+TEST_CASE("frames from other poses than the commanded ones, and a truss that moves, do not end a scan") {
+  const Workcell w = cell();
+  for (const bool moves : {false, true}) {
+    INFO((moves ? "truss moves" : "other poses"));
+    Pipeline pipeline(w);
+    Joints joints = w.start;
+    std::vector<Sphere> fruit = kFruit;
+    while (const auto next = pipeline.next_view(joints)) {
+      joints = *next->joints;
+      Pose pose = next->world_T_optical;
+      if (!moves) pose = pose * pose_from_xyz_rpy({0.03, -0.02, 0.01}, {deg(4), deg(-3), deg(10)});
+      if (moves && pipeline.views().size() == 2)
+        for (Sphere& s : fruit) s.center += Eigen::Vector3d(0.0015, 0.001, -0.001);
+      pipeline.observe(test::render(fruit, w.sensor.intrinsics, pose, 0.001, pipeline.views().size() + 1), pose,
+                       joints);
+    }
+    const ScanResult result = pipeline.result();
+    CHECK(result.stop_reason != StopReason::not_stopped);
+    CHECK(result.fruits.size() == fruit.size());
+    for (const Sphere& s : fruit) {
+      double best = 1.0;
+      for (const Fruit& f : result.fruits)
+        if (f.body) best = std::min(best, (f.body->center - s.center).norm());
+      CHECK(best < 0.003);
+    }
+  }
+}
+
+TEST_CASE("the planner says how complete the scan is") {
+  const Workcell w = cell();
+  Pipeline pipeline(w);
+  CHECK_FALSE(pipeline.completeness());
+  Joints joints = w.start;
+  std::vector<double> seen;
+  while (const auto next = pipeline.next_view(joints)) {
+    if (const auto c = pipeline.completeness()) {
+      CHECK(c->seen <= c->observable);
+      CHECK(c->observable <= 1.0);
+      seen.push_back(c->seen);
+    }
+    joints = *next->joints;
+    pipeline.observe(test::render(kFruit, w.sensor.intrinsics, next->world_T_optical), next->world_T_optical, joints);
+  }
+  const ScanResult result = pipeline.result();
+  REQUIRE(result.completeness);
+  REQUIRE(seen.size() >= 2);
+  CHECK(result.completeness->seen > seen.front());
+  CHECK(result.completeness->fruits.size() == kFruit.size());
+  // What points cover, counted on the true spheres.
+  const KdTree<float> tree(result.raw.points);
+  double covered = 0.0, all = 0.0;
+  for (const Sphere& s : kFruit)
+    for (const Eigen::Vector3d& d : plan::spread_directions(2000)) {
+      const double area = s.radius * s.radius;
+      all += area;
+      Neighbors<float> nearest;
+      tree.knn((s.center + s.radius * d).cast<float>(), 1, nearest);
+      if (double(nearest.front().distance) <= 0.005) covered += area;
+    }
+  CHECK(std::abs(result.completeness->seen - covered / all) < 0.05);
+}
+
 TEST_CASE("every planner terminates within its budget") {
   for (const char* name : {"gain", "see", "fixed", "random"}) {
     for (Parameters p : {Parameters{}, Parameters::paper()}) {

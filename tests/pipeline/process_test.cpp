@@ -19,7 +19,8 @@ Cloud seen(double noise = 0.0) {
     const auto n = static_cast<int>(4.0 * kPi * s.radius * s.radius / 5.8e-6);
     for (int i = 0; i < n; ++i) {
       const double z = 1.0 - (2.0 * i + 1.0) / n, phi = 2.399963229728653 * i, q = std::sqrt(1.0 - z * z);
-      const Eigen::Vector3d d(q * std::cos(phi), q * std::sin(phi), z), p = s.center + (s.radius + noise * rng.normal()) * d;
+      const Eigen::Vector3d d(q * std::cos(phi), q * std::sin(phi), z),
+          p = s.center + (s.radius + noise * rng.normal()) * d;
       if (d.dot((kEye - p).normalized()) < 0.2) continue;
       cloud.points.push_back(p.cast<float>());
       cloud.normals.push_back(d.cast<float>());
@@ -110,14 +111,16 @@ TEST_CASE("thinned clouds keep the views of their points") {
   REQUIRE(thin.size() < dense.size() / 8);
   REQUIRE(thin.views.size() == thin.size());
   for (std::size_t i = 0; i < thin.size(); ++i)
-    if (std::abs(thin.points[i].x() - 0.01475f) > 0.001f) CHECK(thin.views[i] == (thin.points[i].x() < 0.01475f ? 0 : 1));
+    if (std::abs(thin.points[i].x() - 0.01475f) > 0.001f)
+      CHECK(thin.views[i] == (thin.points[i].x() < 0.01475f ? 0 : 1));
 }
 
 TEST_CASE("points that nearly coincide derive no absurd parameters") {
   for (const float apart : {1e-30f, 1e-12f, 1e-7f}) {
     Cloud cloud;
     for (int i = 0; i < 300; ++i)
-      cloud.points.emplace_back(apart * static_cast<float>(i % 7), apart * static_cast<float>(i % 11), apart * static_cast<float>(i % 13));
+      cloud.points.emplace_back(apart * static_cast<float>(i % 7), apart * static_cast<float>(i % 11),
+                                apart * static_cast<float>(i % 13));
     CHECK(process(cloud).fruits.empty());
     cloud.points.emplace_back(1.0f, 1.0f, 1.0f);
     CHECK(process(cloud).fruits.empty());

@@ -2,11 +2,11 @@
 /// @file
 /// Decides which round bodies a cloud holds: candidates compete for its points.
 ///
-/// Regions, clusters and voted centres each propose bodies. Every proposal is fitted (fit.hpp) and judged by the share of its
-/// surface that points cover, less what contradicts it: points inside it, and sight lines that went through it. The best is
-/// taken with its points, the rest are judged anew on what is left, until nothing is worth taking. Bodies may touch but not
-/// interpenetrate. Flat or ridge-like supports (leaves, stems) are told from round ones by their two curvatures.
-/// Lengths scale with the radius of the body; metres. Cost: linear in the points near each candidate.
+/// Regions, clusters and voted centres each propose bodies. Every proposal is fitted (fit.hpp) and judged by the share
+/// of its surface that points cover, less what contradicts it: points inside it, and sight lines that went through it.
+/// The best is taken with its points, the rest are judged anew on what is left, until nothing is worth taking. Bodies
+/// may touch but not interpenetrate. Flat or ridge-like supports (leaves, stems) are told from round ones by their two
+/// curvatures. Lengths scale with the radius of the body; metres. Cost: linear in the points near each candidate.
 #pragma once
 
 #include <agrisee/cloud/fit.hpp>
@@ -22,13 +22,13 @@ namespace agrisee {
 
 /// Parameters of the competition.
 struct BodyParameters {
-  double radius_min = 0.020;      ///< smallest expected radius of a fruit (m)
-  double radius_max = 0.050;      ///< largest expected radius of a fruit (m)
-  double tolerance = 0.08;        ///< points within this share of the radius belong to the body's surface
-  double max_angle = deg(35);     ///< and their normals within this angle of the body's (rad)
-  double min_coverage = 0.08;     ///< share of the surface that must be covered, contradictions taken off
-  double min_roundness = 0.35;    ///< smaller over larger principal curvature of the support
-  double max_overlap = 0.30;      ///< deepest interpenetration of two bodies, as a share of the smaller radius
+  double radius_min = 0.020;    ///< smallest expected radius of a fruit (m)
+  double radius_max = 0.050;    ///< largest expected radius of a fruit (m)
+  double tolerance = 0.08;      ///< points within this share of the radius belong to the body's surface
+  double max_angle = deg(35);   ///< and their normals within this angle of the body's (rad)
+  double min_coverage = 0.08;   ///< share of the surface that must be covered, contradictions taken off
+  double min_roundness = 0.35;  ///< smaller over larger principal curvature of the support
+  double max_overlap = 0.30;    ///< deepest interpenetration of two bodies, as a share of the smaller radius
   FitParameters fit;
 
   /// Whether a body of mean radius r (m) could be a fruit: within the expected range or hardly out of it.
@@ -36,7 +36,8 @@ struct BodyParameters {
   /// @throws ParameterError
   void check() const {
     check_parameter(radius_min > 0, "bodies.radius_min", "positive", radius_min);
-    check_parameter(radius_max >= radius_min && std::isfinite(radius_max), "bodies.radius_max", ">= radius_min", radius_max);
+    check_parameter(radius_max >= radius_min && std::isfinite(radius_max), "bodies.radius_max", ">= radius_min",
+                    radius_max);
     check_parameter(radius_max <= 20.0 * radius_min, "bodies.radius_max", "at most 20 times radius_min", radius_max);
     check_parameter(tolerance > 0 && tolerance < 1, "bodies.tolerance", "in (0, 1)", tolerance);
     check_parameter(max_angle > 0 && max_angle < kPi, "bodies.max_angle", "in (0, pi)", max_angle);
@@ -90,7 +91,8 @@ Verdict judge(const PointCloud<S>& cloud, const Grid<S>& grid, const std::vector
   Verdict v;
   const double r = body.mean_radius();
   const double near = parameters.tolerance * r;
-  const double cos_max = std::cos(parameters.max_angle), cos_loose = std::cos(std::min(kPi / 2, 1.6 * parameters.max_angle));
+  const double cos_max = std::cos(parameters.max_angle),
+               cos_loose = std::cos(std::min(kPi / 2, 1.6 * parameters.max_angle));
   std::bitset<DirectionBins::kCount> covered, filled;
   // Sums over the points on the surface or nearly so, for the support's curvatures; positions from the centre.
   Eigen::Vector3d p_mean = Eigen::Vector3d::Zero(), n_mean = Eigen::Vector3d::Zero();
@@ -124,7 +126,8 @@ Verdict judge(const PointCloud<S>& cloud, const Grid<S>& grid, const std::vector
     if (filled[b]) v.inside += DirectionBins::shares()[b];
   }
   if (v.support < 8) return v;
-  // Principal curvatures: normals as a linear function of position, in the plane of the support's two longest directions.
+  // Principal curvatures: normals as a linear function of position, in the plane of the support's two longest
+  // directions.
   p_mean /= count;
   n_mean /= count;
   pp -= count * p_mean * p_mean.transpose();
@@ -197,7 +200,8 @@ std::vector<FoundBody> find_bodies(const PointCloud<S>& cloud, const std::vector
     // Not worth a fit where hardly anything supports even the first guess.
     if (detail::judge(cloud, grid, taken, c.body, parameters, {}).coverage < 0.3 * parameters.min_coverage) continue;
     const auto first = refine(c.body, rough);
-    if (!first || std::any_of(known.begin(), known.end(), [&](const Ellipsoid& k) { return alike(k, first->body); })) continue;
+    if (!first || std::any_of(known.begin(), known.end(), [&](const Ellipsoid& k) { return alike(k, first->body); }))
+      continue;
     known.push_back(first->body);
     const auto fit = refine(first->body, parameters.fit);
     if (!fit) continue;
@@ -230,7 +234,8 @@ std::vector<FoundBody> find_bodies(const PointCloud<S>& cloud, const std::vector
       const auto i = static_cast<std::size_t>(index);
       const Eigen::Vector3d p = cloud.points[i].template cast<double>();
       const auto foot = body.foot(p);
-      if (foot.distance < margin && (foot.distance < -margin || foot.normal.dot(cloud.normals[i].template cast<double>()) >= cos_loose))
+      if (foot.distance < margin &&
+          (foot.distance < -margin || foot.normal.dot(cloud.normals[i].template cast<double>()) >= cos_loose))
         taken[i] = 1;
     });
     for (Entry& e : entries) {

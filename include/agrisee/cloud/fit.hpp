@@ -2,10 +2,10 @@
 /// @file
 /// Fits spheres and ellipsoids to points with normals, robustly.
 ///
-/// An ellipsoid is { p : |A (p - c)| = 1 } with A symmetric positive definite; its distance from a point is taken to first
-/// order at the point's radial projection, (g - 1) g / |A A (p - c)| with g = |A (p - c)| (cf. Taubin, PAMI 1991). Gauss-Newton with Tukey's biweight; where the
-/// data do not tell, a prior pulls towards a sphere, so that a crescent yields a sphere and a whole fruit its own shape.
-/// Units: metres. Cost: linear in the points per iteration.
+/// An ellipsoid is { p : |A (p - c)| = 1 } with A symmetric positive definite; its distance from a point is taken to
+/// first order at the point's radial projection, (g - 1) g / |A A (p - c)| with g = |A (p - c)| (cf. Taubin, PAMI
+/// 1991). Gauss-Newton with Tukey's biweight; where the data do not tell, a prior pulls towards a sphere, so that a
+/// crescent yields a sphere and a whole fruit its own shape. Units: metres. Cost: linear in the points per iteration.
 #pragma once
 
 #include <agrisee/core/cloud.hpp>
@@ -72,7 +72,7 @@ inline std::pair<Eigen::Vector3d, Eigen::Matrix3d> semi_axes(const Ellipsoid& e)
 
 /// Parameters of fit_ellipsoid.
 struct FitParameters {
-  double noise = 0.001;        ///< expected standard deviation of points about a fruit's ellipsoid, its lobes included (m)
+  double noise = 0.001;  ///< expected standard deviation of points about a fruit's ellipsoid, its lobes included (m)
   double shape_prior = 0.04;   ///< standard deviation of the relative semi-axes about a sphere
   double max_angle = deg(50);  ///< points whose normals differ by more from the body's do not count (rad)
   int independent = 150;       ///< points above this number add no certainty: neighbours err together
@@ -103,12 +103,12 @@ struct FitParameters {
 struct EllipsoidFit {
   Ellipsoid body;
   Eigen::Matrix3d center_covariance = Eigen::Matrix3d::Zero();  ///< m2
-  double rms = 0.0;           ///< of the inliers (m)
-  std::size_t inliers = 0;    ///< points within three noises whose normals agree
+  double rms = 0.0;                                             ///< of the inliers (m)
+  std::size_t inliers = 0;                                      ///< points within three noises whose normals agree
 };
 
-/// The sphere through points with outward normals: p = c + r n is linear in c and r, so r is the regression of points on
-/// normals. Empty for fewer than 4 points or normals that hardly differ.
+/// The sphere through points with outward normals: p = c + r n is linear in c and r, so r is the regression of points
+/// on normals. Empty for fewer than 4 points or normals that hardly differ.
 template <typename S>
 std::optional<Sphere> sphere_from_normals(const PointCloud<S>& cloud, const Indices& indices) {
   if (indices.size() < 4) return std::nullopt;

@@ -2,11 +2,12 @@
 /// @file
 /// The volume of a fruit whose shape is no ellipsoid, from where its surface was seen.
 ///
-/// Fruit taper, have shoulders and dents; an ellipsoid that follows the seen side of such a body carries its slope on to the
-/// unseen side and ends up too long. Here the surface is taken as a distance from the centre for every direction. The logarithm
-/// of the distance is a Gaussian process over the sphere of directions with unknown mean (kriging; Rasmussen & Williams, 2006,
-/// 2.2): it follows the points where there are any and returns to their mean size where there are none.
-/// Metres, any frame. Cost: linear in the points, and one factorisation of at most DirectionBins::kCount unknowns.
+/// Fruit taper, have shoulders and dents; an ellipsoid that follows the seen side of such a body carries its slope on
+/// to the unseen side and ends up too long. Here the surface is taken as a distance from the centre for every
+/// direction. The logarithm of the distance is a Gaussian process over the sphere of directions with unknown mean
+/// (kriging; Rasmussen & Williams, 2006, 2.2): it follows the points where there are any and returns to their mean size
+/// where there are none. Metres, any frame. Cost: linear in the points, and one factorisation of at most
+/// DirectionBins::kCount unknowns.
 #pragma once
 
 #include <agrisee/core/cloud.hpp>
@@ -40,8 +41,8 @@ struct MeasuredVolumeParameters {
   }
 };
 
-/// Volume (m3) of a body with `center` (m) inside it, from its surface points `indices`; any ray from the centre is taken to
-/// leave the body once. Empty when there is no point away from the centre.
+/// Volume (m3) of a body with `center` (m) inside it, from its surface points `indices`; any ray from the centre is
+/// taken to leave the body once. Empty when there is no point away from the centre.
 /// @throws ParameterError
 template <typename S>
 std::optional<double> measured_volume(const PointCloud<S>& cloud, const Indices& indices, const Eigen::Vector3d& center,
@@ -83,7 +84,8 @@ std::optional<double> measured_volume(const PointCloud<S>& cloud, const Indices&
   Eigen::VectorXd weights(n);
   for (Eigen::Index i = 0; i < n; ++i) {
     const Bin& a = seen[static_cast<std::size_t>(i)];
-    for (Eigen::Index j = 0; j <= i; ++j) K(i, j) = K(j, i) = covariance(a.direction, seen[static_cast<std::size_t>(j)].direction);
+    for (Eigen::Index j = 0; j <= i; ++j)
+      K(i, j) = K(j, i) = covariance(a.direction, seen[static_cast<std::size_t>(j)].direction);
     K(i, i) += parameters.noise * parameters.noise * (1.0 / std::min(4.0, a.count) + 0.04);  // neighbours err together
     weights[i] = a.radius - mean;
   }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// @file
-/// What a cloud says of itself: how far apart its points are, and how noisy. Parameters are derived from it instead of fixed
-/// millimetres.
+/// What a cloud says of itself: how far apart its points are, and how noisy. Parameters are derived from it instead of
+/// fixed millimetres.
 #pragma once
 
 #include <agrisee/core/kdtree.hpp>
@@ -11,9 +11,9 @@
 
 namespace agrisee {
 
-/// Typical distance (m) between neighbouring points: the square root of the area that a point stands for on a locally flat
-/// surface, from the median distance to the 8th neighbour (pi d8^2 holds 9 points). 0 for fewer than two distinct points.
-/// At most `samples` points are asked, evenly spread in index order.
+/// Typical distance (m) between neighbouring points: the square root of the area that a point stands for on a locally
+/// flat surface, from the median distance to the 8th neighbour (pi d8^2 holds 9 points). 0 for fewer than two distinct
+/// points. At most `samples` points are asked, evenly spread in index order.
 template <typename C, typename Search>
 double estimate_spacing(const C& cloud, const Search& search, std::size_t samples = 1000) {
   using S = scalar_t<C>;
@@ -41,12 +41,13 @@ double estimate_spacing(const C& cloud) {
   return estimate_spacing(cloud, KdTree<scalar_t<C>>(cloud));
 }
 
-/// Standard deviation (m) of the points about the surface they lie on: the median over points of the deviation from a plane
-/// through all points within `radius` (m), less that of a sphere of radius `curvature` (m) from its tangent plane (seen over
-/// a disc, radius^2 / (2 sqrt(12) curvature)). Errors that neighbours share are not seen. 0 when no point has seven others
-/// within `radius`. At most `samples` points are asked, evenly spread in index order.
+/// Standard deviation (m) of the points about the surface they lie on: the median over points of the deviation from a
+/// plane through all points within `radius` (m), less that of a sphere of radius `curvature` (m) from its tangent plane
+/// (seen over a disc, radius^2 / (2 sqrt(12) curvature)). Errors that neighbours share are not seen. 0 when no point
+/// has seven others within `radius`. At most `samples` points are asked, evenly spread in index order.
 template <typename C, typename Search>
-double estimate_noise(const C& cloud, const Search& search, double radius, double curvature, std::size_t samples = 1000) {
+double estimate_noise(const C& cloud, const Search& search, double radius, double curvature,
+                      std::size_t samples = 1000) {
   using S = scalar_t<C>;
   const std::size_t n = agrisee::size(cloud), step = std::max<std::size_t>(1, n / samples);
   std::vector<double> deviations;

@@ -2,9 +2,9 @@
 /// @file
 /// Finds where the centres of round bodies may lie: every point votes along its inward normal.
 ///
-/// A point p with outward normal n lies on a sphere of radius r about p - r n. The votes of all points for all radii in the
-/// expected range meet at the centres of spheres (a Hough transform, cf. Rabbani & van den Heuvel, 2005), however little of
-/// each shows and however they touch. Cost: linear in points times radii; memory linear in the votes.
+/// A point p with outward normal n lies on a sphere of radius r about p - r n. The votes of all points for all radii in
+/// the expected range meet at the centres of spheres (a Hough transform, cf. Rabbani & van den Heuvel, 2005), however
+/// little of each shows and however they touch. Cost: linear in points times radii; memory linear in the votes.
 #pragma once
 
 #include <agrisee/core/cloud.hpp>
@@ -98,7 +98,8 @@ std::vector<VotedCenter> vote_for_centers(const PointCloud<S>& cloud, double rad
       for (std::size_t k = at; k < cells.size() && cells[k].key <= first + 2; ++k) {
         const double v = double(cells[k].votes);
         total += v;
-        mean += v * Eigen::Vector3d(double(x - 1) + static_cast<double>(cells[k].key - first), double(y + dy), double(z + dz));
+        mean += v * Eigen::Vector3d(double(x - 1) + static_cast<double>(cells[k].key - first), double(y + dy),
+                                    double(z + dz));
       }
     }
     if (total >= min_votes) sums.push_back({c.key, total, origin + pitch * mean / total});
@@ -108,9 +109,8 @@ std::vector<VotedCenter> vote_for_centers(const PointCloud<S>& cloud, double rad
   std::vector<VotedCenter> out;
   const double apart = 0.6 * radius_min;
   for (const Sum& s : sums) {
-    const bool free = std::none_of(out.begin(), out.end(), [&](const VotedCenter& o) {
-      return (o.center - s.center).norm() < apart;
-    });
+    const bool free = std::none_of(out.begin(), out.end(),
+                                   [&](const VotedCenter& o) { return (o.center - s.center).norm() < apart; });
     if (free) out.push_back({s.center, s.votes});
     if (out.size() >= 400) break;  // more would only be noise
   }

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// @file
-/// From a cloud with normals to fruit: region growing, DBSCAN on the residual and, unless only the paper's two stages are
-/// wanted, bodies that compete for the points (paper, "Segmentation"; bodies.hpp).
+/// From a cloud with normals to fruit: region growing, DBSCAN on the residual and, unless only the paper's two stages
+/// are wanted, bodies that compete for the points (paper, "Segmentation"; bodies.hpp).
 ///
-/// The paper's stages alone give a label a region or cluster. With bodies, regions, clusters and voted centres propose, the
-/// bodies that best explain the cloud win, and points are labelled by the body on which they lie. Metres, any frame.
+/// The paper's stages alone give a label a region or cluster. With bodies, regions, clusters and voted centres propose,
+/// the bodies that best explain the cloud win, and points are labelled by the body on which they lie. Metres, any
+/// frame.
 #pragma once
 
 #include <agrisee/cloud/bodies.hpp>
@@ -21,7 +22,7 @@ namespace agrisee {
 
 /// Parameters of split.
 struct SplitParameters {
-  bool adaptive = true;             ///< derive the lengths and sizes below from the cloud's spacing and `bodies.radius_min`
+  bool adaptive = true;  ///< derive the lengths and sizes below from the cloud's spacing and `bodies.radius_min`
   RegionGrowingParameters growing;  ///< as given when not adaptive; otherwise its radius and min_size are derived
   DbscanParameters clustering;      ///< as given when not adaptive; otherwise derived
   double growing_reach = 2.2;       ///< adaptive: growth radius in spacings
@@ -66,10 +67,10 @@ struct SplitParameters {
 
 /// What the split found. `labels` count from 1 in the order of `found`.
 struct Split {
-  Labels labels;                   ///< one per point: the fruit, 0 = none
-  std::vector<FoundBody> found;    ///< one per fruit; without bodies only `found_by` is set
-  Labels regions;                  ///< what region growing alone found
-  std::size_t residual = 0;        ///< points that region growing left to DBSCAN
+  Labels labels;                              ///< one per point: the fruit, 0 = none
+  std::vector<FoundBody> found;               ///< one per fruit; without bodies only `found_by` is set
+  Labels regions;                             ///< what region growing alone found
+  std::size_t residual = 0;                   ///< points that region growing left to DBSCAN
   int regions_found = 0, clusters_found = 0;  ///< instances from either of the paper's stages
 };
 
@@ -85,7 +86,8 @@ struct StageParameters {
 /// that has no spacing (no two different points).
 template <typename S>
 std::optional<StageParameters> stages_for(const PointCloud<S>& cloud, const SplitParameters& parameters) {
-  StageParameters stages{parameters.growing, parameters.clustering, static_cast<std::size_t>(parameters.min_residual), 1};
+  StageParameters stages{parameters.growing, parameters.clustering, static_cast<std::size_t>(parameters.min_residual),
+                         1};
   if (!parameters.adaptive) return stages;
   const double spacing = estimate_spacing(cloud);
   if (!(spacing > 0.0)) return std::nullopt;
@@ -154,11 +156,11 @@ double likely_radius(const PointCloud<S>& cloud, const Grid<S>& grid, const Eige
   return best == 0 ? 0.0 : low + (best - 0.5) * width;
 }
 
-/// Give a body what an ellipsoid cannot follow: points in its dimples (inside an opaque body there is nothing else), and
-/// points of a smooth region that is mostly this body's (shoulders, lobes).
+/// Give a body what an ellipsoid cannot follow: points in its dimples (inside an opaque body there is nothing else),
+/// and points of a smooth region that is mostly this body's (shoulders, lobes).
 template <typename S>
-void extend_labels(Labels& labels, const PointCloud<S>& cloud, const std::vector<FoundBody>& found, const Labels& regions,
-                   int region_count, const BodyParameters& parameters) {
+void extend_labels(Labels& labels, const PointCloud<S>& cloud, const std::vector<FoundBody>& found,
+                   const Labels& regions, int region_count, const BodyParameters& parameters) {
   const std::size_t columns = found.size() + 1;
   std::vector<std::size_t> votes(static_cast<std::size_t>(region_count + 1) * columns, 0);
   for (std::size_t i = 0; i < labels.size(); ++i)
@@ -167,7 +169,8 @@ void extend_labels(Labels& labels, const PointCloud<S>& cloud, const std::vector
   for (std::size_t r = 1; r < owner.size(); ++r) {
     const auto row = votes.begin() + static_cast<std::ptrdiff_t>(r * columns);
     const auto most = std::max_element(row + 1, row + static_cast<std::ptrdiff_t>(columns));
-    if (most != row + static_cast<std::ptrdiff_t>(columns) && 10 * *most >= 6 * std::accumulate(row, row + static_cast<std::ptrdiff_t>(columns), std::size_t{0}))
+    if (most != row + static_cast<std::ptrdiff_t>(columns) &&
+        10 * *most >= 6 * std::accumulate(row, row + static_cast<std::ptrdiff_t>(columns), std::size_t{0}))
       owner[r] = static_cast<std::size_t>(most - row);
   }
   for (std::size_t i = 0; i < labels.size(); ++i) {
@@ -175,14 +178,16 @@ void extend_labels(Labels& labels, const PointCloud<S>& cloud, const std::vector
     const Eigen::Vector3d p = cloud.points[i].template cast<double>(), n = cloud.normals[i].template cast<double>();
     if (const std::size_t b = owner[static_cast<std::size_t>(regions[i])]) {
       const Ellipsoid& body = found[b - 1].fit.body;
-      if (std::abs(body.distance(p)) < 0.25 * body.mean_radius() && body.normal(p).dot(n) > 0.0) labels[i] = static_cast<int>(b);
+      if (std::abs(body.distance(p)) < 0.25 * body.mean_radius() && body.normal(p).dot(n) > 0.0)
+        labels[i] = static_cast<int>(b);
     }
     for (std::size_t b = 0; b < found.size() && labels[i] == 0; ++b) {
       const Ellipsoid& body = found[b].fit.body;
       const double r = body.mean_radius();
       if ((p - body.center).squaredNorm() > 1.5 * r * r) continue;
       const double d = body.distance(p);
-      if (d < 0.5 * parameters.tolerance * r && d > -0.4 * r && body.normal(p).dot(n) > 0.3) labels[i] = static_cast<int>(b) + 1;
+      if (d < 0.5 * parameters.tolerance * r && d > -0.4 * r && body.normal(p).dot(n) > 0.3)
+        labels[i] = static_cast<int>(b) + 1;
     }
   }
 }
@@ -244,9 +249,9 @@ Split split(const PointCloud<S>& cloud, const SplitParameters& parameters = {}, 
   // Voted centres that a segment's sphere already stands for would only be fitted twice.
   const std::size_t proposed = candidates.size();
   for (const VotedCenter& v : vote_for_centers(cloud, bodies.radius_min, bodies.radius_max, 1.5 * growing.min_size)) {
-    const bool known = std::any_of(candidates.begin(), candidates.begin() + static_cast<std::ptrdiff_t>(proposed), [&](const BodyCandidate& c) {
-      return (c.body.center - v.center).norm() < 0.15 * c.body.mean_radius();
-    });
+    const bool known = std::any_of(
+        candidates.begin(), candidates.begin() + static_cast<std::ptrdiff_t>(proposed),
+        [&](const BodyCandidate& c) { return (c.body.center - v.center).norm() < 0.15 * c.body.mean_radius(); });
     if (!known) propose({v.center, detail::likely_radius(cloud, grid, v.center, bodies)}, "sphere_voting");
     if (candidates.size() >= proposed + 60) break;  // weaker maxima are noise
   }

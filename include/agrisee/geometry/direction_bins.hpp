@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// @file
-/// Divides the directions around a centre into bins of nearly equal solid angle, to tell how much of a body has been seen.
+/// Divides the directions around a centre into bins of nearly equal solid angle, to tell how much of a body has been
+/// seen.
 #pragma once
 
 #include <agrisee/core/types.hpp>

@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// @file
-/// What a view is expected to show: the unseen parts of the bodies found so far, and unknown space in which more may hide.
+/// What a view is expected to show: the unseen parts of the bodies found so far, and unknown space in which more may
+/// hide.
 ///
-/// The merged cloud is split into bodies (split.hpp). Each predicts where the rest of its surface lies; those parts that no
-/// point covers are samples, with the area they stand for. Beside them, voxels near the bodies that no sight line has
-/// reached stand for what may still hide there. A view shows a sample when it lies in the image and the range, faces the
-/// sensor, and no body or obstacle is in between. Samples that earlier views should have shown and did not count less and
-/// less: the prediction is wrong there. Metres, world; gains in m2 of fruit surface.
+/// The merged cloud is split into bodies (split.hpp). Each predicts where the rest of its surface lies; those parts
+/// that no point covers are samples, with the area they stand for. Beside them, voxels near the bodies that no sight
+/// line has reached stand for what may still hide there. A view shows a sample when it lies in the image and the range,
+/// faces the sensor, and no body or obstacle is in between. Samples that earlier views should have shown and did not
+/// count less and less: the prediction is wrong there. Metres, world; gains in m2 of fruit surface.
 #pragma once
 
 #include <agrisee/cloud/normals.hpp>
@@ -26,12 +27,13 @@ struct ExpectedSurfaceParameters {
   double cover_radius = 0.005;     ///< a sample with a point this near is covered (m)
   double voxel = 0.015;            ///< edge of the voxels of unknown space (m)
   double neighborhood = 0.06;      ///< unknown space counts within this distance of a body's surface (m)
-  double unknown_weight = 0.08;    ///< fruit surface expected behind the face of an unknown voxel, as a share of the face
-  double disappointment = 0.35;    ///< factor on samples for every view that should have shown them and did not
+  double unknown_weight = 0.08;  ///< fruit surface expected behind the face of an unknown voxel, as a share of the face
+  double disappointment = 0.35;  ///< factor on samples for every view that should have shown them and did not
 
   /// @throws ParameterError
   void check() const {
-    check_parameter(max_incidence > 0 && max_incidence < kPi / 2, "expected.max_incidence", "in (0, pi/2)", max_incidence);
+    check_parameter(max_incidence > 0 && max_incidence < kPi / 2, "expected.max_incidence", "in (0, pi/2)",
+                    max_incidence);
     check_parameter(samples >= 1 && samples <= 100000, "expected.samples", "in [1, 100000]", samples);
     check_parameter(cover_radius > 0, "expected.cover_radius", "positive", cover_radius);
     check_parameter(voxel > 0, "expected.voxel", "positive", voxel);
@@ -66,14 +68,16 @@ class ExpectedSurface {
   }
 
   /// Update the model after a view.
-  void update(const Progress& progress, const SplitParameters& split_parameters, const FreeSpaceParameters& free_space) {
+  void update(const Progress& progress, const SplitParameters& split_parameters,
+              const FreeSpaceParameters& free_space) {
     for (; images_read_ < progress.images.size(); ++images_read_) carve(progress.images[images_read_], free_space);
     // Bodies are what this planner looks for, whatever the stages of the final split.
     SplitParameters with_bodies = split_parameters;
     with_bodies.adaptive = with_bodies.fit_bodies = true;
     const auto through = [&](const Ellipsoid& body) { return seen_through(progress.images, body, free_space); };
     const bool fused = progress.cloud.normals.size() == progress.cloud.size();
-    const Split found = fused ? split(progress.cloud, with_bodies, through) : split(with_normals(progress), with_bodies, through);
+    const Split found =
+        fused ? split(progress.cloud, with_bodies, through) : split(with_normals(progress), with_bodies, through);
     bodies_ = found.found;
     collect_samples(progress);
     PointCloud<float> rest;
@@ -105,7 +109,8 @@ class ExpectedSurface {
     Completeness out;
     std::vector<double> open(bodies_.size(), 0.0);
     for (std::size_t i = 0; i < samples_.size(); ++i)
-      if (samples_[i].body >= 0 && can_be_seen[i]) open[static_cast<std::size_t>(samples_[i].body)] += double(areas_[i]);
+      if (samples_[i].body >= 0 && can_be_seen[i])
+        open[static_cast<std::size_t>(samples_[i].body)] += double(areas_[i]);
     double all = 0.0;
     for (std::size_t b = 0; b < bodies_.size(); ++b) {
       const double seen = covered_of_[b], observable = seen + open[b];
@@ -130,7 +135,7 @@ class ExpectedSurface {
  private:
   struct Sample {
     Eigen::Vector3f point, normal;  // zero normal: a voxel, seen from any side
-    int body;  // -1: a voxel
+    int body;                       // -1: a voxel
   };
   struct Occluder {
     Eigen::Vector3f center;
@@ -218,7 +223,8 @@ class ExpectedSurface {
 
   bool inside_other(const Eigen::Vector3d& p, int own) const {
     for (std::size_t b = 0; b < bodies_.size(); ++b)
-      if (static_cast<int>(b) != own && (p - bodies_[b].fit.body.center).norm() < 0.98 * bodies_[b].fit.body.mean_radius())
+      if (static_cast<int>(b) != own &&
+          (p - bodies_[b].fit.body.center).norm() < 0.98 * bodies_[b].fit.body.mean_radius())
         return true;
     return false;
   }
@@ -235,7 +241,8 @@ class ExpectedSurface {
     // Obstacles: a coarse depth image.
     constexpr int kWidth = 96, kHeight = 72;
     const auto fx = static_cast<float>(k.fx / k.width * kWidth), fy = static_cast<float>(k.fy / k.height * kHeight);
-    const auto cx = static_cast<float>((k.cx + 0.5) / k.width * kWidth), cy = static_cast<float>((k.cy + 0.5) / k.height * kHeight);
+    const auto cx = static_cast<float>((k.cx + 0.5) / k.width * kWidth),
+               cy = static_cast<float>((k.cy + 0.5) / k.height * kHeight);
     std::array<float, kWidth * kHeight> depth;
     depth.fill(std::numeric_limits<float>::infinity());
     const auto pixel = [&](const Eigen::Vector3f& p) -> int {
@@ -284,7 +291,7 @@ class ExpectedSurface {
   std::size_t images_read_ = 0;
   std::vector<FoundBody> bodies_;
   std::vector<Sample> samples_;
-  std::vector<float> areas_;        // one a sample (m2)
+  std::vector<float> areas_;       // one a sample (m2)
   std::vector<Occluder> spheres_;  // the bodies, a little smaller
   std::vector<Eigen::Vector3f> obstacles_;
   double area_ = 0.0, covered_ = 0.0;

@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// @file
-/// The default planner: of the views that the arm can take, the one expected to show the most new fruit surface for its time.
+/// The default planner: of the views that the arm can take, the one expected to show the most new fruit surface for its
+/// time.
 ///
 /// Candidates look at the truss from directions spread over the sphere, each at a place of its own among the bodies and
 /// from a distance of its own; those within reach are kept. Each is scored by ExpectedSurface::gain over the time of
-/// dwelling and moving. The best are asked for anew from where the arm stands, and searched around more finely. The scan
-/// ends when the best view promises less than `min_gain` of the fruit surface known so far. Metres, seconds, world.
+/// dwelling and moving. The best are asked for anew from where the arm stands, and searched around more finely. The
+/// scan ends when the best view promises less than `min_gain` of the fruit surface known so far. Metres, seconds,
+/// world.
 #pragma once
 
 #include <agrisee/plan/directions.hpp>
@@ -17,15 +19,15 @@ namespace agrisee::plan {
 
 /// Parameters of GainPlanner.
 struct GainPlannerParameters {
-  int candidates = 4000;           ///< views tried, their directions spread over the whole sphere; a tenth may be in reach
-  double spread = 0.6;             ///< how far from the middle of the bodies they look, as a share of the way to the border
-  double distance = 0.38;          ///< of the first view from its target (m)
-  double distance_min = 0.27;      ///< nearest (m)
-  double distance_max = 0.55;      ///< farthest (m)
-  double dwell = 1.5;              ///< time that a view costs beside the move (s): settling, exposure, computing
-  int lookahead = 4;               ///< views planned ahead, so that the nearest of them comes first; 1 = none
-  double patience = 0.6;           ///< but only where it scores at least this share of the best
-  double min_gain = 0.0015;        ///< stop when the best view promises less than this share of the known fruit surface
+  int candidates = 4000;       ///< views tried, their directions spread over the whole sphere; a tenth may be in reach
+  double spread = 0.6;         ///< how far from the middle of the bodies they look, as a share of the way to the border
+  double distance = 0.38;      ///< of the first view from its target (m)
+  double distance_min = 0.27;  ///< nearest (m)
+  double distance_max = 0.55;  ///< farthest (m)
+  double dwell = 1.5;          ///< time that a view costs beside the move (s): settling, exposure, computing
+  int lookahead = 4;           ///< views planned ahead, so that the nearest of them comes first; 1 = none
+  double patience = 0.6;       ///< but only where it scores at least this share of the best
+  double min_gain = 0.0015;    ///< stop when the best view promises less than this share of the known fruit surface
   ExpectedSurfaceParameters expected;
 
   /// @throws ParameterError
@@ -63,7 +65,11 @@ class GainPlanner : public Planner {
   /// @throws ParameterError
   GainPlanner(const sensor::L515& sensor, const Aabb& volume, const Eigen::Vector3d& eye, const SplitParameters& split,
               const FreeSpaceParameters& free_space, const GainPlannerParameters& parameters = {})
-      : parameters_(parameters), split_(split), free_space_(free_space), volume_(volume), eye_(eye),
+      : parameters_(parameters),
+        split_(split),
+        free_space_(free_space),
+        volume_(volume),
+        eye_(eye),
         model_(sensor, volume, parameters.expected) {
     parameters_.check();
   }
@@ -79,7 +85,8 @@ class GainPlanner : public Planner {
     if (progress.cloud.empty()) {
       // Nothing seen so far: a few more tries near the front, then that is the answer.
       if (taken >= 4) return stop(StopReason::nothing_seen);
-      auto view = first_view(volume_, eye_, current, reach, request(Eigen::Vector3d::UnitY()), refused_first_ + 12 * taken);
+      auto view =
+          first_view(volume_, eye_, current, reach, request(Eigen::Vector3d::UnitY()), refused_first_ + 12 * taken);
       if (!view && taken > 0) return stop(StopReason::nothing_seen);
       if (!view) return stop(StopReason::no_reachable_view);
       return view;
@@ -119,9 +126,10 @@ class GainPlanner : public Planner {
     std::stable_sort(scored.begin(), scored.end(), better);
     const double least = parameters_.min_gain * std::max(model_.area(), 1e-6);
     const double most = std::max_element(scored.begin(), scored.end(), [](const Scored& a, const Scored& b) {
-      return a.view.gain < b.view.gain;
-    })->view.gain;
-    scored.erase(std::remove_if(scored.begin(), scored.end(), [&](const Scored& s) { return s.view.gain < least; }), scored.end());
+                          return a.view.gain < b.view.gain;
+                        })->view.gain;
+    scored.erase(std::remove_if(scored.begin(), scored.end(), [&](const Scored& s) { return s.view.gain < least; }),
+                 scored.end());
     if (scored.empty()) return stop(most > 0.0 ? StopReason::low_gain : StopReason::no_frontier);
     Scored& chosen = scored[nearest_of_next(scored, current, least)];
     // From where the arm stands now, the way there may be another.
@@ -163,7 +171,8 @@ class GainPlanner : public Planner {
   /// The i-th wish: its place and distance follow a low-discrepancy sequence (Roberts' R4, powers of 1 / 1.1673).
   ViewRequest candidate(double i, const Eigen::Vector3d& direction) const {
     const auto part = [](double x) { return x - std::floor(x); };
-    const Eigen::Vector3d where(part(i * 0.8566748838545029), part(i * 0.7338918566271260), part(i * 0.6287067210378087));
+    const Eigen::Vector3d where(part(i * 0.8566748838545029), part(i * 0.7338918566271260),
+                                part(i * 0.6287067210378087));
     ViewRequest wish = request(direction);
     wish.target += parameters_.spread * (where.array() - 0.5).matrix().cwiseProduct(extent_.size());
     wish.distance = wish.distance_min + part(i * 0.5385972572236101) * (wish.distance_max - wish.distance_min);
@@ -185,7 +194,8 @@ class GainPlanner : public Planner {
     s.score = s.view.gain / (parameters_.dwell + way(view, current));
   }
 
-  void consider(std::vector<Scored>& scored, const ViewRequest& wish, const ReachableView& view, const Joints& current) const {
+  void consider(std::vector<Scored>& scored, const ViewRequest& wish, const ReachableView& view,
+                const Joints& current) const {
     if (was_refused(wish)) return;
     scored.emplace_back();
     scored.back().request = wish;

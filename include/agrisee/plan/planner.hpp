@@ -12,8 +12,8 @@
 
 namespace agrisee::plan {
 
-/// A wish to look at a point: from `target - distance * direction` along `direction`, the sensor's roll free, the distance
-/// free within a band. World, metres.
+/// A wish to look at a point: from `target - distance * direction` along `direction`, the sensor's roll free, the
+/// distance free within a band. World, metres.
 struct ViewRequest {
   Eigen::Vector3d target = Eigen::Vector3d::Zero();
   Eigen::Vector3d direction = Eigen::Vector3d::UnitY();  ///< unit, from the sensor to the target
@@ -39,25 +39,8 @@ struct Progress {
   const std::vector<sensor::SurfaceImage>& images;  ///< what each view saw, where surfaces are fused; else empty
   const std::vector<View>& views;                   ///< taken so far
   const std::vector<Eigen::Vector3f>& added;        ///< points that the last view added
-  const Indices* kept = nullptr;                    ///< where the last view was followed by a filter: the points that it kept,
-                                                    ///< counting those from before the view, then `added`
-};
-
-/// How much of the fruit's surface a planner believes to have been seen, and that the arm can see at all: shares of the
-/// surface of the bodies that it knows of, 0..1. Nothing true is read for it.
-struct Completeness {
-  /// Of one body.
-  struct Part {
-    Eigen::Vector3d center = Eigen::Vector3d::Zero();  ///< m, world
-    double seen = 0.0;        ///< share of its surface that points cover
-    double observable = 0.0;  ///< the same once everything that the arm can still see has been seen
-  };
-  std::vector<Part> fruits;  ///< in the planner's own order
-  double seen = 0.0;         ///< of all bodies
-  double observable = 0.0;   ///< of all bodies
-
-  /// Share of what can be seen that has been seen; 0 when nothing can.
-  double of_observable() const { return observable > 0.0 ? seen / observable : 0.0; }
+  const Indices* kept = nullptr;  ///< where the last view was followed by a filter: the points that it kept,
+                                  ///< counting those from before the view, then `added`
 };
 
 /// Decides where to look next.
@@ -80,8 +63,8 @@ class Planner {
   /// Why `next` returned nothing.
   virtual StopReason stop_reason() const = 0;
 
-  /// How complete the scan is, as of the last call of `next`; nothing where the planner does not reckon with surfaces, or
-  /// knows of none yet.
+  /// How complete the scan is, as of the last call of `next`; nothing where the planner does not reckon with surfaces,
+  /// or knows of none yet.
   virtual std::optional<Completeness> completeness() const { return std::nullopt; }
 };
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// @file
-/// One cell of the experiment: a scene, a preset, a planner, a noise model and a trial, scanned and judged by everything
-/// that the tables show (paper, Experiments; what it lacks beside). World frame, metres, radians, seconds.
+/// One cell of the experiment: a scene, a preset, a planner, a noise model and a trial, scanned and judged by
+/// everything that the tables show (paper, Experiments; what it lacks beside). World frame, metres, radians, seconds.
 #pragma once
 
 #include <agrisee/result.hpp>
@@ -15,11 +15,11 @@ namespace agrisee::study {
 
 /// Which scan. The seed of noise and planner is the trial, so that `agrisee scan --seed TRIAL` repeats it.
 struct Cell {
-  std::string scene;              ///< name of the scene
+  std::string scene;  ///< name of the scene
   std::string preset = "default";
-  std::string planner = "gain";   ///< of the preset, or asked for
-  std::string noise = "none";     ///< model of the simulated sensor's noise, as in scan --noise
-  int trial = 1;                  ///< from 1
+  std::string planner = "gain";  ///< of the preset, or asked for
+  std::string noise = "none";    ///< model of the simulated sensor's noise, as in scan --noise
+  int trial = 1;                 ///< from 1
 
   template <typename P, typename F>
   static void fields(P& p, F&& f) {
@@ -40,10 +40,10 @@ struct Cell {
 
 /// What one of the paper's two stages makes of the clean cloud when it is alone.
 struct StageAlone {
-  int n_det = 0;                 ///< instances
-  double object_precision = 0.0; ///< as in Metrics
-  double object_recall = 0.0;    ///< as in Metrics
-  double miou = 0.0;             ///< by surface
+  int n_det = 0;                  ///< instances
+  double object_precision = 0.0;  ///< as in Metrics
+  double object_recall = 0.0;     ///< as in Metrics
+  double miou = 0.0;              ///< by surface
 
   template <typename P, typename F>
   static void fields(P& p, F&& f) {
@@ -56,9 +56,9 @@ struct StageAlone {
 
 /// A fruit as it was located, beside its FruitMetrics; fruit that no instance was matched to have no location.
 struct LocatedFruit {
-  int id = 0;                   ///< of the true fruit
-  bool hidden = false;          ///< made to be behind the others
-  std::string found_by;         ///< method; empty = not matched
+  int id = 0;                                                  ///< of the true fruit
+  bool hidden = false;                                         ///< made to be behind the others
+  std::string found_by;                                        ///< method; empty = not matched
   Eigen::Vector3d centroid = Eigen::Vector3d::Zero();          ///< mean of its points, world (m)
   Eigen::Vector3d centroid_cluster = Eigen::Vector3d::Zero();  ///< the same in the cluster frame {R} (m)
   Eigen::Vector3d sigma = Eigen::Vector3d::Zero();             ///< standard deviation of its points per world axis (m)
@@ -77,19 +77,21 @@ struct LocatedFruit {
 /// A cell and its figures.
 struct CellRecord {
   Cell cell;
-  std::string fingerprint;        ///< of scene, parameters and version: a record with another one is out of date
-  int total = 0, hidden = 0;      ///< fruit of the scene, and how many of them are made to be behind others
-  std::string stop_reason;        ///< see StopReason
-  int views = 0;                  ///< taken
-  std::size_t merged = 0;         ///< points of the merged cloud, before SOR
-  std::size_t filtered = 0;       ///< points after SOR
-  std::size_t residual = 0;       ///< of them left by region growing to DBSCAN
-  Timing seconds;                 ///< of computing; `capture` is the simulated sensor's, and not in `total`
-  double path = 0.0;              ///< joint-space path from the start through all views (rad)
-  double shortest_path = 0.0;     ///< shortest open path from the start through the same joints (rad)
-  Metrics metrics;                ///< at the end of the scan
-  StageAlone growing;             ///< region growing alone, on the clean cloud
-  StageAlone clustering;          ///< DBSCAN alone, on the clean cloud
+  std::string fingerprint;            ///< of scene, parameters and version: a record with another one is out of date
+  int total = 0, hidden = 0;          ///< fruit of the scene, and how many of them are made to be behind others
+  std::string stop_reason;            ///< see StopReason
+  int views = 0;                      ///< taken
+  std::size_t merged = 0;             ///< points of the merged cloud, before SOR
+  std::size_t filtered = 0;           ///< points after SOR
+  std::size_t residual = 0;           ///< of them left by region growing to DBSCAN
+  Timing seconds;                     ///< of computing; `capture` is the simulated sensor's, and not in `total`
+  double path = 0.0;                  ///< joint-space path from the start through all views (rad)
+  double shortest_path = 0.0;         ///< shortest open path from the start through the same joints (rad)
+  double believed_seen = 0.0;         ///< what the planner believes of `metrics.scanned`; 0 where it believes nothing
+  double believed_observable = 0.0;   ///< and of `metrics.observable`
+  Metrics metrics;                    ///< at the end of the scan
+  StageAlone growing;                 ///< region growing alone, on the clean cloud
+  StageAlone clustering;              ///< DBSCAN alone, on the clean cloud
   std::vector<LocatedFruit> fruits;   ///< one a true fruit, in the order of `metrics.fruits`
   std::vector<double> scanned_after;  ///< Metrics::scanned_obs, were the scan to end after each view
   std::vector<double> recall_after;   ///< Metrics::recall_obs likewise
@@ -109,6 +111,8 @@ struct CellRecord {
     f("seconds", p.seconds);
     f("path", p.path);
     f("shortest_path", p.shortest_path);
+    f("believed_seen", p.believed_seen);
+    f("believed_observable", p.believed_observable);
     f("metrics", p.metrics);
     f("fruit_metrics", p.metrics.fruits);
     f("growing", p.growing);
@@ -122,13 +126,14 @@ struct CellRecord {
 
 /// What can be seen of a scene at all.
 struct SceneRecord {
-  std::string scene;                ///< name
-  std::string fingerprint;          ///< of scene and version
-  int total = 0, hidden = 0;        ///< fruit
-  double observable = 0.0;          ///< share of the fruit's surface that the arm can observe
-  double observable_least = 0.0;    ///< the same of the fruit of which least can be observed
-  double hidden_share_most = 0.0;   ///< largest share of a hidden fruit's surface that is seen from straight in front
-  int views_90 = 0, views_95 = 0, views_98 = 0, views_99 = 0;  ///< of the greedy planner that knows the truth; 0 = never
+  std::string scene;               ///< name
+  std::string fingerprint;         ///< of scene and version
+  int total = 0, hidden = 0;       ///< fruit
+  double observable = 0.0;         ///< share of the fruit's surface that the arm can observe
+  double observable_least = 0.0;   ///< the same of the fruit of which least can be observed
+  double hidden_share_most = 0.0;  ///< largest share of a hidden fruit's surface that is seen from straight in front
+  int views_90 = 0, views_95 = 0, views_98 = 0,
+      views_99 = 0;  ///< of the greedy planner that knows the truth; 0 = never
 
   template <typename P, typename F>
   static void fields(P& p, F&& f) {

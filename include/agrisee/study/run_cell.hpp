@@ -48,7 +48,8 @@ inline SceneRecord judge_scene(const Subject& subject) {
   r.fingerprint = subject.fingerprint;
   std::tie(r.total, r.hidden) = count_fruit(truth);
   for (const TrueFruit& f : truth.fruits.fruits)
-    if (f.hidden.value_or(false) && f.visible_share) r.hidden_share_most = std::max(r.hidden_share_most, *f.visible_share);
+    if (f.hidden.value_or(false) && f.visible_share)
+      r.hidden_share_most = std::max(r.hidden_share_most, *f.visible_share);
   if (seen.views.empty()) return r;
   r.observable_least = 1.0;
   for (const TrueFruit& f : truth.fruits.fruits)
@@ -86,7 +87,8 @@ inline void judge_stages(const Subject& subject, const ScanResult& result, const
   if (cloud.empty()) return;
   const auto stages = stages_for(cloud, parameters);
   if (!stages) return;
-  Labels regions = grow_regions(cloud, cloud.normals, stages->growing, Grid<float>(cloud, static_cast<float>(stages->growing.radius)));
+  Labels regions = grow_regions(cloud, cloud.normals, stages->growing,
+                                Grid<float>(cloud, static_cast<float>(stages->growing.radius)));
   record.residual = residual(regions).size();
   record.growing = judge_alone(subject, result, std::move(regions), threads);
   Labels clusters = dbscan(cloud, stages->clustering);
@@ -121,7 +123,7 @@ inline CellRecord run_cell(const Subject& subject, const Cell& cell, Parameters 
   options.planner = study_planner(subject, cell.planner);
   options.on_view = [&](const Pipeline& pipeline) {
     ScanResult now = pipeline.result();  // its time counts for nobody
-    now.views.clear();  // what was seen from where is judged at the end alone
+    now.views.clear();                   // what was seen from where is judged at the end alone
     const Metrics m = evaluate(truth, now, observable, {}, threads);
     r.scanned_after.push_back(m.scanned_obs);
     r.recall_after.push_back(m.recall_obs);
@@ -135,6 +137,10 @@ inline CellRecord run_cell(const Subject& subject, const Cell& cell, Parameters 
   r.seconds = result.seconds;
   r.path = joint_path_length(subject.workcell.start, result.views);
   r.shortest_path = shortest_joint_path(subject.workcell.start, result.views).length;
+  if (result.completeness) {
+    r.believed_seen = result.completeness->seen;
+    r.believed_observable = result.completeness->observable;
+  }
   r.metrics = evaluate(truth, result, observable, {}, threads);
   detail::judge_stages(subject, result, parameters.split, r, threads);
   for (std::size_t i = 0; i < r.metrics.fruits.size(); ++i) {
