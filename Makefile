@@ -11,7 +11,7 @@ AGRISEE := build/release/agrisee
 help:
 	@echo "make demo    install what is missing, build, scan a 7-fruit truss, evaluate it, draw it"
 	@echo "make test    install what is missing, build and run all tests"
-	@echo "make experiment  rerun what is missing of the paper's experiment, and write docs/experiment.md"
+	@echo "make experiment  rerun what is missing of the paper's experiment, and write docs/experiment.md, docs/planners.md"
 	@echo "make bench   build and run the benchmarks"
 	@echo "make format  run clang-format on all sources"
 	@echo "make clean   remove build/ and demo/"
@@ -36,8 +36,8 @@ test:
 experiment: build
 	@$(AGRISEE) experiment -o build/experiment --report docs/experiment.md --presets paper,default \
 	  --noise none,l515,gaussian:0.01,rough --trials 3 --paper-trials 1
-	@$(AGRISEE) experiment -o build/experiment --report build/planners/planners.md --presets default \
-	  --planner gain,see,fixed,random,greedy --noise l515 --trials 1 --max-views 15
+	@$(AGRISEE) experiment -o build/experiment --report docs/planners.md --presets default \
+	  --planner gain,see,fixed,random,greedy --noise l515 --trials 1
 
 bench:
 	@cmake/packages.sh build bench

@@ -122,7 +122,8 @@ PY
       cmp "e/$f" "first/$f" || fail "$f did not come back as it was"
     done
     echo broken >"$(ls -d e/cells/*default*l515*1.json | head -1)" && run '4 cells, 1 of them to run'
-    run '4 cells, 2 of them to run' --planner gain,see --presets default
+    expect 0 '4 cells, 2 of them to run' experiment -o e --presets default --planner gain,see --scenes t3/scene.yaml,t4/scene.yaml \
+      --noise l515 --trials 1 --max-views 3
     expect 1 'noise' experiment -o x --noise loud && expect 1 '' experiment -o x --presets mine
     expect 2 'missing.yaml' experiment -o x --scenes missing.yaml && expect 1 '7_9' experiment -o x --scenes 7_9
     # A cell is what scan and evaluate say of the same scene, noise and seed.
