@@ -43,7 +43,7 @@ class Fingerprint {
     const auto* bytes = static_cast<const unsigned char*>(data);
     for (std::size_t i = 0; i < size; ++i) hash_ = (hash_ ^ bytes[i]) * 1099511628211ULL;
   }
-  void add(const std::string& text) { add(text.data(), text.size()); }
+  void add(std::string_view text) { add(text.data(), text.size()); }
   std::string text() const {
     std::ostringstream out;
     out << std::hex << std::setw(16) << std::setfill('0') << hash_;
@@ -72,16 +72,16 @@ struct SceneJob {
   }
 };
 
-SceneJob open_scene(const fs::path& path, const std::string& name) {
+SceneJob open_scene(const fs::path& path) {
   SceneJob job;
   job.path = path;
   job.file = io::read_scene(path);
-  job.name = name.empty() ? job.file.workcell.name : name;
+  job.name = job.file.workcell.name;
   Fingerprint print;
-  print.add(std::string(AGRISEE_VERSION));
-  print.add(std::string(io::read_bytes(path).view()));
+  print.add(AGRISEE_VERSION);
+  print.add(io::read_bytes(path).view());
   const fs::path truth = path.parent_path() / "ground_truth.json";
-  if (fs::exists(truth)) print.add(std::string(io::read_bytes(truth).view()));
+  if (fs::exists(truth)) print.add(io::read_bytes(truth).view());
   for (const Object& object : job.file.scene.objects) {
     print.add(object.mesh.vertices.data(), object.mesh.vertices.size() * sizeof(object.mesh.vertices[0]));
     print.add(object.mesh.triangles.data(), object.mesh.triangles.size() * sizeof(object.mesh.triangles[0]));
@@ -99,9 +99,9 @@ std::vector<SceneJob> open_scenes(const ExperimentOptions& options) {
       const fs::path folder = fs::path(options.output) / "scenes" / truss->workcell.name;
       make_folder(folder.string());
       write_truss(folder, *truss);
-      jobs.push_back(open_scene(folder / "scene.yaml", ""));
+      jobs.push_back(open_scene(folder / "scene.yaml"));
     } else {
-      jobs.push_back(open_scene(text, ""));
+      jobs.push_back(open_scene(text));
     }
     if (!names.insert(jobs.back().name).second)
       throw UsageError(text + ": a second scene of the name " + jobs.back().name);

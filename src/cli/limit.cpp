@@ -58,9 +58,7 @@ Limit find_limit(const LimitOptions& options, const io::SceneFile& file, const s
     for (std::size_t i = 0; i < samples.size(); ++i) out.seen_by[i] += out.observed.sees(v, i);
   if (!out.observed.views.empty()) {
     const double radius = out.parameters.cover_radius;
-    const auto forward = plan::frontal_direction(cell.scan_volume, cell.world_T_base.translation());
-    const std::size_t first = study::most_frontal(out.observed, cell.scan_volume.center(), forward);
-    out.frontal = study::greedy_order(out.observed, samples, first, radius);
+    out.frontal = study::frontal_order(out.observed, samples, cell, radius);
     out.free = study::greedy_order(out.observed, samples, std::nullopt, radius);
   }
   if (options.base_search) out.places = study::base_search(traced, samples, cell, options.base, threads);

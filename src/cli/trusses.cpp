@@ -6,14 +6,11 @@
 #include <agrisee/io/scene.hpp>
 #include <agrisee/study/paper_truss.hpp>
 
-#include <algorithm>
-#include <array>
 #include <iomanip>
 #include <iostream>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <regex>
-#include <sstream>
 
 #include "commands.hpp"
 

@@ -46,38 +46,6 @@ struct BasePlace {
                                      ///< none where nothing can be observed
 };
 
-/// Share of the samples that are flagged; of nothing, or without flags, it is 0.
-inline double share(const Samples& samples, const Flags& flags) {
-  if (samples.size() == 0 || flags.empty()) return 0.0;
-  check_input(flags.size() == samples.size(), "share: flags and samples differ in number");
-  const auto flagged = std::count_if(flags.begin(), flags.end(), [](std::uint8_t f) { return f != 0; });
-  return static_cast<double>(flagged) / static_cast<double>(samples.size());
-}
-
-/// What can be observed of one fruit.
-struct FruitShare {
-  int id = 0;
-  std::size_t samples = 0;  ///< of its surface
-  double observable = 0.0;  ///< share of them
-};
-
-/// What can be observed of each fruit that has samples, by id.
-/// @throws InputError when there are flags and they differ in number from the samples
-inline std::vector<FruitShare> fruit_shares(const Samples& samples, const Flags& observable) {
-  check_input(observable.empty() || observable.size() == samples.size(),
-              "fruit shares: flags and samples differ in number");
-  std::vector<FruitShare> out;
-  for (std::size_t i = 0; i < samples.size(); ++i) {
-    auto at = std::lower_bound(out.begin(), out.end(), samples.fruit[i],
-                               [](const FruitShare& f, int id) { return f.id < id; });
-    if (at == out.end() || at->id != samples.fruit[i]) at = out.insert(at, {samples.fruit[i], 0, 0.0});
-    ++at->samples;
-    if (!observable.empty() && observable[i]) at->observable += 1.0;
-  }
-  for (FruitShare& f : out) f.observable /= static_cast<double>(f.samples);
-  return out;
-}
-
 namespace detail {
 
 /// True inside a solid, its surface excluded.
@@ -143,9 +111,7 @@ inline std::vector<BasePlace> base_search(const TracedScene& scene, const Sample
         place.least = 1.0;
         for (const FruitShare& fruit : fruit_shares(samples, seen.observable))
           place.least = std::min(place.least, fruit.observable);
-        const std::size_t first =
-            most_frontal(seen, moved.scan_volume.center(), plan::frontal_direction(moved.scan_volume, place.base));
-        place.views = greedy_order(seen, samples, first, params.limit.cover_radius).views_for(params.share);
+        place.views = frontal_order(seen, samples, moved, params.limit.cover_radius).views_for(params.share);
       },
       1);
   const Eigen::Vector3d present = cell.world_T_base.translation();

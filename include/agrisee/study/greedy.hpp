@@ -5,6 +5,7 @@
 /// Cost: some 50 ms for 450 views of 10,000 samples.
 #pragma once
 
+#include <agrisee/plan/directions.hpp>
 #include <agrisee/study/limit.hpp>
 
 #include <bitset>
@@ -148,6 +149,16 @@ inline GreedyOrder greedy_order(const Observability& observed, const Samples& sa
     order.covered.push_back(cover.covered());
   }
   return order;
+}
+
+/// Greedy cover as a scan of a workcell begins: with the view that looks most frontally at the scan volume's centre.
+/// @param radius  see above
+/// @throws InputError as greedy_order() does, and when there are no views; ParameterError for a radius that is not
+/// positive
+inline GreedyOrder frontal_order(const Observability& observed, const Samples& samples, const Workcell& cell,
+                                 double radius = 0.005) {
+  const Eigen::Vector3d forward = plan::frontal_direction(cell.scan_volume, cell.world_T_base.translation());
+  return greedy_order(observed, samples, most_frontal(observed, cell.scan_volume.center(), forward), radius);
 }
 
 }  // namespace agrisee::study

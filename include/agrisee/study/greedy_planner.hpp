@@ -4,7 +4,6 @@
 /// it nothing. It looks at nothing that a scan sees. World frame, metres, radians.
 #pragma once
 
-#include <agrisee/plan/directions.hpp>
 #include <agrisee/study/greedy.hpp>
 
 #include <memory>

@@ -54,13 +54,8 @@ inline SceneRecord judge_scene(const Subject& subject) {
   r.observable_least = 1.0;
   for (const TrueFruit& f : truth.fruits.fruits)
     r.observable_least = std::min(r.observable_least, share(truth.samples, seen.observable, f.id));
-  double count = 0.0;
-  for (const auto flag : seen.observable) count += flag;
-  r.observable = count / static_cast<double>(seen.observable.size());
-  const Eigen::Vector3d center = subject.workcell.scan_volume.center();
-  const Eigen::Vector3d eye = subject.workcell.world_T_base.translation();
-  const std::size_t first = most_frontal(seen, center, plan::frontal_direction(subject.workcell.scan_volume, eye));
-  const GreedyOrder order = greedy_order(seen, truth.samples, first);
+  r.observable = share(truth.samples, seen.observable);
+  const GreedyOrder order = frontal_order(seen, truth.samples, subject.workcell);
   const auto views = [&](double part) { return static_cast<int>(order.views_for(part).value_or(0)); };
   r.views_90 = views(0.90);
   r.views_95 = views(0.95);
