@@ -59,9 +59,11 @@ void add_make_truss(CLI::App& app, Run& run) {
       ->capture_default_str();
   command->add_option("--seed", options->truss.seed, "which of all such trusses")->capture_default_str();
   command->add_option("--leaflets", options->truss.leaflets, "number of leaflets")->capture_default_str();
-  command->add_option("--radius", options->radius, "smallest,largest radius of a fruit (m)")
+  command->add_option("--radius", options->radius, "smallest,largest semi-axis of a fruit, before elongation (m)")
       ->delimiter(',')
       ->expected(2);
+  command->add_option("--elongation", options->truss.elongation, "factor on the fruit's length along their growth axis")
+      ->capture_default_str();
   command->add_option("-o,--output", options->output, "folder for the scene")->required();
   command->add_flag("--force", options->force, "overwrite an existing scene");
   command->add_flag("--json", options->json, "print the summary as JSON");

@@ -214,6 +214,22 @@ TEST_CASE("fruit of a truss touch") {
   }
 }
 
+TEST_CASE("elongated fruit are longer along their growth axis, and still hang as asked") {
+  TrussParameters params;
+  params.total = 8;
+  params.hidden = 2;
+  params.radius_min = 0.018;
+  params.radius_max = 0.022;
+  params.elongation = 1.5;
+  const Truss truss = make_truss(params);
+  check_truss(truss, 8, 2, params.center);
+  for (const TrueFruit& fruit : truss.truth.fruits) {
+    CHECK(fruit.radii[0] > 1.25 * fruit.radii[1]);
+    REQUIRE(fruit.growth_axis);
+    CHECK(std::abs(fruit.axes.col(0).dot(*fruit.growth_axis)) > 0.97);
+  }
+}
+
 TEST_CASE("impossible trusses are refused by name") {
   const auto refuses = [](auto change, const char* field) {
     TrussParameters params;
@@ -234,6 +250,8 @@ TEST_CASE("impossible trusses are refused by name") {
   refuses([](TrussParameters& p) { p.radius_max = 0.02; }, "radius_max");
   refuses([](TrussParameters& p) { p.radius_max = std::nan(""); }, "radius_max");
   refuses([](TrussParameters& p) { p.leaflets = 7; }, "leaflets");
+  refuses([](TrussParameters& p) { p.elongation = 2.5; }, "elongation");
+  refuses([](TrussParameters& p) { p.elongation = std::nan(""); }, "elongation");
   refuses([](TrussParameters& p) { p.center.y() = std::nan(""); }, "center");
   CHECK_THROWS_AS(make_paper_truss(7, 0), ParameterError);
 }

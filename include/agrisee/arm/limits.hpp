@@ -43,19 +43,26 @@ inline double wrap(double angle) {
   return a <= -kPi ? kPi : a;
 }
 
+/// The angle equal to `q` modulo 2 pi that lies in [min, max], nearest to `reference`; nothing when there is none.
+/// Where two are exactly as near, half a turn either side of the reference, it is the one farther from q itself.
+inline std::optional<double> nearest(double q, double reference, double min, double max) {
+  double a = q + kTwoPi * std::round((reference - q) / kTwoPi);
+  if (a > max)
+    a = q + kTwoPi * std::floor((max - q) / kTwoPi);
+  else if (a < min)
+    a = q + kTwoPi * std::ceil((min - q) / kTwoPi);
+  if (!(a >= min && a <= max)) return std::nullopt;
+  return a;
+}
+
 /// The angles of the same posture (each joint turned by a multiple of 2 pi) that lie within the limits, each nearest to
-/// those of `reference`; nothing when a joint has none. Where two are exactly as near, half a turn either side of the
-/// reference, it is the one farther from q's own turn.
+/// those of `reference`; nothing when a joint has none.
 inline std::optional<Joints> nearest(const Joints& q, const Joints& reference, const JointLimits& limits) {
   Joints out;
   for (int j = 0; j < 6; ++j) {
-    double a = q[j] + kTwoPi * std::round((reference[j] - q[j]) / kTwoPi);
-    if (a > limits.max[j])
-      a = q[j] + kTwoPi * std::floor((limits.max[j] - q[j]) / kTwoPi);
-    else if (a < limits.min[j])
-      a = q[j] + kTwoPi * std::ceil((limits.min[j] - q[j]) / kTwoPi);
-    if (!(a >= limits.min[j] && a <= limits.max[j])) return std::nullopt;
-    out[j] = a;
+    const auto a = nearest(q[j], reference[j], limits.min[j], limits.max[j]);
+    if (!a) return std::nullopt;
+    out[j] = *a;
   }
   return out;
 }

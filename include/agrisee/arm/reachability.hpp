@@ -5,7 +5,8 @@
 ///
 /// Either a full sensor pose is asked for, or a point to look at and a direction to look along, roll and distance free
 /// (paper, controller; a fixed distance and roll put most views of a UR3 out of reach). The posture alone is judged,
-/// not the path to it. World, metres, seconds. Cost: about 60 us for a view with 24 rolls.
+/// not the path to it. World, metres, seconds. Cost: a few
+/// microseconds for a view by a sensor on the last joint's axis, about 60 us for others with 24 rolls.
 #pragma once
 
 #include <agrisee/arm/collision.hpp>
@@ -81,34 +82,60 @@ struct Candidate {
   int pose = 0;                   // which sensor pose
 };
 
+inline Candidate candidate(const Mount& mount, const Joints& present, const Joints& q, int pose) {
+  return {q, move_time(present, q, mount.limits), joint_distance(present, q), pose};
+}
+
 /// Append every solution for a sensor pose, turned towards the present joints.
 inline void add_solutions(const Mount& mount, const Pose& base_T_tool0, const Joints& present, int pose,
                           std::vector<Candidate>& out) {
   for_each_solution(base_T_tool0, present[5], [&](const Joints& q) {
-    if (const auto near = nearest(q, present, mount.limits))
-      out.push_back({*near, move_time(present, *near, mount.limits), joint_distance(present, *near), pose});
+    if (const auto near = nearest(q, present, mount.limits)) out.push_back(candidate(mount, present, *near, pose));
   });
 }
 
-/// The candidate that collides with nothing and comes first by time, turn and order.
+/// Which way the view rolls when the last joint turns, +1 or -1; 0 for a sensor that is not on that joint's axis, where
+/// another roll is another posture of the whole arm.
+inline int roll_of_last_joint(const Mount& mount) {
+  const Eigen::Vector3d offset = mount.tool0_T_optical.translation(), ahead = mount.tool0_T_optical.linear().col(2);
+  const double off = std::max({std::abs(offset.x()), std::abs(offset.y()), std::abs(ahead.x()), std::abs(ahead.y())});
+  return off < 1e-9 ? (ahead.z() > 0.0 ? 1 : -1) : 0;
+}
+
+/// The same for all of `rolls` evenly spaced rolls of a sensor on the last joint's axis (`sense` as of
+/// roll_of_last_joint): that joint alone turns, and the postures collide alike, so of each solution the roll with the
+/// shortest turn is kept. False, and nothing appended, at a wrist singularity, where other joints move too.
+inline bool add_rolled_solutions(const Mount& mount, const Pose& base_T_tool0, const Joints& present, int sense,
+                                 int rolls, std::vector<Candidate>& out) {
+  const std::size_t before = out.size();
+  bool regular = true;
+  for_each_solution(base_T_tool0, present[5], [&](const Joints& q) {
+    if (!(std::abs(std::sin(q[4])) > 1e-6)) regular = false;
+    Joints turned = q;
+    int roll = -1;
+    double least = std::numeric_limits<double>::infinity();
+    for (int i = 0; i < rolls; ++i) {
+      const auto last =
+          nearest(wrap(q[5] + sense * kTwoPi * i / rolls), present[5], mount.limits.min[5], mount.limits.max[5]);
+      if (!last || !(std::abs(*last - present[5]) < least)) continue;
+      least = std::abs(*last - present[5]);
+      turned[5] = *last;
+      roll = i;
+    }
+    if (roll < 0) return;
+    if (const auto near = nearest(turned, present, mount.limits)) out.push_back(candidate(mount, present, *near, roll));
+  });
+  if (!regular) out.resize(before);
+  return regular;
+}
+
+/// The candidate that collides with nothing and comes first by time, turn, sensor pose and order.
 inline std::optional<Candidate> first_free(std::vector<Candidate>& candidates, const Mount& mount) {
   std::stable_sort(candidates.begin(), candidates.end(), [](const Candidate& a, const Candidate& b) {
-    return a.time != b.time ? a.time < b.time : a.turn < b.turn;
+    return a.time != b.time ? a.time < b.time : a.turn != b.turn ? a.turn < b.turn : a.pose < b.pose;
   });
-  // A sensor on the last joint's axis: that joint turns round bodies, so postures that differ in it alone collide
-  // alike.
-  const Eigen::Vector3d offset = mount.tool0_T_optical.translation(), ahead = mount.tool0_T_optical.linear().col(2);
-  const bool round =
-      std::max({std::abs(offset.x()), std::abs(offset.y()), std::abs(ahead.x()), std::abs(ahead.y())}) < 1e-9;
-  std::vector<Joints> rejected;
-  for (const Candidate& c : candidates) {
-    const bool known = round && std::any_of(rejected.begin(), rejected.end(), [&](const Joints& q) {
-                         return (q - c.joints).head<5>().cwiseAbs().maxCoeff() < 1e-9;
-                       });
-    if (known) continue;
+  for (const Candidate& c : candidates)
     if (!collides(c.joints, mount)) return c;
-    rejected.push_back(c.joints);
-  }
   return std::nullopt;
 }
 
@@ -154,13 +181,16 @@ inline std::optional<Reached> reach(const Mount& mount, const Joints& present, c
     view.rotate(Eigen::AngleAxisd(kTwoPi * roll / parameters.rolls, Eigen::Vector3d::UnitZ()));
     return view;
   };
+  const int sense = detail::roll_of_last_joint(mount);
   std::vector<detail::Candidate> candidates;
   for (const double distance : distances_to_try(parameters)) {
     upright.translation() = target - distance * ahead;
-    if (sensor_collision(upright, mount)) continue;
     candidates.clear();
-    for (int i = 0; i < parameters.rolls; ++i)
-      detail::add_solutions(mount, base_T_world * rolled(i) * optical_T_tool0, present, i, candidates);
+    const Pose base_T_tool0 = base_T_world * upright * optical_T_tool0;
+    if (sense == 0 || !detail::add_rolled_solutions(mount, base_T_tool0, present, sense, parameters.rolls, candidates))
+      for (int i = 0; i < parameters.rolls; ++i)
+        detail::add_solutions(mount, base_T_world * rolled(i) * optical_T_tool0, present, i, candidates);
+    if (candidates.empty() || sensor_collision(upright, mount)) continue;
     if (const auto best = detail::first_free(candidates, mount))
       return Reached{best->joints, rolled(best->pose), distance, best->time};
   }

@@ -84,12 +84,14 @@ struct StageParameters {
 
 /// The stages' parameters for a cloud: as given, or where they are adaptive derived from its spacing; none for a cloud
 /// that has no spacing (no two different points).
-template <typename S>
-std::optional<StageParameters> stages_for(const PointCloud<S>& cloud, const SplitParameters& parameters) {
+/// @param search a KdTree or Grid over the cloud
+template <typename S, typename Search>
+std::optional<StageParameters> stages_for(const PointCloud<S>& cloud, const SplitParameters& parameters,
+                                          const Search& search) {
   StageParameters stages{parameters.growing, parameters.clustering, static_cast<std::size_t>(parameters.min_residual),
                          1};
   if (!parameters.adaptive) return stages;
-  const double spacing = estimate_spacing(cloud);
+  const double spacing = estimate_spacing(cloud, search);
   if (!(spacing > 0.0)) return std::nullopt;
   const double smallest = 4.0 * kPi * parameters.bodies.radius_min * parameters.bodies.radius_min;
   const double least = parameters.min_region * smallest / (spacing * spacing);
@@ -156,6 +158,33 @@ double likely_radius(const PointCloud<S>& cloud, const Grid<S>& grid, const Eige
   return best == 0 ? 0.0 : low + (best - 0.5) * width;
 }
 
+/// Votes that a centre needs to be proposed.
+inline double least_votes(const RegionGrowingParameters& growing) { return 1.5 * growing.min_size; }
+
+/// Propose a sphere of roughly an expected radius.
+inline void propose(Sphere sphere, const char* by, const BodyParameters& parameters,
+                    std::vector<BodyCandidate>& candidates) {
+  if (!(sphere.radius > 0.5 * parameters.radius_min && sphere.radius < 2.0 * parameters.radius_max)) return;
+  sphere.radius = std::clamp(sphere.radius, parameters.radius_min, parameters.radius_max);
+  candidates.push_back({Ellipsoid(sphere), by});
+}
+
+/// Propose bodies about the centres for which the points of `voters`, a part of `cloud`, vote; but for those that one
+/// of `candidates` already stands for: they would only be fitted twice.
+template <typename S>
+void propose_voted(const PointCloud<S>& cloud, const PointCloud<S>& voters, const Grid<S>& grid, double min_votes,
+                   const BodyParameters& parameters, std::vector<BodyCandidate>& candidates) {
+  const std::size_t proposed = candidates.size();
+  for (const VotedCenter& v : vote_for_centers(voters, parameters.radius_min, parameters.radius_max, min_votes)) {
+    const bool known = std::any_of(
+        candidates.begin(), candidates.begin() + static_cast<std::ptrdiff_t>(proposed),
+        [&](const BodyCandidate& c) { return (c.body.center - v.center).norm() < 0.15 * c.body.mean_radius(); });
+    if (!known)
+      propose({v.center, likely_radius(cloud, grid, v.center, parameters)}, "sphere_voting", parameters, candidates);
+    if (candidates.size() >= proposed + 60) break;  // weaker maxima are noise
+  }
+}
+
 /// Give a body what an ellipsoid cannot follow: points in its dimples (inside an opaque body there is nothing else),
 /// and points of a smooth region that is mostly this body's (shoulders, lobes).
 template <typename S>
@@ -206,7 +235,7 @@ Split split(const PointCloud<S>& cloud, const SplitParameters& parameters = {}, 
   out.regions.assign(cloud.size(), 0);
   if (cloud.empty()) return out;
 
-  const auto stages = stages_for(cloud, parameters);
+  const auto stages = stages_for(cloud, parameters, KdTree<S>(cloud));
   if (!stages) return out;
   const RegionGrowingParameters& growing = stages->growing;
 
@@ -238,23 +267,11 @@ Split split(const PointCloud<S>& cloud, const SplitParameters& parameters = {}, 
   // Segments and voted centres propose bodies; the best explanation wins.
   const BodyParameters& bodies = parameters.bodies;
   std::vector<BodyCandidate> candidates;
-  const auto propose = [&](Sphere s, const char* by) {
-    if (!(s.radius > 0.5 * bodies.radius_min && s.radius < 2.0 * bodies.radius_max)) return;
-    s.radius = std::clamp(s.radius, bodies.radius_min, bodies.radius_max);
-    candidates.push_back({Ellipsoid(s), by});
-  };
   for (std::size_t s = 0; s < members.size(); ++s)
     if (const auto sphere = sphere_from_normals(cloud, members[s]))
-      propose(*sphere, static_cast<int>(s) + 1 < first_cluster ? "region_growing" : "dbscan");
-  // Voted centres that a segment's sphere already stands for would only be fitted twice.
-  const std::size_t proposed = candidates.size();
-  for (const VotedCenter& v : vote_for_centers(cloud, bodies.radius_min, bodies.radius_max, 1.5 * growing.min_size)) {
-    const bool known = std::any_of(
-        candidates.begin(), candidates.begin() + static_cast<std::ptrdiff_t>(proposed),
-        [&](const BodyCandidate& c) { return (c.body.center - v.center).norm() < 0.15 * c.body.mean_radius(); });
-    if (!known) propose({v.center, detail::likely_radius(cloud, grid, v.center, bodies)}, "sphere_voting");
-    if (candidates.size() >= proposed + 60) break;  // weaker maxima are noise
-  }
+      detail::propose(*sphere, static_cast<int>(s) + 1 < first_cluster ? "region_growing" : "dbscan", bodies,
+                      candidates);
+  detail::propose_voted(cloud, cloud, grid, detail::least_votes(growing), bodies, candidates);
   out.found = find_bodies(cloud, candidates, bodies, seen_through);
   out.labels = assign_to_bodies(cloud, out.found, bodies);
 
@@ -277,6 +294,32 @@ Split split(const PointCloud<S>& cloud, const SplitParameters& parameters = {}, 
   own.resize(out.found.size());
   for (std::size_t b = 0; b < out.found.size(); ++b)
     out.found[b].found_by = detail::found_by(own[b], segments, sizes, first_cluster);
+  return out;
+}
+
+/// The bodies of a cloud that has grown, or changed a little, since `known` were found: those and what the points off
+/// them vote for compete anew. Far quicker than `split`, and as good while the cloud grows view by view; who found a
+/// body is kept. Points are labelled by the body on which they lie; regions are not grown.
+/// @param seen_through evidence of free space for the competition, or empty
+/// @throws ParameterError; InputError when the cloud has no normals
+template <typename S>
+Split track(const PointCloud<S>& cloud, const std::vector<FoundBody>& known, const SplitParameters& parameters = {},
+            const SeenThrough& seen_through = {}) {
+  parameters.check();
+  check_input(cloud.normals.size() == cloud.points.size(), "track: the cloud has no normals");
+  Split out;
+  out.labels.assign(cloud.size(), 0);
+  if (cloud.empty()) return out;
+  const BodyParameters& bodies = parameters.bodies;
+  const Grid<S> grid(cloud, static_cast<S>(0.5 * bodies.radius_min));
+  const auto stages = stages_for(cloud, parameters, grid);
+  if (!stages) return out;
+  std::vector<BodyCandidate> candidates;
+  for (const FoundBody& k : known) candidates.push_back({k.fit.body, k.found_by});
+  const PointCloud<S> off_them = select(cloud, residual(assign_to_bodies(cloud, known, bodies)));
+  detail::propose_voted(cloud, off_them, grid, detail::least_votes(stages->growing), bodies, candidates);
+  out.found = find_bodies(cloud, candidates, bodies, seen_through);
+  out.labels = assign_to_bodies(cloud, out.found, bodies);
   return out;
 }
 

@@ -76,8 +76,12 @@ class ExpectedSurface {
     with_bodies.adaptive = with_bodies.fit_bodies = true;
     const auto through = [&](const Ellipsoid& body) { return seen_through(progress.images, body, free_space); };
     const bool fused = progress.cloud.normals.size() == progress.cloud.size();
-    const Split found =
-        fused ? split(progress.cloud, with_bodies, through) : split(with_normals(progress), with_bodies, through);
+    const Cloud estimated = fused ? Cloud() : with_normals(progress);
+    const Cloud& cloud = fused ? progress.cloud : estimated;
+    // Anew while the cloud grows fast; later what is known is only brought up to date.
+    const bool anew = bodies_.empty() || static_cast<double>(cloud.size()) > kGrowth * static_cast<double>(split_at_);
+    const Split found = anew ? split(cloud, with_bodies, through) : track(cloud, bodies_, with_bodies, through);
+    if (anew) split_at_ = cloud.size();
     bodies_ = found.found;
     collect_samples(progress);
     PointCloud<float> rest;
@@ -133,6 +137,8 @@ class ExpectedSurface {
   const Aabb& extent() const { return extent_; }
 
  private:
+  static constexpr double kGrowth = 1.25;  // of the cloud, before it is split anew
+
   struct Sample {
     Eigen::Vector3f point, normal;  // zero normal: a voxel, seen from any side
     int body;                       // -1: a voxel
@@ -290,6 +296,7 @@ class ExpectedSurface {
   std::vector<char> known_;  // one a voxel: some sight line has reached it
   std::size_t images_read_ = 0;
   std::vector<FoundBody> bodies_;
+  std::size_t split_at_ = 0;  // points of the cloud when it was last split anew
   std::vector<Sample> samples_;
   std::vector<float> areas_;       // one a sample (m2)
   std::vector<Occluder> spheres_;  // the bodies, a little smaller

@@ -38,7 +38,7 @@ struct GainPlannerParameters {
     check_parameter(distance >= distance_min, "planner.distance", ">= distance_min", distance);
     check_parameter(distance_max >= distance, "planner.distance_max", ">= distance", distance_max);
     check_parameter(dwell > 0, "planner.dwell", "positive", dwell);
-    check_parameter(lookahead >= 1 && lookahead <= 6, "planner.lookahead", "in [1, 6]", lookahead);
+    check_parameter(lookahead >= 1 && lookahead <= 10, "planner.lookahead", "in [1, 10]", lookahead);
     check_parameter(patience >= 0 && patience <= 1, "planner.patience", "in [0, 1]", patience);
     check_parameter(min_gain >= 0, "planner.min_gain", ">= 0", min_gain);
     expected.check();
@@ -226,21 +226,36 @@ class GainPlanner : public Planner {
       if (choice == scored.size()) break;
       next.push_back(choice);
     }
+    // By score first: of equal ways the best view begins.
     double shortest = std::numeric_limits<double>::infinity();
     std::size_t first = next.front();
-    std::vector<std::size_t> order(next.size());
-    std::iota(order.begin(), order.end(), std::size_t{0});  // by score first: of equal ways the best view begins
-    do {
-      double length = 0.0;
-      Joints at = current;
-      for (std::size_t k : order) {
-        length += way(scored[next[k]].view, at);
-        at = scored[next[k]].view.joints.value_or(at);
-      }
-      if (scored[next[order.front()]].score < parameters_.patience * scored.front().score) continue;
-      if (length < shortest - 1e-12) shortest = length, first = next[order.front()];
-    } while (std::next_permutation(order.begin(), order.end()));
+    for (std::size_t k = 0; k < next.size(); ++k) {
+      if (scored[next[k]].score < parameters_.patience * scored.front().score) continue;
+      std::vector<std::size_t> rest = next;
+      rest.erase(rest.begin() + static_cast<std::ptrdiff_t>(k));
+      const double begun = way(scored[next[k]].view, current);
+      const double length = begun + shortest_way(scored, next[k], rest, current, shortest - begun);
+      if (length < shortest - 1e-12) shortest = length, first = next[k];
+    }
     return first;
+  }
+
+  /// Length of the shortest way from view `at` through all of `rest`, or infinity where it is not below `bound`.
+  static double shortest_way(const std::vector<Scored>& scored, std::size_t at, std::vector<std::size_t>& rest,
+                             const Joints& current, double bound) {
+    if (!(bound > 0.0)) return std::numeric_limits<double>::infinity();
+    if (rest.empty()) return 0.0;
+    double shortest = bound;
+    for (std::size_t k = 0; k < rest.size(); ++k) {
+      std::swap(rest[k], rest.back());
+      const std::size_t then = rest.back();
+      rest.pop_back();
+      const double step = way(scored[then].view, scored[at].view.joints.value_or(current));
+      shortest = std::min(shortest, step + shortest_way(scored, then, rest, current, shortest - step));
+      rest.push_back(then);
+      std::swap(rest[k], rest.back());
+    }
+    return shortest < bound ? shortest : std::numeric_limits<double>::infinity();
   }
 
   std::optional<ReachableView> stop(StopReason reason) {

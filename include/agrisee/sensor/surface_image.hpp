@@ -18,6 +18,7 @@
 #include <Eigen/Cholesky>
 
 #include <algorithm>
+#include <array>
 
 namespace agrisee::sensor {
 
@@ -100,18 +101,59 @@ struct Block {
   float u = 0.0f, v = 0.0f, z = 0.0f;  // mean pixel (in cell units) and depth of its agreeing pixels; z = 0: none
 };
 
-/// Solve the leading N x N part of normal equations; also the variance factor of the first unknown. False when degenerate.
-template <int N>
-bool solve(const Eigen::Matrix<double, 6, 6>& normal_matrix, const Eigen::Matrix<double, 6, 1>& rhs, double damping,
-           Eigen::Matrix<double, 6, 1>& x, double& variance) {
-  Eigen::Matrix<double, N, N> damped = normal_matrix.template topLeftCorner<N, N>();
-  damped.diagonal().array() += damping;
-  const Eigen::LLT<Eigen::Matrix<double, N, N>> solver(damped);
-  if (solver.info() != Eigen::Success) return false;
-  x.template head<N>() = solver.solve(rhs.template head<N>());
-  variance = solver.solve(Eigen::Matrix<double, N, 1>::Unit(0))[0];
-  return x.allFinite();
+/// A cell of a round window, and how much it counts at its distance from the middle.
+struct Tap {
+  int du, dv;
+  double r_sq, near;
+};
+
+/// The window of half width w, row by row.
+inline std::vector<Tap> window_taps(int w) {
+  std::vector<Tap> taps;
+  const int most = w * w + 1;
+  for (int dv = -w; dv <= w; ++dv)
+    for (int du = -w; du <= w; ++du)
+      if (const int r_sq = du * du + dv * dv; r_sq <= most)
+        taps.push_back({du, dv, double(r_sq), std::exp(-double(r_sq) / double(most))});
+  return taps;
 }
+
+/// Sums of weighted least squares for the depth z as a paraboloid over (u, v): the 21 products of 1, u, v, uu, uv, vv
+/// are 15 different monomials.
+struct ParaboloidSums {
+  double weight = 0.0, squares = 0.0;  // of residuals
+  std::array<double, 15> m{};          // 1, u, v, uu, uv, vv, uuu, uuv, uvv, vvv, uuuu, uuuv, uuvv, uvvv, vvvv
+  Eigen::Matrix<double, 6, 1> rhs = Eigen::Matrix<double, 6, 1>::Zero();
+
+  void add(double w, double u, double v, double z, double residual) {
+    const double uu = u * u, uv = u * v, vv = v * v, wuu = w * uu, wuv = w * uv, wvv = w * vv, wz = w * z;
+    weight += w;
+    squares += w * residual * residual;
+    const double products[15] = {w,       w * u,   w * v,    wuu,      wuv,      wvv,      wuu * u, wuu * v,
+                                 wvv * u, wvv * v, wuu * uu, wuu * uv, wuu * vv, wuv * vv, wvv * vv};
+    for (std::size_t k = 0; k < 15; ++k) m[k] += products[k];
+    const double depths[6] = {wz, wz * u, wz * v, wz * uu, wz * uv, wz * vv};
+    for (int k = 0; k < 6; ++k) rhs[k] += depths[k];
+  }
+
+  /// Solve for the first N coefficients; also the variance factor of the depth at (0, 0), where `variance` asks for it.
+  /// False when degenerate.
+  template <int N>
+  bool solve(Eigen::Matrix<double, 6, 1>& x, double* variance) const {
+    static constexpr std::size_t kMonomial[6][6] = {{0, 1, 2, 3, 4, 5},   {1, 3, 4, 6, 7, 8},    {2, 4, 5, 7, 8, 9},
+                                                    {3, 6, 7, 10, 11, 12}, {4, 7, 8, 11, 12, 13}, {5, 8, 9, 12, 13, 14}};
+    Eigen::Matrix<double, N, N> a;
+    for (int i = 0; i < N; ++i)
+      for (int j = 0; j < N; ++j) a(i, j) = m[kMonomial[i][j]];
+    a.diagonal().array() += 1e-9 * weight;
+    const Eigen::LLT<Eigen::Matrix<double, N, N>> solver(a);
+    if (solver.info() != Eigen::Success) return false;
+    x.setZero();
+    x.template head<N>() = solver.solve(rhs.template head<N>());
+    if (variance) *variance = solver.solve(Eigen::Matrix<double, N, 1>::Unit(0))[0];
+    return x.allFinite();
+  }
+};
 
 /// The paraboloid fitted around a cell: depth over the offset (du, dv) from the block's mean pixel, in cells.
 struct Patch {
@@ -142,15 +184,18 @@ inline SurfaceImage reconstruct_surface(const DepthFrame& frame, const Pose& wor
   SurfaceImage out;
   out.world_T_optical = world_T_optical;
   std::vector<float> depths;
-  for (int v = 0; v < k.height; ++v)
+  depths.reserve(k.size() / 4);
+  for (int v = 0; v < k.height; ++v) {
+    const float* row = &frame.depth[static_cast<std::size_t>(v) * width];
+    const Eigen::Vector3d left = rotation * k.ray(0.0, v), pitch = rotation.col(0) / k.fx;  // of the rays at z = 1
     for (int u = 0; u < k.width; ++u) {
-      const std::size_t i = static_cast<std::size_t>(v) * width + static_cast<std::size_t>(u);
-      const float z = frame.depth[i];
+      const float z = row[u];
       if (!DepthFrame::valid(z)) continue;
-      if (!volume.contains(Eigen::Vector3d(origin + rotation * (k.ray(u, v) * double(z))))) continue;
-      inside[i] = z;
+      if (!volume.contains(Eigen::Vector3d(origin + (left + double(u) * pitch) * double(z)))) continue;
+      inside[static_cast<std::size_t>(v) * width + static_cast<std::size_t>(u)] = z;
       depths.push_back(z);
     }
+  }
   out.points_in = depths.size();
   const double typical = out.points_in ? static_cast<double>(detail::median(depths)) : 1.0;
   const int b = std::clamp(static_cast<int>(std::lround(parameters.spacing * k.fx / typical)), 1, parameters.max_block);
@@ -218,83 +263,72 @@ inline SurfaceImage reconstruct_surface(const DepthFrame& frame, const Pose& wor
   const double bend = pitch * pitch / (2.0 * parameters.smallest_radius);
 
   std::vector<detail::Patch> patches(n);
-  const auto fit_cell = [&](std::size_t c) {
+  const std::vector<detail::Tap> taps = detail::window_taps(w);
+  const auto row_length = static_cast<std::size_t>(cells.width);
+  const auto block_at = [&](int u, int v) -> const detail::Block& {
+    return blocks[static_cast<std::size_t>(v) * row_length + static_cast<std::size_t>(u)];
+  };
+  const auto fit_cell = [&](std::size_t c, std::array<std::vector<float>, 2>& along) {
     const detail::Block& center = blocks[c];
     if (!(center.z > 0.0f)) return;
-    const int cu = static_cast<int>(c % static_cast<std::size_t>(cells.width));
-    const int cv = static_cast<int>(c / static_cast<std::size_t>(cells.width));
+    const int cu = static_cast<int>(c % row_length), cv = static_cast<int>(c / row_length);
     // The first slope: medians of the differences to the neighbours that no steepest surface would exceed.
     const double step = steepest * pitch + 4.0 * block_noise;
-    std::vector<float> along[2];
     const int reach = std::min(w, 1 + static_cast<int>(block_noise / 0.001));
-    for (int dv = -reach; dv <= reach; ++dv)
-      for (int du = -reach; du <= reach; ++du) {
-        const int u = cu + du, v = cv + dv;
-        if (u < 0 || v < 0 || u >= cells.width || v >= cells.height) continue;
-        const detail::Block& a = blocks[static_cast<std::size_t>(v) * static_cast<std::size_t>(cells.width) + static_cast<std::size_t>(u)];
-        if (!(a.z > 0.0f)) continue;
-        for (int axis = 0; axis < 2; ++axis) {
-          const int u2 = u + (axis == 0), v2 = v + (axis == 1);
-          if (u2 > cu + reach || v2 > cv + reach || u2 >= cells.width || v2 >= cells.height) continue;
-          const detail::Block& e = blocks[static_cast<std::size_t>(v2) * static_cast<std::size_t>(cells.width) + static_cast<std::size_t>(u2)];
-          if (e.z > 0.0f && std::abs(e.z - a.z) < static_cast<float>(step)) along[axis].push_back(e.z - a.z);
-        }
+    const int u_end = std::min(cu + reach, cells.width - 1), v_end = std::min(cv + reach, cells.height - 1);
+    for (auto& differences : along) differences.clear();
+    for (int v = std::max(cv - reach, 0); v <= v_end; ++v)
+      for (int u = std::max(cu - reach, 0); u <= u_end; ++u) {
+        const float z = block_at(u, v).z;
+        if (!(z > 0.0f)) continue;
+        const auto difference = [&](int axis, const detail::Block& next) {
+          if (next.z > 0.0f && std::abs(next.z - z) < static_cast<float>(step))
+            along[static_cast<std::size_t>(axis)].push_back(next.z - z);
+        };
+        if (u < u_end) difference(0, block_at(u + 1, v));
+        if (v < v_end) difference(1, block_at(u, v + 1));
       }
     const double slope_u = static_cast<double>(detail::median(along[0]));
     const double slope_v = static_cast<double>(detail::median(along[1]));
 
     Eigen::Matrix<double, 6, 1> x;
     x << double(center.z), slope_u, slope_v, 0.0, 0.0, 0.0;
-    double scale = block_noise;
-    Eigen::Matrix<double, 6, 6> normal_matrix;
-    double support = 0.0, variance = 0.0;
+    // Before the curvature is known it may explain this much, times the distance squared.
+    double slack = bend * (1.0 + slope_u * slope_u / (pitch * pitch));
+    double scale = block_noise, variance = 0.0;
+    detail::ParaboloidSums sums;
     int window_cells = 0;
-    bool quadratic = false;
-    for (int iteration = 0; iteration < 3; ++iteration) {
-      normal_matrix.setZero();
-      Eigen::Matrix<double, 6, 1> rhs = Eigen::Matrix<double, 6, 1>::Zero();
-      support = 0.0;
-      double squares = 0.0;
+    constexpr int kIterations = 3;
+    for (int iteration = 0; iteration < kIterations; ++iteration, slack = 0.0) {
+      sums = {};
       window_cells = 0;
-      for (int v = std::max(cv - w, 0); v <= std::min(cv + w, cells.height - 1); ++v)
-        for (int u = std::max(cu - w, 0); u <= std::min(cu + w, cells.width - 1); ++u) {
-          const int r_sq = (u - cu) * (u - cu) + (v - cv) * (v - cv);
-          if (r_sq > w * w + 1) continue;
-          ++window_cells;
-          const detail::Block& q = blocks[static_cast<std::size_t>(v) * static_cast<std::size_t>(cells.width) + static_cast<std::size_t>(u)];
-          if (!(q.z > 0.0f)) continue;
-          const double du = double(q.u - center.u), dv = double(q.v - center.v);
-          Eigen::Matrix<double, 6, 1> a;
-          a << 1.0, du, dv, du * du, du * dv, dv * dv;
-          const double residual = double(q.z) - a.dot(x);
-          // Before the curvature is known it may explain this much.
-          const double slack = iteration == 0 ? bend * (1.0 + slope_u * slope_u / (pitch * pitch)) * double(r_sq) : 0.0;
-          const double gate = 4.0 * scale + 0.2 * pitch + slack;
-          const double t = residual / gate;
-          if (std::abs(t) >= 1.0) continue;
-          const double tukey = (1.0 - t * t) * (1.0 - t * t);
-          const double weight = tukey * std::exp(-1.0 * double(r_sq) / double(w * w + 1));
-          normal_matrix.noalias() += weight * a * a.transpose();
-          rhs += weight * double(q.z) * a;
-          support += weight;
-          squares += weight * residual * residual;
-        }
-      if (support < 2.5) return;
-      quadratic = support > 7.0;
-      x.setZero();
-      const double damping = 1e-9 * support;
-      const bool solved = quadratic ? detail::solve<6>(normal_matrix, rhs, damping, x, variance)
-                                    : detail::solve<3>(normal_matrix, rhs, damping, x, variance);
-      if (!solved) return;
-      if (iteration > 0) scale = std::max(block_noise, 0.5 * std::sqrt(squares / support));
+      for (const detail::Tap& tap : taps) {
+        const int u = cu + tap.du, v = cv + tap.dv;
+        if (u < 0 || v < 0 || u >= cells.width || v >= cells.height) continue;
+        ++window_cells;
+        const detail::Block& q = block_at(u, v);
+        if (!(q.z > 0.0f)) continue;
+        const double du = double(q.u - center.u), dv = double(q.v - center.v), z = double(q.z);
+        const double fitted = x[0] + du * (x[1] + x[3] * du + x[4] * dv) + dv * (x[2] + x[5] * dv);
+        const double residual = z - fitted, t = residual / (4.0 * scale + 0.2 * pitch + slack * tap.r_sq);
+        if (std::abs(t) >= 1.0) continue;
+        sums.add((1.0 - t * t) * (1.0 - t * t) * tap.near, du, dv, z, residual);
+      }
+      if (sums.weight < 2.5) return;
+      double* wanted_variance = iteration + 1 == kIterations ? &variance : nullptr;
+      if (!(sums.weight > 7.0 ? sums.solve<6>(x, wanted_variance) : sums.solve<3>(x, wanted_variance))) return;
+      if (iteration > 0) scale = std::max(block_noise, 0.5 * std::sqrt(sums.squares / sums.weight));
     }
     // Cells without neighbours on their own surface are flying pixels.
-    if (support < 0.2 * 0.63 * double(window_cells)) return;
+    if (sums.weight < 0.2 * 0.63 * double(window_cells)) return;
     if (std::abs(x[0] - double(center.z)) > 4.0 * block_noise + 0.5 * pitch) return;
     patches[c].x = x;
     patches[c].sigma = std::max(std::max(scale, block_noise) * std::sqrt(std::max(variance, 0.0)), 1e-5);
   };
-  parallel_for(n, threads, fit_cell, 256);
+  parallel_chunks(n, threads, 256, [&](std::size_t begin, std::size_t end) {
+    std::array<std::vector<float>, 2> along;
+    for (std::size_t c = begin; c < end; ++c) fit_cell(c, along);
+  });
 
   // One sample a cell; where the surface is steep several along the slope, so that they stay evenly apart on it.
   const double cos_max = std::cos(parameters.max_incidence);

@@ -17,6 +17,7 @@ struct TrussParameters {
   std::uint64_t seed = 1;                         ///< equal parameters and seeds give equal trusses
   double radius_min = 0.028;                      ///< smallest semi-axis of a fruit (m)
   double radius_max = 0.042;                      ///< largest semi-axis of a fruit, its lobes included (m)
+  double elongation = 1.0;                        ///< factor on all polar semi-axes after that: 1.5 makes plum types
   int leaflets = 0;                               ///< number of leaflets, 0 to 6
   Eigen::Vector3d center = {0.015, 0.545, 0.21};  ///< middle of the truss (m, world)
 
@@ -28,6 +29,7 @@ struct TrussParameters {
     check_parameter(std::isfinite(radius_min) && radius_min >= 0.005, "radius_min", ">= 0.005 m", radius_min);
     check_parameter(std::isfinite(radius_max) && radius_max >= radius_min && radius_max <= 0.06, "radius_max",
                     "between radius_min and 0.06 m", radius_max);
+    check_parameter(elongation >= 0.5 && elongation <= 2.0, "elongation", "0.5 to 2", elongation);
     check_parameter(leaflets >= 0 && leaflets <= 6, "leaflets", "0 to 6", leaflets);
     check_parameter(center.allFinite(), "center", "finite", center.x());
   }
@@ -38,6 +40,7 @@ struct TrussParameters {
     f("seed", p.seed);
     f("radius_min", p.radius_min);
     f("radius_max", p.radius_max);
+    f("elongation", p.elongation);
     f("leaflets", p.leaflets);
     f("center", p.center);
   }
@@ -98,7 +101,8 @@ struct TrussLayout {
 /// Distance (m) from which a fruit counts as hidden or not: straight in front of the truss's middle, along +y.
 constexpr double kFrontalDistance = 0.38;
 
-/// A fruit of largest semi-axis about `size` within the parameters' limits; `flat` = polar / equatorial semi-axis.
+/// A fruit of largest semi-axis about `size` within the parameters' limits, then elongated; `flat` = polar / equatorial
+/// semi-axis before that.
 inline FruitShape draw_shape(const TrussParameters& params, double size, Rng& rng) {
   FruitShape s;
   s.lobes = 4 + static_cast<int>(rng.below(4));
@@ -110,7 +114,7 @@ inline FruitShape draw_shape(const TrussParameters& params, double size, Rng& rn
   const double largest = params.radius_max / (1.0 + s.lobe_amplitude);
   s.equatorial = std::clamp(size, std::min(params.radius_min / (1.0 - s.lobe_amplitude), largest), largest);
   flat = std::max(flat, std::min(1.0, params.radius_min / s.equatorial));
-  s.polar = flat * s.equatorial;
+  s.polar = params.elongation * flat * s.equatorial;
   return s;
 }
 
