@@ -251,11 +251,11 @@ IcpResult register_cloud(const Source& source, const std::vector<Vector3<scalar_
 template <typename Source, typename Target>
 IcpResult register_cloud(const Source& source, const std::vector<Vector3<scalar_t<Target>>>& source_normals,
                          const Target& target, const std::vector<Vector3<scalar_t<Target>>>& target_normals,
-                         const IcpParameters& params = {}) {
+                         const IcpParameters& params = {}, const Pose& initial = Pose::Identity(), int threads = 1) {
   params.check();
   using S = scalar_t<Target>;
   return register_cloud(source, source_normals, target, target_normals, params,
-                        Grid<S>(target, static_cast<S>(0.5 * params.max_distance)));
+                        Grid<S>(target, static_cast<S>(0.5 * params.max_distance)), initial, threads);
 }
 
 }  // namespace agrisee

@@ -4,12 +4,11 @@
 /// paper, "Segmentation via Region Growing": r_n, k_n), turned to the view that saw each point or to one viewpoint.
 /// Where neither is known, orient_normals.hpp makes them agree with their neighbours.
 ///
-/// Any frame, metres. Cost: a grid, one visit of the neighbours and one 3 x 3 eigenproblem a point.
+/// Any frame, metres. Cost: a grid, the sorting of some 30 neighbours and one 3 x 3 eigenproblem a point.
 #pragma once
 
 #include <agrisee/cloud/hybrid_query.hpp>
-#include <agrisee/core/grid.hpp>
-#include <agrisee/core/parallel.hpp>
+#include <agrisee/core/all_neighbors.hpp>
 #include <agrisee/geometry/pca.hpp>
 
 namespace agrisee {
@@ -36,6 +35,21 @@ struct NormalParameters {
   }
 };
 
+namespace detail {
+
+/// The normal of the points that `moments` sums, or zero where there is none to be told.
+/// @param curvature receives the surface variation where it is not null
+template <typename S>
+Vector3<S> normal_of(const Moments& moments, S* curvature) {
+  const PrincipalAxes<double> axes = principal_axes<double>(moments.mean(), moments.covariance());
+  const double rounding = 4.0 * double(std::numeric_limits<S>::epsilon()) * axes.mean.cwiseAbs().maxCoeff();
+  if (axes.variance[1] <= 1e-8 * axes.variance[2] + rounding * rounding) return Vector3<S>::Zero();
+  if (curvature) *curvature = static_cast<S>(axes.curvature());
+  return axes.axes.col(0).template cast<S>();
+}
+
+}  // namespace detail
+
 /// One unit normal a point, its sign arbitrary; zero where the normal is unknown: fewer than three neighbours, all of
 /// them on a line or at one place (within the rounding of the coordinates), or a point that is not finite.
 /// @param search a KdTree or Grid over `cloud`
@@ -60,23 +74,32 @@ std::vector<Vector3<scalar_t<C>>> estimate_normals(const C& cloud, const NormalP
       moments.reset(p.template cast<double>());
       for (const auto& neighbor : neighbors)
         moments.add(point(cloud, static_cast<std::size_t>(neighbor.index)).template cast<double>());
-      const PrincipalAxes<double> axes = principal_axes<double>(moments.mean(), moments.covariance());
-      const double rounding = 4.0 * double(std::numeric_limits<S>::epsilon()) * axes.mean.cwiseAbs().maxCoeff();
-      if (axes.variance[1] <= 1e-8 * axes.variance[2] + rounding * rounding) continue;
-      normals[i] = axes.axes.col(0).template cast<S>();
-      if (curvatures) (*curvatures)[i] = static_cast<S>(axes.curvature());
+      normals[i] = detail::normal_of<S>(moments, curvatures ? &(*curvatures)[i] : nullptr);
     }
   });
   return normals;
 }
 
-/// The same with a search built for the call.
+/// The same without a search; several times as fast.
 template <typename C>
 std::vector<Vector3<scalar_t<C>>> estimate_normals(const C& cloud, const NormalParameters& params = {}, int threads = 1,
                                                    std::vector<scalar_t<C>>* curvatures = nullptr) {
-  params.check();
   using S = scalar_t<C>;
-  return estimate_normals(cloud, params, Grid<S>(cloud, static_cast<S>(0.5 * params.radius)), threads, curvatures);
+  params.check();
+  const std::size_t n = agrisee::size(cloud);
+  std::vector<Vector3<S>> normals(n, Vector3<S>::Zero());
+  if (curvatures) curvatures->assign(n, S(0));
+  for_each_neighborhood(cloud, static_cast<std::size_t>(params.max_neighbors), static_cast<S>(params.radius), threads,
+                        [&](Index index, const Neighborhood<S>& near) {
+                          if (near.size < 3) return;
+                          const auto i = static_cast<std::size_t>(index);
+                          Moments moments;
+                          moments.reset(near.point(0).template cast<double>());
+                          for (std::size_t j = 0; j < near.size; ++j)
+                            moments.add(near.point(j).template cast<double>());
+                          normals[i] = detail::normal_of<S>(moments, curvatures ? &(*curvatures)[i] : nullptr);
+                        });
+  return normals;
 }
 
 /// The normals, each turned so that it faces `viewpoint` (m, the cloud's frame).

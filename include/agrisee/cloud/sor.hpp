@@ -4,7 +4,7 @@
 /// distance d_i to its K nearest neighbours exceeds mu + alpha sigma, mu and sigma being the mean and the deviation of
 /// all d_i.
 ///
-/// Any frame, metres. Cost: a kd-tree and one k-nearest query a point, O(n log n), most of them by a grid.
+/// Any frame, metres. Cost: a grid and the sorting of some 30 neighbours a point, which bounds it, O(n K).
 ///
 /// The K neighbours are others than the point itself, which is left out by its index: a duplicate of it counts, at
 /// distance 0. PCL's `setMeanK(K)` means the same K, Open3D's `nb_neighbors` counts the point: K + 1 there is K here
@@ -12,10 +12,7 @@
 /// `sample_deviation`; the paper divides by N. Open3D also drops points with d_i = 0, which stay here.
 #pragma once
 
-#include <agrisee/cloud/hybrid_query.hpp>
-#include <agrisee/core/grid.hpp>
-#include <agrisee/core/kdtree.hpp>
-#include <agrisee/core/parallel.hpp>
+#include <agrisee/core/all_neighbors.hpp>
 
 namespace agrisee {
 
@@ -70,23 +67,6 @@ std::vector<double> mean_neighbor_distances(const C& cloud, int k, const Search&
 
 namespace detail {
 
-/// Median over a sample of the points of the distance (m) to the k-th nearest, the point itself included; 0 where the
-/// cloud has no k points.
-template <typename C>
-scalar_t<C> typical_distance(const C& cloud, std::size_t k, const KdTree<scalar_t<C>>& tree) {
-  Neighbors<scalar_t<C>> found;
-  std::vector<scalar_t<C>> sample;
-  const std::size_t n = agrisee::size(cloud), stride = std::max<std::size_t>(1, n / 64);
-  for (std::size_t i = 0; i < n; i += stride) {
-    tree.knn(point(cloud, i), k, found);
-    if (found.size() == k) sample.push_back(found.back().distance);
-  }
-  if (sample.empty()) return 0;
-  const auto middle = sample.begin() + static_cast<std::ptrdiff_t>(sample.size() / 2);
-  std::nth_element(sample.begin(), middle, sample.end());
-  return *middle;
-}
-
 /// The points with d_i <= mu + alpha sigma. NaN marks points that do not count.
 inline Indices within_deviation(const std::vector<double>& distances, const SorParameters& params) {
   double sum = 0.0, squares = 0.0, n = 0.0;
@@ -108,34 +88,18 @@ inline Indices within_deviation(const std::vector<double>& distances, const SorP
 
 }  // namespace detail
 
-/// The same with searches built for the call: a grid for the many points whose neighbours are about as near as those of
-/// a sample, which is two to three times as fast as the kd-tree that serves the few others.
+/// The same without a search; several times as fast.
 template <typename C>
 std::vector<double> mean_neighbor_distances(const C& cloud, int k, int threads = 1) {
   using S = scalar_t<C>;
-  const KdTree<S> tree(cloud);
-  const std::size_t wanted = static_cast<std::size_t>(std::max(k, 0)) + 1, n = agrisee::size(cloud);
-  const S typical = detail::typical_distance(cloud, wanted, tree);
-  if (!(typical > 0)) return mean_neighbor_distances(cloud, k, tree, threads);
-  const Grid<S> grid(cloud, typical);
-  std::vector<double> distances(n, std::numeric_limits<double>::quiet_NaN());
-  parallel_chunks(n, threads, 512, [&](std::size_t begin, std::size_t end) {
-    HybridQuery<S> query(S(2) * typical, wanted);
-    Neighbors<S> rest;
-    for (std::size_t i = begin; i < end; ++i) {
-      const Vector3<S> p = point(cloud, i);
-      if (!is_finite(p)) continue;
-      const Neighbors<S>& near = query(grid, p);
-      double sum = 0.0;
-      if (near.size() == wanted) {
-        for (const auto& neighbor : near) sum += static_cast<double>(std::sqrt(neighbor.distance));
-      } else {
-        tree.knn(p, wanted, rest);  // it has them all: the sample's points had
-        for (const auto& neighbor : rest) sum += static_cast<double>(neighbor.distance);
-      }
-      distances[i] = sum / static_cast<double>(std::max<std::size_t>(wanted, 2) - 1);
-    }
-  });
+  std::vector<double> distances(agrisee::size(cloud), std::numeric_limits<double>::quiet_NaN());
+  for_each_neighborhood(cloud, static_cast<std::size_t>(std::max(k, 0)) + 1, std::numeric_limits<S>::infinity(), threads,
+                        [&](Index i, const Neighborhood<S>& near) {
+                          double sum = 0.0;
+                          for (std::size_t j = 0; j < near.size; ++j) sum += static_cast<double>(near.distance[j]);
+                          distances[static_cast<std::size_t>(i)] =
+                              near.size > 1 ? sum / static_cast<double>(near.size - 1) : 0.0;
+                        });
   return distances;
 }
 
@@ -151,7 +115,7 @@ Indices remove_statistical_outliers(const C& cloud, const SorParameters& params,
   return detail::within_deviation(mean_neighbor_distances(cloud, params.mean_k, search, threads), params);
 }
 
-/// The same with searches built for the call.
+/// The same without a search; several times as fast.
 /// @throws ParameterError for a bad parameter
 template <typename C>
 Indices remove_statistical_outliers(const C& cloud, const SorParameters& params = {}, int threads = 1) {

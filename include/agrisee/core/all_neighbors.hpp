@@ -1,0 +1,284 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// @file
+/// Neighbours of all points of a cloud at once, several times as fast as query by query: points are visited cell by
+/// cell of a grid, and the few whose neighbours are farther than the next cells ask a kd-tree. Answers are those of
+/// neighbors.hpp, whatever the number of threads.
+///
+/// Any frame, metres. Cost O(n k) for evenly dense clouds; memory about 20 bytes a point and no lists but those returned.
+#pragma once
+
+#include <agrisee/core/kdtree.hpp>
+#include <agrisee/core/tiles.hpp>
+
+#include <optional>
+
+namespace agrisee {
+
+/// The neighbours of one point, nearest first, ties by index; itself included.
+template <typename S>
+struct Neighborhood {
+  std::size_t size = 0;
+  const S* distance = nullptr;   ///< m
+  const Index* ids = nullptr;    ///< in the cloud
+  const S *x = nullptr, *y = nullptr, *z = nullptr;  ///< coordinates of the point number at[i] (m) ...
+  const std::uint32_t* at = nullptr;                 ///< ... of neighbour i
+
+  Vector3<S> point(std::size_t i) const { return {x[at[i]], y[at[i]], z[at[i]]}; }
+};
+
+namespace detail {
+
+/// Median, over a few points of the cloud, of the distance (m) to the k-th nearest, judged by a share of the points;
+/// points with that many duplicates do not count. 1 where there are no others.
+template <typename C>
+scalar_t<C> typical_distance(const C& cloud, std::size_t k) {
+  using S = scalar_t<C>;
+  constexpr std::size_t kSamples = 16;
+  const std::size_t n = agrisee::size(cloud), share = std::max<std::size_t>(1, k / 4);
+  std::vector<Vector3<S>> some;
+  for (std::size_t i = 0; i < n; i += share)
+    if (is_finite(point(cloud, i))) some.push_back(point(cloud, i));
+  std::vector<S> typical, distances(some.size());
+  const auto nth = [](std::vector<S>& values, std::size_t rank) {
+    const auto at = values.begin() + static_cast<std::ptrdiff_t>(std::min(rank, values.size() - 1));
+    std::nth_element(values.begin(), at, values.end());
+    return *at;
+  };
+  for (std::size_t s = 0; s < std::min(kSamples, some.size()); ++s) {
+    const Vector3<S> q = some[s * some.size() / kSamples];
+    for (std::size_t i = 0; i < some.size(); ++i) distances[i] = distance_sq<S>(some[i], q);
+    const S d = std::sqrt(nth(distances, k / share));
+    if (d > 0 && std::isfinite(d)) typical.push_back(d);
+  }
+  return typical.empty() ? S(1) : nth(typical, typical.size() / 2);
+}
+
+/// Sorts the nearest of a tile's candidates; not to be shared between threads.
+template <typename S>
+class TileNearest {
+ public:
+  /// @param first_trial distance (m) within which k points are expected
+  TileNearest(const Grid<S>& grid, std::size_t k, S first_trial)
+      : grid_(grid), k_(k), trial_sq_(first_trial * first_trial) {}
+
+  /// The k candidates nearest to q that are at most `reach` away (m).
+  const Neighborhood<S>& operator()(const Tile<S>& tile, const Vector3<S>& q, S reach) {
+    resize(tile.size + kLanes);
+    tile.distances_sq(q, all_.data());
+    const S limit_sq = limit(tile.size, reach * reach);
+    kept_ = 0;
+    for (std::size_t j = 0; j < tile.size; ++j) {  // no branch: half of the candidates pass
+      kept_at_[kept_] = static_cast<std::uint32_t>(j);
+      kept_ += all_[j] <= limit_sq ? 1u : 0u;
+    }
+    for (std::size_t i = 0; i < kept_; ++i) kept_sq_[i] = all_[kept_at_[i]];
+    rank(tile);
+    near_.size = std::min(k_, kept_);
+    for (std::size_t i = 0; i < near_.size; ++i) ids_[i] = grid_.ids()[tile.at[at_[i]]];
+    if (near_.size == k_) trial_sq_ = S(1.3) * sorted_[k_ - 1];
+    for (std::size_t i = 0; i < near_.size; ++i) sorted_[i] = std::sqrt(sorted_[i]);
+    near_.distance = sorted_.data(), near_.ids = ids_.data(), near_.at = at_.data();
+    near_.x = tile.x.data(), near_.y = tile.y.data(), near_.z = tile.z.data();
+    return near_;
+  }
+
+ private:
+  static constexpr std::size_t kLanes = 8;
+
+  void resize(std::size_t n) {
+    if (all_.size() >= n) return;
+    n *= 2;
+    all_.resize(n), kept_sq_.resize(n), sorted_.resize(n);
+    kept_at_.resize(n), at_.resize(n), ranks_.resize(n);
+    ids_.resize(n);
+  }
+
+  std::size_t count(std::size_t n, S limit_sq) const {
+    std::uint32_t in = 0;
+    for (std::size_t j = 0; j < n; ++j) in += all_[j] <= limit_sq ? 1u : 0u;
+    return in;
+  }
+
+  /// A squared distance, at most `reach_sq`, within which there are k of the n candidates, but few more.
+  S limit(std::size_t n, S reach_sq) const {
+    if (n <= k_) return reach_sq;
+    S few = 0, enough = std::min(trial_sq_, reach_sq);  // squared distances within which there are too few, enough
+    std::size_t in = count(n, enough);
+    while (in < k_ && enough < reach_sq) {
+      few = enough;
+      enough = std::min(reach_sq, S(1.5) * enough * static_cast<S>(k_) / static_cast<S>(std::max(in, k_ / 4 + 1)));
+      in = count(n, enough);
+    }
+    for (int trial = 0; trial < 12 && in > 2 * k_; ++trial) {  // counts grow with the square of the distance
+      const S guess = few > 0 ? (few + enough) / S(2) : S(1.3) * enough * static_cast<S>(k_) / static_cast<S>(in);
+      const std::size_t within = count(n, guess);
+      if (within < k_)
+        few = guess;
+      else
+        enough = guess, in = within;
+    }
+    return enough;
+  }
+
+  /// Sort what is kept, each to the place that the number of nearer ones gives it.
+  void rank(const Tile<S>& tile) {
+    const std::size_t n = kept_;
+    if (n > 4 * k_ + 64) return sort(tile);
+    for (std::size_t i = n; i < n + kLanes; ++i) kept_sq_[i] = std::numeric_limits<S>::infinity();
+    std::size_t sum = 0;
+    for (std::size_t i = 0; i < n; i += kLanes) {
+      S own[kLanes];
+      Rank nearer[kLanes] = {};
+      std::copy_n(kept_sq_.data() + i, kLanes, own);
+      for (std::size_t j = 0; j < n; ++j) {
+        const S other = kept_sq_[j];
+        for (std::size_t l = 0; l < kLanes; ++l) nearer[l] += other < own[l] ? Rank(1) : Rank(0);
+      }
+      std::copy_n(nearer, kLanes, ranks_.data() + i);
+    }
+    for (std::size_t i = 0; i < n; ++i) {
+      sum += static_cast<std::size_t>(ranks_[i]);
+      sorted_[static_cast<std::size_t>(ranks_[i])] = kept_sq_[i];
+      at_[static_cast<std::size_t>(ranks_[i])] = kept_at_[i];
+    }
+    if (n > 0 && 2 * sum != n * (n - 1)) sort(tile);  // equal distances share a rank
+  }
+
+  /// Sort what is kept by distance, then by index.
+  void sort(const Tile<S>& tile) {
+    order_.clear();
+    for (std::size_t i = 0; i < kept_; ++i)
+      order_.push_back({{grid_.ids()[tile.at[kept_at_[i]]], kept_sq_[i]}, kept_at_[i]});
+    std::sort(order_.begin(), order_.end(),
+              [](const auto& a, const auto& b) { return Nearest<S>::before(a.first, b.first); });
+    for (std::size_t i = 0; i < kept_; ++i) sorted_[i] = order_[i].first.distance, at_[i] = order_[i].second;
+  }
+
+  using Rank = std::conditional_t<sizeof(S) == 4, std::int32_t, std::int64_t>;  // as wide as S, for the vectors' sake
+
+  const Grid<S>& grid_;
+  std::size_t k_, kept_ = 0;
+  S trial_sq_;
+  std::vector<S> all_, kept_sq_, sorted_;
+  std::vector<std::uint32_t> kept_at_, at_;
+  std::vector<Rank> ranks_;
+  Indices ids_;
+  std::vector<std::pair<Neighbor<S>, std::uint32_t>> order_;
+  Neighborhood<S> near_;
+};
+
+/// Candidates for points whose neighbours are not in the next cells: a kd-tree of the occupied cells finds enough of
+/// them to hold k points, and all that might hold nearer ones.
+template <typename S>
+class FarCells {
+ public:
+  explicit FarCells(const Grid<S>& grid) : grid_(grid), half_diagonal_(S(0.8661) * static_cast<S>(grid.cell())) {
+    grid.cells(0, grid.stored(), [&](const typename Grid<S>::Cell& c, std::size_t begin, std::size_t end) {
+      runs_.emplace_back(begin, end);
+      centers_.push_back(grid.center(c));
+    });
+    tree_.emplace(centers_);
+  }
+
+  /// Gather a tile that holds the k nearest points to q, or all those within `radius` (m).
+  void gather(const Vector3<S>& q, std::size_t k, S radius, Neighbors<S>& cells, Tile<S>& tile) const {
+    S reach = radius;  // no neighbour is farther
+    for (std::size_t m = 4;; m *= 2) {
+      tree_->knn(q, m, cells);
+      std::size_t points = 0, c = 0;
+      for (; c < cells.size() && points < k; ++c) points += size(cells[c].index);
+      if (points >= k) reach = std::min(reach, cells[c - 1].distance + half_diagonal_);
+      if (points >= k || m >= runs_.size() || cells.back().distance > radius + half_diagonal_) break;
+    }
+    const S rounding = S(8) * std::numeric_limits<S>::epsilon() * (q.cwiseAbs().maxCoeff() + half_diagonal_);
+    tile.clear();
+    tree_->visit(q, S(1.001) * (reach + half_diagonal_) + rounding, [&](Index c, S) {
+      const auto& run = runs_[static_cast<std::size_t>(c)];
+      tile.append(grid_, run.first, run.second);
+    });
+  }
+
+ private:
+  std::size_t size(Index c) const {
+    const auto& run = runs_[static_cast<std::size_t>(c)];
+    return run.second - run.first;
+  }
+
+  const Grid<S>& grid_;
+  S half_diagonal_;
+  std::vector<std::pair<std::size_t, std::size_t>> runs_;  // stored points of each occupied cell
+  std::vector<Vector3<S>> centers_;
+  std::optional<KdTree<S>> tree_;
+};
+
+/// body(i, neighbourhood) for the points of which all neighbours are found within two rings of cells; the stored places
+/// of the others.
+template <typename S, typename Body>
+Indices near_neighborhoods(const Grid<S>& grid, std::size_t k, S radius, S typical, int threads, const Body& body) {
+  const Stencil rings[] = {box_stencil(1), box_stencil(2)};
+  const std::size_t crowd = 32 * k + 1024;  // more candidates than are worth reading
+  std::vector<char> done(grid.stored(), 0);
+  for_cells(grid, threads, [&] {
+    return [&, tile = Tile<S>(), nearest = TileNearest<S>(grid, k, typical)](const typename Grid<S>::Cell& cell,
+                                                                             std::size_t begin, std::size_t end) mutable {
+      std::size_t left = end - begin;
+      for (int r = 1; r <= 2 && left > 0; ++r) {
+        tile.gather(grid, cell, rings[r - 1]);
+        if (tile.size > crowd) return;
+        for (std::size_t j = begin; j < end; ++j) {
+          if (done[j]) continue;
+          const Vector3<S> q = grid.stored_point(j);
+          const S reach = std::min(radius, static_cast<S>(grid.clearance(q, cell, r)));
+          const Neighborhood<S>& near = nearest(tile, q, reach);
+          if (near.size < k && reach < radius) continue;
+          body(grid.ids()[j], near);
+          done[j] = 1;
+          --left;
+        }
+      }
+    };
+  });
+  Indices far;
+  for (std::size_t j = 0; j < grid.stored(); ++j)
+    if (!done[j]) far.push_back(static_cast<Index>(j));
+  return far;
+}
+
+}  // namespace detail
+
+/// body(i, neighbourhood) for every finite point i of a cloud, in no particular order: its k >= 1 nearest points (itself
+/// included) that are at most `radius` away (m; infinite for all). A body writes only what belongs to point i.
+template <typename C, typename Body>
+void for_each_neighborhood(const C& cloud, std::size_t k, scalar_t<C> radius, int threads, const Body& body) {
+  using S = scalar_t<C>;
+  const S typical = detail::typical_distance(cloud, k);
+  const Grid<S> grid(cloud, std::min(S(1.25) * typical, S(1.00001) * radius));
+  const Indices far = detail::near_neighborhoods(grid, k, radius, typical, threads, body);
+  if (far.empty()) return;
+  const detail::FarCells<S> cells(grid);
+  parallel_chunks(far.size(), threads, 64, [&](std::size_t begin, std::size_t end) {
+    Tile<S> tile;
+    Neighbors<S> scratch;
+    detail::TileNearest<S> nearest(grid, k, typical);
+    for (std::size_t f = begin; f < end; ++f) {
+      const auto j = static_cast<std::size_t>(far[f]);
+      const Vector3<S> q = grid.stored_point(j);
+      cells.gather(q, k, radius, scratch, tile);
+      body(grid.ids()[j], nearest(tile, q, radius));
+    }
+  });
+}
+
+/// The k nearest points of every point, itself included, k a point and nearest first; -1 where there are fewer and for
+/// points that are not finite.
+template <typename C>
+Indices nearest_neighbors(const C& cloud, std::size_t k, int threads = 1) {
+  using S = scalar_t<C>;
+  Indices out(agrisee::size(cloud) * k, -1);
+  for_each_neighborhood(cloud, k, std::numeric_limits<S>::infinity(), threads, [&](Index i, const Neighborhood<S>& near) {
+    std::copy_n(near.ids, near.size, out.begin() + static_cast<std::ptrdiff_t>(static_cast<std::size_t>(i) * k));
+  });
+  return out;
+}
+
+}  // namespace agrisee

@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// @file
+/// One cell of a grid after another together with the points near it, copied side by side: what all points of the cell
+/// have in common is gathered once, and the loops over the candidates are straight, so that compilers vectorise them.
+#pragma once
+
+#include <agrisee/core/grid.hpp>
+#include <agrisee/core/parallel.hpp>
+
+#include <numeric>
+
+namespace agrisee {
+
+/// Candidates as a structure of arrays; not to be shared between threads.
+template <typename S>
+struct Tile {
+  std::vector<S> x, y, z;       ///< at least `size` long
+  std::vector<std::uint32_t> at;  ///< position among the grid's stored points
+  std::size_t size = 0;         ///< candidates
+  std::size_t inside = 0;       ///< points that are not listed because they lie within reach of the whole cell
+
+  /// The points of the stencil's cells about `c`.
+  void gather(const Grid<S>& grid, const typename Grid<S>::Cell& c, const Stencil& stencil) {
+    clear();
+    for (const StencilRow& row : stencil) {
+      const int cy = c[1] + row.dy, cz = c[0] + row.dz;
+      const auto [begin, end] = grid.run(c[2] - row.outer, c[2] + row.outer, cy, cz);
+      if (begin == end) continue;
+      auto hole = std::make_pair(end, end);
+      if (row.inner >= 0) hole = grid.run(c[2] - row.inner, c[2] + row.inner, cy, cz);
+      if (hole.first == hole.second) {
+        append(grid, begin, end);
+      } else {
+        append(grid, begin, hole.first);
+        append(grid, hole.second, end);
+        inside += hole.second - hole.first;
+      }
+    }
+  }
+
+  /// Squared distances (m2) from q to the candidates.
+  void distances_sq(const Vector3<S>& q, S* out) const {
+    const S qx = q.x(), qy = q.y(), qz = q.z();
+    for (std::size_t j = 0; j < size; ++j) {
+      const S dx = x[j] - qx, dy = y[j] - qy, dz = z[j] - qz;
+      out[j] = dx * dx + dy * dy + dz * dz;
+    }
+  }
+
+  void clear() { size = inside = 0; }
+
+  /// Add stored points [begin, end).
+  void append(const Grid<S>& grid, std::size_t begin, std::size_t end) {
+    const std::size_t more = end - begin;
+    if (size + more > x.size()) {
+      const std::size_t room = 2 * (size + more) + 64;
+      x.resize(room), y.resize(room), z.resize(room), at.resize(room);
+    }
+    std::copy_n(grid.x().data() + begin, more, x.data() + size);
+    std::copy_n(grid.y().data() + begin, more, y.data() + size);
+    std::copy_n(grid.z().data() + begin, more, z.data() + size);
+    std::iota(at.data() + size, at.data() + size + more, static_cast<std::uint32_t>(begin));
+    size += more;
+  }
+};
+
+/// make() a body a chunk, then body(cell, begin, end) for each occupied cell of the grid and its stored points
+/// [begin, end), on up to `threads` threads. A body writes only what belongs to its own points.
+template <typename S, typename Make>
+void for_cells(const Grid<S>& grid, int threads, Make&& make) {
+  parallel_chunks(grid.stored(), threads, 2048, [&](std::size_t begin, std::size_t end) {
+    auto body = make();
+    grid.cells(begin, end, body);
+  });
+}
+
+}  // namespace agrisee
