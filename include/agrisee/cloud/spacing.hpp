@@ -4,7 +4,7 @@
 /// fixed millimetres.
 #pragma once
 
-#include <agrisee/core/kdtree.hpp>
+#include <agrisee/core/all_neighbors.hpp>
 #include <agrisee/geometry/pca.hpp>
 
 #include <algorithm>
@@ -38,7 +38,8 @@ double estimate_spacing(const C& cloud, const Search& search, std::size_t sample
 /// The same with a search made for the purpose.
 template <typename C>
 double estimate_spacing(const C& cloud) {
-  return estimate_spacing(cloud, KdTree<scalar_t<C>>(cloud));
+  using S = scalar_t<C>;
+  return estimate_spacing(cloud, Grid<S>(cloud, detail::typical_distance(cloud, 9)));
 }
 
 /// Standard deviation (m) of the points about the surface they lie on: the median over points of the deviation from a

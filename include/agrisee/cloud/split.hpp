@@ -82,16 +82,12 @@ struct StageParameters {
   int min_cluster = 1;           ///< smaller clusters are noise
 };
 
-/// The stages' parameters for a cloud: as given, or where they are adaptive derived from its spacing; none for a cloud
-/// that has no spacing (no two different points).
-/// @param search a KdTree or Grid over the cloud
-template <typename S, typename Search>
-std::optional<StageParameters> stages_for(const PointCloud<S>& cloud, const SplitParameters& parameters,
-                                          const Search& search) {
+/// The stages' parameters for a cloud of such spacing (m, see estimate_spacing): as given, or derived from it where they
+/// are adaptive; none then for a cloud that has no spacing (no two different points).
+inline std::optional<StageParameters> stages_for(double spacing, const SplitParameters& parameters) {
   StageParameters stages{parameters.growing, parameters.clustering, static_cast<std::size_t>(parameters.min_residual),
                          1};
   if (!parameters.adaptive) return stages;
-  const double spacing = estimate_spacing(cloud, search);
   if (!(spacing > 0.0)) return std::nullopt;
   const double smallest = 4.0 * kPi * parameters.bodies.radius_min * parameters.bodies.radius_min;
   const double least = parameters.min_region * smallest / (spacing * spacing);
@@ -235,7 +231,7 @@ Split split(const PointCloud<S>& cloud, const SplitParameters& parameters = {}, 
   out.regions.assign(cloud.size(), 0);
   if (cloud.empty()) return out;
 
-  const auto stages = stages_for(cloud, parameters, KdTree<S>(cloud));
+  const auto stages = stages_for(parameters.adaptive ? estimate_spacing(cloud) : 0.0, parameters);
   if (!stages) return out;
   const RegionGrowingParameters& growing = stages->growing;
 
@@ -312,7 +308,7 @@ Split track(const PointCloud<S>& cloud, const std::vector<FoundBody>& known, con
   if (cloud.empty()) return out;
   const BodyParameters& bodies = parameters.bodies;
   const Grid<S> grid(cloud, static_cast<S>(0.5 * bodies.radius_min));
-  const auto stages = stages_for(cloud, parameters, grid);
+  const auto stages = stages_for(estimate_spacing(cloud, grid), parameters);
   if (!stages) return out;
   std::vector<BodyCandidate> candidates;
   for (const FoundBody& k : known) candidates.push_back({k.fit.body, k.found_by});

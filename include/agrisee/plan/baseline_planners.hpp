@@ -33,7 +33,10 @@ class FixedPlanner : public Planner {
         }
       }
       first_ = false;
-      if (!view) break;
+      if (!view) {
+        complete_ = false;
+        break;
+      }
       directions_.erase(directions_.begin() + static_cast<std::ptrdiff_t>(best));
       return view;
     }
@@ -41,7 +44,7 @@ class FixedPlanner : public Planner {
   }
 
   void refused() override {}
-  StopReason stop_reason() const override { return found_ ? StopReason::max_views : StopReason::no_reachable_view; }
+  StopReason stop_reason() const override { return complete_ ? StopReason::max_views : StopReason::no_reachable_view; }
 
  private:
   void plan(const Joints& current, const Reach& reach) {
@@ -68,7 +71,7 @@ class FixedPlanner : public Planner {
       last = reachable[pick];
       directions_.push_back(last);
     }
-    found_ = !directions_.empty();
+    complete_ = static_cast<int>(directions_.size()) == count_;
   }
 
   Aabb volume_;
@@ -76,7 +79,8 @@ class FixedPlanner : public Planner {
   int count_;
   ViewRequest band_;
   std::vector<Eigen::Vector3d> directions_;
-  bool planned_ = false, first_ = true, found_ = false;
+  bool planned_ = false, first_ = true;
+  bool complete_ = false;  // all `count` views could be taken
 };
 
 /// Random reachable views of the volume's centre, from the front first.

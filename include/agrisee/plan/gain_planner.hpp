@@ -25,8 +25,8 @@ struct GainPlannerParameters {
   double distance_min = 0.27;  ///< nearest (m)
   double distance_max = 0.55;  ///< farthest (m)
   double dwell = 1.5;          ///< time that a view costs beside the move (s): settling, exposure, computing
-  int lookahead = 4;           ///< views planned ahead, so that the nearest of them comes first; 1 = none
-  double patience = 0.6;       ///< but only where it scores at least this share of the best
+  int lookahead = 6;           ///< views planned ahead, so that the nearest of them comes first; 1 = none
+  double patience = 0.5;       ///< but only where it scores at least this share of the best
   double min_gain = 0.0015;    ///< stop when the best view promises less than this share of the known fruit surface
   ExpectedSurfaceParameters expected;
 
@@ -76,6 +76,7 @@ class GainPlanner : public Planner {
 
   void observe(const Progress& progress) override {
     model_.update(progress, split_, free_space_);
+    ranked_.clear();
     refused_.clear();
     refused_first_ = 0;
   }
@@ -101,41 +102,20 @@ class GainPlanner : public Planner {
         if (auto view = reach(wish, current)) candidates_.push_back({wish, std::move(*view)});
       }
     }
-    std::vector<Scored> scored;
-    for (const Candidate& c : candidates_) consider(scored, c.request, c.view, current);
-    std::vector<char> can_be_seen(model_.areas().size(), 0);
-    for (const Scored& s : scored)
-      for (std::uint32_t i : s.shown) can_be_seen[i] = 1;
-    completeness_ = model_.completeness(can_be_seen);
-    if (scored.empty()) return stop(StopReason::no_reachable_view);
-    // The best, by the shortest way from where the arm stands now, and more finely around them.
-    const auto better = [](const Scored& a, const Scored& b) { return a.score > b.score; };
-    std::stable_sort(scored.begin(), scored.end(), better);
-    const double step = 0.5 * std::sqrt(4.0 * kPi / parameters_.candidates);
-    for (std::size_t i = 0, n = std::min(kRefined, scored.size()); i < n; ++i) {
-      if (const auto view = reach(scored[i].request, current)) rate(scored[i], *view, current);
-      const ViewRequest around = scored[i].request;
-      const Eigen::Vector3d a = any_orthogonal<double>(around.direction), b = around.direction.cross(a);
-      for (int k = 0; k < 6; ++k) {
-        const double angle = kPi / 3.0 * k;
-        ViewRequest wish = around;
-        wish.direction = (around.direction + step * (std::cos(angle) * a + std::sin(angle) * b)).normalized();
-        if (const auto view = reach(wish, current)) consider(scored, wish, *view, current);
-      }
+    if (ranked_.empty()) {
+      if (const auto reason = rank(current, reach)) return stop(*reason);
+    } else {  // a view was refused: the others have not changed
+      const auto refused = [&](const Scored& s) { return was_refused(s.request); };
+      ranked_.erase(std::remove_if(ranked_.begin(), ranked_.end(), refused), ranked_.end());
+      for (Scored& s : ranked_) s.score = s.view.gain / (parameters_.dwell + way(s.view, current));
+      sort_ranked();
+      if (ranked_.empty()) return stop(StopReason::no_reachable_view);
     }
-    std::stable_sort(scored.begin(), scored.end(), better);
-    const double least = parameters_.min_gain * std::max(model_.area(), 1e-6);
-    const double most = std::max_element(scored.begin(), scored.end(), [](const Scored& a, const Scored& b) {
-                          return a.view.gain < b.view.gain;
-                        })->view.gain;
-    scored.erase(std::remove_if(scored.begin(), scored.end(), [&](const Scored& s) { return s.view.gain < least; }),
-                 scored.end());
-    if (scored.empty()) return stop(most > 0.0 ? StopReason::low_gain : StopReason::no_frontier);
-    Scored& chosen = scored[nearest_of_next(scored, current, least)];
+    Scored& chosen = ranked_[nearest_of_next(ranked_, current, least_gain())];
     // From where the arm stands now, the way there may be another.
     if (const auto view = reach(chosen.request, current)) rate(chosen, *view, current);
     last_ = chosen.request;
-    return std::move(chosen.view);
+    return chosen.view;
   }
 
   void refused() override {
@@ -186,6 +166,45 @@ class GainPlanner : public Planner {
     });
   }
 
+  /// The least gain (m2) that is worth a view.
+  double least_gain() const { return parameters_.min_gain * std::max(model_.area(), 1e-6); }
+
+  void sort_ranked() {
+    std::stable_sort(ranked_.begin(), ranked_.end(),
+                     [](const Scored& a, const Scored& b) { return a.score > b.score; });
+  }
+
+  /// Fill `ranked_` with the views worth taking, best first; why there is none otherwise.
+  std::optional<StopReason> rank(const Joints& current, const Reach& reach) {
+    for (const Candidate& c : candidates_) consider(c.request, c.view, current);
+    std::vector<char> can_be_seen(model_.areas().size(), 0);
+    for (const Scored& s : ranked_)
+      for (std::uint32_t i : s.shown) can_be_seen[i] = 1;
+    completeness_ = model_.completeness(can_be_seen);
+    if (ranked_.empty()) return StopReason::no_reachable_view;
+    // The best, by the shortest way from where the arm stands now, and more finely around them.
+    sort_ranked();
+    const double step = 0.5 * std::sqrt(4.0 * kPi / parameters_.candidates);
+    for (std::size_t i = 0, n = std::min(kRefined, ranked_.size()); i < n; ++i) {
+      const ViewRequest around = ranked_[i].request;
+      if (const auto view = reach(around, current)) rate(ranked_[i], *view, current);
+      const Eigen::Vector3d a = any_orthogonal<double>(around.direction), b = around.direction.cross(a);
+      for (int k = 0; k < 6; ++k) {
+        const double angle = kPi / 3.0 * k;
+        ViewRequest wish = around;
+        wish.direction = (around.direction + step * (std::cos(angle) * a + std::sin(angle) * b)).normalized();
+        if (const auto view = reach(wish, current)) consider(wish, *view, current);
+      }
+    }
+    const auto shows = [](const Scored& s) { return s.view.gain > 0.0; };
+    const bool any = std::any_of(ranked_.begin(), ranked_.end(), shows);
+    const auto poor = [least = least_gain()](const Scored& s) { return s.view.gain < least; };
+    ranked_.erase(std::remove_if(ranked_.begin(), ranked_.end(), poor), ranked_.end());
+    sort_ranked();
+    if (ranked_.empty()) return any ? StopReason::low_gain : StopReason::no_frontier;
+    return std::nullopt;
+  }
+
   void rate(Scored& s, const ReachableView& view, const Joints& current) const {
     s.view = view;
     s.shown = model_.shown(view.world_T_optical);
@@ -194,12 +213,11 @@ class GainPlanner : public Planner {
     s.score = s.view.gain / (parameters_.dwell + way(view, current));
   }
 
-  void consider(std::vector<Scored>& scored, const ViewRequest& wish, const ReachableView& view,
-                const Joints& current) const {
+  void consider(const ViewRequest& wish, const ReachableView& view, const Joints& current) {
     if (was_refused(wish)) return;
-    scored.emplace_back();
-    scored.back().request = wish;
-    rate(scored.back(), view, current);
+    ranked_.emplace_back();
+    ranked_.back().request = wish;
+    rate(ranked_.back(), view, current);
   }
 
   /// Joint-space way to a view, in half turns; 0 where the caller moves without telling.
@@ -271,6 +289,7 @@ class GainPlanner : public Planner {
   ExpectedSurface model_;
   std::vector<Candidate> candidates_;
   Aabb extent_;  // of the bodies when the candidates were made
+  std::vector<Scored> ranked_;  // views worth taking after the last frame, best first; empty before they are looked at
   std::vector<ViewRequest> refused_;
   std::optional<ViewRequest> last_;
   std::optional<Completeness> completeness_;

@@ -80,7 +80,7 @@ inline void judge_stages(const Subject& subject, const ScanResult& result, const
                          CellRecord& record, int threads) {
   const Cloud& cloud = result.cloud;
   if (cloud.empty()) return;
-  const auto stages = stages_for(cloud, parameters, KdTree<float>(cloud));
+  const auto stages = stages_for(estimate_spacing(cloud), parameters);
   if (!stages) return;
   Labels regions = grow_regions(cloud, cloud.normals, stages->growing,
                                 Grid<float>(cloud, static_cast<float>(stages->growing.radius)));
