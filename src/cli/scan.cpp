@@ -58,7 +58,8 @@ class Recorder {
   /// After every view. What a planner tells is as of before the view.
   void observe(const Pipeline& pipeline, const Cloud& raw) {
     if (!scanned_.empty()) believe(pipeline.completeness());
-    const Flags covered = study::detail::cover(samples_, raw.points, study::MetricParameters().threshold, threads_).covered;
+    const double near = study::MetricParameters().threshold;
+    const study::Flags covered = study::detail::cover(samples_, raw.points, near, threads_).covered;
     scanned_.push_back(static_cast<double>(std::count(covered.begin(), covered.end(), 1)) /
                        static_cast<double>(std::max<std::size_t>(covered.size(), 1)));
     merged_ = pipeline.merged();

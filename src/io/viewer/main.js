@@ -28,7 +28,7 @@ const name = run.scene || 'Scan';
 document.title = `${name} \u2013 AgriSEE`;
 $('scene').textContent = name;
 const sensor = run.noise && run.noise !== 'none' ? `noise ${run.noise}` : '';
-$('made').textContent = ['AgriSEE ' + run.version, `preset ${run.preset}`, n ? `planner ${run.planner}` : '', n ? sensor : '', n ? `seed ${run.seed}` : ''].filter(Boolean).join(' \u00b7 ');
+$('made').textContent = ['AgriSEE ' + run.version, `preset ${run.preset}`, n ? `planner ${run.planner}` : '', n ? sensor : '', n ? `seed ${run.seed}` : ''].filter(Boolean).map((t) => t.replace(/ /g, '\u00a0')).join(' \u00b7 ');
 const reachable = data.fruits.filter((f) => f.reachable).length;
 const facts = [[fixed(data.fruits.length), 'fruit'], [fixed(run.points.filtered), 'points'], [seconds(run.seconds.total), 'of computing']];
 if (n) facts.splice(1, 0, [fixed(n), n === 1 ? 'view' : 'views']);
