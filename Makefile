@@ -25,7 +25,7 @@ demo: build
 	@$(AGRISEE) make-truss --total 7 --hidden 1 --seed 1 -o demo/scene --force
 	@$(AGRISEE) scan demo/scene/scene.yaml -o demo/result --noise l515 --seed 1 --force
 	@$(AGRISEE) evaluate demo/scene/scene.yaml demo/result
-	@echo "Picture: demo/result/truss.png"
+	@echo "Picture: demo/result/truss.png, report for a browser: demo/result/report.html"
 
 test:
 	@cmake/packages.sh build test

@@ -60,7 +60,7 @@ void make_folder(const std::string& folder) {
 
 void prepare_output(const std::string& folder, bool force) {
   constexpr const char* kResultFiles[] = {"run.json",    "views.csv",  "cloud.ply", "cloud_raw.ply",
-                                          "fruits.json", "fruits.csv", "truss.png"};
+                                          "fruits.json", "fruits.csv", "truss.png", "report.html"};
   std::error_code error;
   for (const char* name : kResultFiles)
     if (!force && fs::exists(fs::path(folder) / name, error))

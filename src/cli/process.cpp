@@ -3,6 +3,7 @@
 #include <agrisee/io/cloud_file.hpp>
 #include <agrisee/io/parameters.hpp>
 #include <agrisee/io/render.hpp>
+#include <agrisee/io/report_html.hpp>
 #include <agrisee/process.hpp>
 #include <agrisee/version.hpp>
 
@@ -62,6 +63,7 @@ int run_process(const ProcessOptions& options) {
   info.parameters_json = io::parameters_to_json(parameters);
   io::write_result(options.output, result, workcell, info);
   io::write_picture(std::filesystem::path(options.output) / "truss.png", result, workcell);
+  io::write_report_html(std::filesystem::path(options.output) / "report.html", result, workcell, info);
   print_summary(result, options.output, options.json);
   return kSuccess;
 }

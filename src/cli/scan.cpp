@@ -3,13 +3,19 @@
 #include <agrisee/io/parameters.hpp>
 #include <agrisee/io/ply.hpp>
 #include <agrisee/io/render.hpp>
+#include <agrisee/io/report_html.hpp>
 #include <agrisee/io/scene.hpp>
+#include <agrisee/see/density.hpp>
+#include <agrisee/study/evaluate.hpp>
 #include <agrisee/study/greedy_planner.hpp>
 #include <agrisee/study/simulated_scan.hpp>
 #include <agrisee/version.hpp>
 
+#include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <iostream>
+#include <limits>
 #include <memory>
 #include <unistd.h>
 
@@ -40,6 +46,54 @@ void show_progress(const Pipeline& pipeline, int budget) {
   }
 }
 
+/// Follows a scan for its report: what the planner believes to have seen, what was seen in truth, and SEE++'s frontier.
+class Recorder {
+ public:
+  Recorder(const Scene& scene, const Parameters& parameters, int threads) : parameters_(parameters), threads_(threads) {
+    try {
+      samples_ = study::fruit_samples(scene);
+    } catch (const InputError&) {  // fruit without a surface can be scanned, but not be told of
+    }
+  }
+  /// After every view. What a planner tells is as of before the view.
+  void observe(const Pipeline& pipeline, const Cloud& raw) {
+    if (!scanned_.empty()) believe(pipeline.completeness());
+    const double near = study::MetricParameters().threshold;
+    const study::Flags covered = study::detail::cover(samples_, raw.points, near, threads_).covered;
+    scanned_.push_back(static_cast<double>(std::count(covered.begin(), covered.end(), 1)) /
+                       static_cast<double>(std::max<std::size_t>(covered.size(), 1)));
+    merged_ = pipeline.merged();
+  }
+  /// What a report shows of the scan that ended with this result.
+  io::ScanHistory history(const ScanResult& result) {
+    io::ScanHistory history;
+    if (!scanned_.empty()) believe(result.completeness);
+    const auto told = [](double value) { return std::isfinite(value); };
+    if (std::any_of(seen_.begin(), seen_.end(), told))
+      history.curves = {{"seen, as the planner believes", seen_}, {"within the arm's sight", observable_}};
+    if (samples_.size() > 0 && !scanned_.empty()) history.curves.push_back({"seen in truth", scanned_});
+    if (parameters_.planner != "see" || result.views.empty()) return history;
+    see::DensityMap<float> map(parameters_.see, 0.0);
+    map.insert(merged_, 0, threads_);
+    for (const Index i : map.of_class(see::PointClass::frontier))
+      history.frontier.push_back(map.cloud().points[static_cast<std::size_t>(i)]);
+    return history;
+  }
+
+ private:
+  void believe(const std::optional<Completeness>& completeness) {
+    constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
+    seen_.push_back(completeness ? completeness->seen : kUnknown);
+    observable_.push_back(completeness ? completeness->observable : kUnknown);
+  }
+
+  Parameters parameters_;
+  int threads_;
+  study::Samples samples_;
+  std::vector<double> seen_, observable_, scanned_;
+  Cloud merged_;
+};
+
 int run_scan(const ScanOptions& options) {
   Parameters parameters = parameters_of(options);
   const bool greedy = options.planner == "greedy";  // it needs the scene's truth, so it is no parameter
@@ -67,9 +121,12 @@ int run_scan(const ScanOptions& options) {
   const fs::path folder = options.output;
 
   bool any_view = false;
+  Recorder recorder(file.scene, parameters, simulation.threads);
   simulation.on_view = [&](const Pipeline& pipeline) {
+    const Cloud raw = pipeline.raw();
     io::write_views(folder / "views.csv", pipeline.views());
-    io::write_raw_ply(folder / "cloud_raw.ply", pipeline.raw());
+    io::write_raw_ply(folder / "cloud_raw.ply", raw);
+    recorder.observe(pipeline, raw);
     any_view = true;
     show_progress(pipeline, parameters.max_views);
   };
@@ -93,6 +150,7 @@ int run_scan(const ScanOptions& options) {
   info.parameters_json = io::parameters_to_json(parameters);
   io::write_result(folder, result, file.workcell, info);
   io::write_picture(folder / "truss.png", result, file.workcell);
+  io::write_report_html(folder / "report.html", result, file.workcell, info, recorder.history(result));
   print_summary(result, options.output, options.json);
   if (result.views.empty()) {
     std::cerr << "agrisee: no view could be taken (" << to_string(result.stop_reason)
@@ -120,7 +178,7 @@ void add_scan(CLI::App& app, Run& run) {
       "  agrisee scan truss/scene.yaml -o result --noise l515 --seed 1\n"
       "  agrisee scan truss/scene.yaml -o paper --preset paper --noise gaussian:0.002 --max-views 20\n"
       "  agrisee scan cherries/scene.yaml -o result --radius 0.01,0.02\n"
-      "DIR holds cloud.ply, cloud_raw.ply, views.csv, fruits.json, fruits.csv, run.json and truss.png.");
+      "DIR holds cloud.ply, cloud_raw.ply, views.csv, fruits.json, fruits.csv, run.json, truss.png and report.html.");
   command->callback([options, &run] { run = [options] { return run_scan(*options); }; });
 }
 

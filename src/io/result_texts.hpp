@@ -9,6 +9,8 @@
 
 namespace agrisee::io {
 
+/// @throws InputError when labels, normals or views are not one per point
+void check_result(const ScanResult& result);
 std::string views_text(const std::vector<View>& views);
 std::string fruits_text(const std::vector<Fruit>& fruits);
 std::string fruits_csv_text(const std::vector<Fruit>& fruits);

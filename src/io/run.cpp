@@ -55,6 +55,15 @@ std::string run_text(const ScanResult& result, const Workcell& workcell, const R
   return dump(j);
 }
 
+void check_result(const ScanResult& result) {
+  check_input(result.raw.views.empty() || result.raw.views.size() == result.raw.size(),
+              "write_result: not one view per merged point");
+  check_input(result.labels.empty() || result.labels.size() == result.cloud.size(),
+              "write_result: not one label per point");
+  check_input(result.cloud.normals.empty() || result.cloud.normals.size() == result.cloud.size(),
+              "write_result: not one normal per point");
+}
+
 void write_run(const std::filesystem::path& path, const ScanResult& result, const Workcell& workcell,
                const RunInfo& info) {
   write_file(path, run_text(result, workcell, info));
@@ -62,12 +71,7 @@ void write_run(const std::filesystem::path& path, const ScanResult& result, cons
 
 void write_result(const std::filesystem::path& folder, const ScanResult& result, const Workcell& workcell,
                   const RunInfo& info) {
-  check_input(result.raw.views.empty() || result.raw.views.size() == result.raw.size(),
-              "write_result: not one view per merged point");
-  check_input(result.labels.empty() || result.labels.size() == result.cloud.size(),
-              "write_result: not one label per point");
-  check_input(result.cloud.normals.empty() || result.cloud.normals.size() == result.cloud.size(),
-              "write_result: not one normal per point");
+  check_result(result);
   // Everything is composed before anything is written.
   const std::string views = views_text(result.views), fruits = fruits_text(result.fruits),
                     table = fruits_csv_text(result.fruits), run = run_text(result, workcell, info);

@@ -57,7 +57,7 @@ case $3 in
     small_sensor t/scene.yaml
     for threads in 1 2; do
       expect 0 'view 1' scan t/scene.yaml -o "r$threads" --noise l515 --seed 5 --threads $threads --max-views 6
-      for f in cloud.ply cloud_raw.ply views.csv fruits.json fruits.csv run.json truss.png; do
+      for f in cloud.ply cloud_raw.ply views.csv fruits.json fruits.csv run.json truss.png report.html; do
         [ -s "r$threads/$f" ] || fail "$f is missing"
       done
     done
@@ -78,6 +78,35 @@ PY
     expect 1 'input' process r1/cloud.ply -o r1 --force
     expect 0 '' process r1/cloud_raw.ply -o raw --views r1/views.csv --radius 0.02,0.05 && grep -qE '^[45] fruit' out.txt || fail "process of the raw points misses fruit"
     expect 1 'excludes' process r1/cloud_raw.ply -o raw2 --views r1/views.csv --viewpoint 0,0,0
+    ;;
+  report)
+    "$agrisee" make-truss --total 3 --hidden 0 --seed 1 -o t >/dev/null || fail make-truss
+    small_sensor t/scene.yaml
+    for threads in 1 2; do
+      expect 0 '' scan t/scene.yaml -o "r$threads" --noise l515 --seed 5 --threads $threads --max-views 2
+    done
+    expect 0 '' process r1/cloud.ply -o p --viewpoint 0,0,0.2
+    expect 1 'report.html' process r1/cloud.ply -o "$(rm -rf only && mkdir only && cp p/report.html only && echo only)"
+    python3 - <<'PY' || fail "the report is not what the result is"
+import json, os, re
+def data(folder):
+    page = open(folder + "/report.html", encoding="ascii").read()
+    assert page.count("</html>") == 1 and os.path.getsize(folder + "/report.html") < 3e6
+    return json.loads(re.search(r'<script id="data" type="application/json">(.*?)</script>', page, re.S).group(1))
+a, b, p = data("r1"), data("r2"), data("p")
+assert a["fruits"] == json.load(open("r1/fruits.json")) and a["run"] == json.load(open("r1/run.json"))
+assert len(a["views"]) == 2 and all(len(v["arm"]) == len(a["arm_radii"]) for v in a["views"])
+names = [c["name"] for c in a["curves"]]
+assert len(names) == 3 and "seen in truth" in names, names
+truth = a["curves"][2]["values"]
+assert 0.1 < truth[0] < truth[1] < 1 and abs(a["curves"][0]["values"][1] - truth[1]) < 0.1, a["curves"]
+assert p["views"] == [] and p["curves"] == [] and p["cloud"]["count"] > 0.9 * a["cloud"]["count"]
+for d in a, b:  # what may differ: times, and the number of threads
+    d["run"].pop("seconds"), d["run"].pop("threads")
+    for v in d["views"]:
+        v.pop("plan_seconds")
+assert a == b, "depends on the number of threads"
+PY
     ;;
   paper)
     "$agrisee" make-truss --total 4 --hidden 1 --seed 3 -o t >/dev/null || fail make-truss
