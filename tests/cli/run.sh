@@ -99,7 +99,8 @@ assert len(a["views"]) == 2 and all(len(v["arm"]) == len(a["arm_radii"]) for v i
 names = [c["name"] for c in a["curves"]]
 assert len(names) == 3 and "seen in truth" in names, names
 truth = a["curves"][2]["values"]
-assert 0.1 < truth[0] < truth[1] < 1 and abs(a["curves"][0]["values"][1] - truth[1]) < 0.1, a["curves"]
+# Nothing is planned after the last view that the budget allows, so the planner's belief is compared after the first.
+assert 0.1 < truth[0] < truth[1] < 1 and abs(a["curves"][0]["values"][0] - truth[0]) < 0.1, a["curves"]
 assert p["views"] == [] and p["curves"] == [] and p["cloud"]["count"] > 0.9 * a["cloud"]["count"]
 for d in a, b:  # what may differ: times, and the number of threads
     d["run"].pop("seconds"), d["run"].pop("threads")
