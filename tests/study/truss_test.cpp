@@ -113,7 +113,8 @@ void check_truss(const Truss& truss, int total, int hidden, const Eigen::Vector3
   CHECK(stem.cls == ObjectClass::stem);
   const Bvh stem_tree(stem.mesh);
   for (const TrueFruit& fruit : truss.truth.fruits) {
-    const Eigen::Vector3d calyx = fruit.center + 0.9 * fruit.radii[2] * *fruit.growth_axis;
+    const double polar = 1.0 / (fruit.axes.transpose() * *fruit.growth_axis).cwiseQuotient(fruit.radii).norm();
+    const Eigen::Vector3d calyx = fruit.center + 0.9 * polar * *fruit.growth_axis;
     CHECK(stem_tree.nearest(calyx.cast<float>())->distance < 0.12 * fruit.radii[0]);
   }
 }
