@@ -4,7 +4,7 @@
 #include <agrisee/sensor/l515.hpp>
 
 #ifdef PEERS_EMBREE
-#include <embree3/rtcore.h>
+#include "../../tests/support/embree_scene.hpp"
 #endif
 
 #include "../../tests/support/shapes.hpp"
@@ -44,37 +44,6 @@ std::vector<float> our_frame(int threads) {
 }
 
 #ifdef PEERS_EMBREE
-class Embree {
- public:
-  Embree(int threads, RTCBuildQuality quality)
-      : device_(rtcNewDevice(("threads=" + std::to_string(threads)).c_str())), scene_(rtcNewScene(device_)) {
-    const Mesh& mesh = spheres();
-    RTCGeometry geometry = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_TRIANGLE);
-    auto* v = static_cast<float*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
-                                                          3 * sizeof(float), mesh.vertices.size()));
-    auto* t = static_cast<unsigned*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
-                                                             3 * sizeof(unsigned), mesh.triangles.size()));
-    for (const Eigen::Vector3f& p : mesh.vertices) v = std::copy(p.data(), p.data() + 3, v);
-    for (const auto& triangle : mesh.triangles) t = std::copy(triangle.begin(), triangle.end(), t);
-    rtcCommitGeometry(geometry);
-    rtcAttachGeometry(scene_, geometry);
-    rtcReleaseGeometry(geometry);
-    rtcSetSceneBuildQuality(scene_, quality);
-    rtcCommitScene(scene_);
-  }
-  ~Embree() {
-    rtcReleaseScene(scene_);
-    rtcReleaseDevice(device_);
-  }
-  Embree(const Embree&) = delete;
-  Embree& operator=(const Embree&) = delete;
-  RTCScene scene() const { return scene_; }
-
- private:
-  RTCDevice device_;
-  RTCScene scene_;
-};
-
 /// The directions of all pixels, made before anything is timed.
 const std::vector<Eigen::Vector3f>& rays() {
   static const std::vector<Eigen::Vector3f> all = [] {
@@ -89,9 +58,14 @@ const std::vector<Eigen::Vector3f>& rays() {
 }
 
 const RTCScene& embree_scene() {
-  static const Embree embree(1, RTC_BUILD_QUALITY_MEDIUM);
+  static const shapes::EmbreeScene embree(spheres(), 1, RTC_BUILD_QUALITY_MEDIUM, RTC_SCENE_FLAG_NONE);
   static const RTCScene scene = embree.scene();
   return scene;
+}
+
+/// Whether Embree makes the scene.
+bool built(int threads, RTCBuildQuality quality) {
+  return shapes::EmbreeScene(spheres(), threads, quality, RTC_SCENE_FLAG_NONE).scene() != nullptr;
 }
 
 std::vector<float> embree_single(int threads) {
@@ -167,9 +141,9 @@ int main(int argc, char** argv) {
     peers::add("depth_frame", "Embree packets", pixels, threads, embree_packets,
                [](const auto& range) { same_ranges(range, "depth frame of Embree's packets"); });
     peers::add("bvh_build", "Embree medium", triangles, threads,
-               [](int t) { return Embree(t, RTC_BUILD_QUALITY_MEDIUM).scene() != nullptr; }, peers::Unchecked());
+               [](int t) { return built(t, RTC_BUILD_QUALITY_MEDIUM); }, peers::Unchecked());
     peers::add("bvh_build", "Embree low", triangles, threads,
-               [](int t) { return Embree(t, RTC_BUILD_QUALITY_LOW).scene() != nullptr; }, peers::Unchecked());
+               [](int t) { return built(t, RTC_BUILD_QUALITY_LOW); }, peers::Unchecked());
 #endif
     if (threads == 1)
       peers::add("bvh_build", "ours", triangles, threads, [](int) { return Bvh(spheres()).size(); }, peers::Unchecked());

@@ -67,7 +67,8 @@ class Recorder {
   /// What a report shows of the scan that ended with this result.
   io::ScanHistory history(const ScanResult& result) {
     io::ScanHistory history;
-    if (!scanned_.empty()) believe(result.completeness);
+    // After a last view that the budget ended no belief was formed.
+    if (!scanned_.empty()) believe(result.stop_reason == StopReason::max_views ? std::nullopt : result.completeness);
     const auto told = [](double value) { return std::isfinite(value); };
     if (std::any_of(seen_.begin(), seen_.end(), told))
       history.curves = {{"seen, as the planner believes", seen_}, {"within the arm's sight", observable_}};

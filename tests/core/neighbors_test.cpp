@@ -2,63 +2,17 @@
 // Every neighbour query of every search equals brute force, ties and awkward clouds included.
 #include <agrisee/core/grid.hpp>
 #include <agrisee/core/kdtree.hpp>
-#include <agrisee/core/random.hpp>
 
 #include "catch.hpp"
+#include "support/clouds.hpp"
 
 using namespace agrisee;
 
 namespace {
 
-template <typename S>
-using Points = std::vector<Vector3<S>>;
-
-template <typename S>
-Points<S> cloud_of(const std::string& kind, std::size_t n) {
-  Rng rng(7);
-  Points<S> p;
-  const auto random = [&](double scale) {
-    return Vector3<S>((Eigen::Vector3d(rng.uniform(), rng.uniform(), rng.uniform()) * scale).cast<S>());
-  };
-  if (kind == "random")
-    for (std::size_t i = 0; i < n; ++i) p.push_back(random(0.3));
-  if (kind == "gridded")
-    for (int x = 0; x < 8; ++x)
-      for (int y = 0; y < 8; ++y)
-        for (int z = 0; z < 8; ++z) p.push_back(Vector3<S>(S(x), S(y), S(z)) * S(0.01));
-  if (kind == "duplicated")
-    for (std::size_t i = 0; i < n; ++i) p.push_back(i % 3 ? p[i - 1] : random(0.3));
-  if (kind == "clustered")
-    for (std::size_t i = 0; i < n; ++i)
-      p.push_back(Vector3<S>(random(0.001) + Vector3<S>::Constant(S(i % 4) * S(10))));
-  if (kind == "equal") p.assign(n, Vector3<S>(S(0.1), S(0.2), S(0.3)));
-  if (kind == "line")
-    for (std::size_t i = 0; i < n; ++i) p.push_back(Vector3<S>(S(i) * S(0.001), 0, 0));
-  if (kind == "outliers") {
-    for (std::size_t i = 0; i < n; ++i) p.push_back(random(0.3));
-    p.push_back(Vector3<S>::Constant(S(1e6)));
-    p.push_back(Vector3<S>::Constant(S(-1e5)));
-  }
-  if (kind == "nan") {
-    for (std::size_t i = 0; i < n; ++i) p.push_back(random(0.3));
-    p[3].x() = std::numeric_limits<S>::quiet_NaN();
-    p[n / 2].y() = std::numeric_limits<S>::infinity();
-  }
-  if (kind == "one") p.push_back(Vector3<S>::Zero());
-  return p;
-}
-
-template <typename S>
-Neighbors<S> brute(const Points<S>& cloud, const Vector3<S>& q, S r_sq) {
-  Neighbors<S> out;
-  for (std::size_t i = 0; i < cloud.size(); ++i) {
-    const S d_sq = distance_sq<S>(cloud[i], q);
-    if (is_finite(cloud[i]) && d_sq <= r_sq) out.push_back({static_cast<Index>(i), d_sq});
-  }
-  std::sort(out.begin(), out.end(), detail::Nearest<S>::before);
-  for (auto& n : out) n.distance = std::sqrt(n.distance);
-  return out;
-}
+using shapes::brute;
+using shapes::cloud_of;
+using shapes::Points;
 
 template <typename S, typename Search>
 void check_search(const Points<S>& cloud, const Search& search, S r) {
@@ -100,8 +54,7 @@ void check_all(const std::string& kind) {
 }  // namespace
 
 TEST_CASE("neighbour searches equal brute force") {
-  const std::string kind =
-      GENERATE(as<std::string>{}, "random", "gridded", "duplicated", "clustered", "equal", "line", "outliers", "nan", "one", "empty");
+  const std::string kind = GENERATE(from_range(shapes::cloud_kinds()));
   INFO(kind);
   check_all<float>(kind);
   check_all<double>(kind);

@@ -5,9 +5,8 @@
 #include <agrisee/geometry/primitives.hpp>
 #include <agrisee/sensor/raycast.hpp>
 
-#include <embree3/rtcore.h>
-
 #include "catch.hpp"
+#include "support/embree_scene.hpp"
 #include "support/shapes.hpp"
 
 using namespace agrisee;
@@ -16,26 +15,7 @@ namespace {
 
 class Embree {
  public:
-  explicit Embree(const Mesh& mesh) : device_(rtcNewDevice("threads=1")), scene_(rtcNewScene(device_)) {
-    rtcSetSceneFlags(scene_, RTC_SCENE_FLAG_ROBUST);
-    RTCGeometry geometry = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_TRIANGLE);
-    auto* v = static_cast<float*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
-                                                          3 * sizeof(float), mesh.vertices.size()));
-    auto* t = static_cast<unsigned*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
-                                                             3 * sizeof(unsigned), mesh.triangles.size()));
-    for (const Eigen::Vector3f& p : mesh.vertices) v = std::copy(p.data(), p.data() + 3, v);
-    for (const auto& triangle : mesh.triangles) t = std::copy(triangle.begin(), triangle.end(), t);
-    rtcCommitGeometry(geometry);
-    rtcAttachGeometry(scene_, geometry);
-    rtcReleaseGeometry(geometry);
-    rtcCommitScene(scene_);
-  }
-  ~Embree() {
-    rtcReleaseScene(scene_);
-    rtcReleaseDevice(device_);
-  }
-  Embree(const Embree&) = delete;
-  Embree& operator=(const Embree&) = delete;
+  explicit Embree(const Mesh& mesh) : scene_(mesh, 1, RTC_BUILD_QUALITY_MEDIUM, RTC_SCENE_FLAG_ROBUST) {}
 
   std::optional<Bvh::Hit> closest(const Eigen::Vector3f& o, const Eigen::Vector3f& d, float t_min, float t_max) const {
     RTCRayHit query{};
@@ -43,7 +23,7 @@ class Embree {
     query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
     RTCIntersectContext context;
     rtcInitIntersectContext(&context);
-    rtcIntersect1(scene_, &context, &query);
+    rtcIntersect1(scene_.scene(), &context, &query);
     if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) return std::nullopt;
     return Bvh::Hit{query.ray.tfar, query.hit.primID, query.hit.u, query.hit.v};
   }
@@ -51,7 +31,7 @@ class Embree {
     RTCRay query = ray(o, d, t_min, t_max);
     RTCIntersectContext context;
     rtcInitIntersectContext(&context);
-    rtcOccluded1(scene_, &context, &query);
+    rtcOccluded1(scene_.scene(), &context, &query);
     return query.tfar < 0.0f;
   }
 
@@ -64,8 +44,7 @@ class Embree {
     r.mask = 0xFFFFFFFFu;
     return r;
   }
-  RTCDevice device_;
-  RTCScene scene_;
+  shapes::EmbreeScene scene_;
 };
 
 Triangle corners(const Mesh& mesh, std::uint32_t i) {

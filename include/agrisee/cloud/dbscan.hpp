@@ -111,16 +111,16 @@ Labels dbscan(const C& cloud, const DbscanParameters& params = {}, int threads =
   counting.count(threads, [&](std::size_t j, std::size_t in) { stored_core[j] = in >= needed; });
 
   DisjointSets sets(grid.stored());
-  join_neighbors(grid, counting.stencil, threads, sets,
-                 [&](std::size_t j, std::size_t begin, std::size_t end, std::uint8_t* is) {
-                   const S qx = x[j], qy = y[j], qz = z[j];
-                   const std::uint8_t core = stored_core[j];
-                   for (std::size_t i = begin; i < end; ++i) {
-                     const S dx = x[i] - qx, dy = y[i] - qy, dz = z[i] - qz;
-                     const bool near = dx * dx + dy * dy + dz * dz <= eps_sq;
-                     is[i - begin] = static_cast<std::uint8_t>(near & core & stored_core[i]);
-                   }
-                 });
+  join_neighbors(
+      grid, counting.stencil, threads, sets, [&](std::size_t j) { return stored_core[j] != 0; },
+      [&](std::size_t j, std::size_t begin, std::size_t end, std::uint8_t* is) {
+        const S qx = x[j], qy = y[j], qz = z[j];
+        for (std::size_t i = begin; i < end; ++i) {
+          const S dx = x[i] - qx, dy = y[i] - qy, dz = z[i] - qz;
+          const bool near = dx * dx + dy * dy + dz * dz <= eps_sq;
+          is[i - begin] = static_cast<std::uint8_t>(near & stored_core[i]);
+        }
+      });
 
   std::vector<char> core(n, 0);
   std::vector<Index> roots(n, 0);

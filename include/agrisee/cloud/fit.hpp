@@ -131,6 +131,54 @@ std::optional<Sphere> sphere_from_normals(const PointCloud<S>& cloud, const Indi
   return Sphere{p_mean - r * n_mean, r};
 }
 
+namespace detail {
+
+using Vector9 = Eigen::Matrix<double, 9, 1>;
+using Matrix9 = Eigen::Matrix<double, 9, 9>;
+
+/// What a point says of an ellipsoid, to first order at the point's radial projection: derivatives that saw the point's
+/// own error would be correlated with its residual, and crescents turn that into millimetres.
+struct EllipsoidRow {
+  double residual = 0.0;  ///< distance of the point (m)
+  double weight = 0.0;    ///< Tukey's biweight; 0: the point is beyond the gate, or its normal disagrees
+  Vector9 derivatives;    ///< of the residual by the centre / size and by size * A as (xx, yy, zz, xy, xz, yz)
+};
+
+/// @param size by which the unknowns are scaled (m)
+/// @param gate residual at which a point's weight ends (m)
+/// @param cos_max cosine of the largest angle between the point's normal and the body's
+inline EllipsoidRow ellipsoid_row(const Ellipsoid& body, const Eigen::Vector3d& point, const Eigen::Vector3d& normal,
+                                  double size, double gate, double cos_max) {
+  EllipsoidRow row;
+  Eigen::Vector3d d = point - body.center;
+  const double g = body.times(d).norm();
+  if (!(g > 1e-9)) return row;
+  d /= g;
+  const Eigen::Vector3d a = body.times(d), slope = body.times(a);
+  const double steep = slope.norm();
+  row.residual = (g - 1.0) / steep;
+  const double t = row.residual / gate;
+  if (slope.dot(normal) < cos_max * steep || !(std::abs(t) < 1.0)) return row;
+  row.weight = (1.0 - t * t) * (1.0 - t * t);
+  const double scale = 1.0 / (steep * size);
+  row.derivatives << slope * (-size / steep), a.x() * d.x() * scale, a.y() * d.y() * scale, a.z() * d.z() * scale,
+      (a.x() * d.y() + a.y() * d.x()) * scale, (a.x() * d.z() + a.z() * d.x()) * scale,
+      (a.y() * d.z() + a.z() * d.y()) * scale;
+  return row;
+}
+
+/// Information of the prior that the deviatoric part of size * A is small.
+inline Matrix9 shape_information(const Ellipsoid& body, double size, double shape_prior) {
+  const double relative = body.A.trace() * size / 3.0;  // mean of the inverse semi-axes, in units of 1 / size
+  Matrix9 prior = Matrix9::Zero();
+  prior.block<3, 3>(3, 3) = Eigen::Matrix3d::Identity() - Eigen::Matrix3d::Constant(1.0 / 3.0);
+  prior.diagonal().tail<3>().setConstant(2.0);
+  prior /= shape_prior * shape_prior * relative * relative;
+  return prior;
+}
+
+}  // namespace detail
+
 /// Fit an ellipsoid to the points `indices` of a cloud with normals, starting from `start`.
 ///
 /// Empty when fewer than `parameters.independent / 10 + 4` points support it or the fit degenerates.
@@ -143,8 +191,7 @@ std::optional<EllipsoidFit> fit_ellipsoid(const PointCloud<S>& cloud, const Indi
   const std::size_t least = static_cast<std::size_t>(parameters.independent / 10 + 4);
   if (indices.size() < least) return std::nullopt;
   const double cos_max = std::cos(parameters.max_angle);
-  using Vector9 = Eigen::Matrix<double, 9, 1>;
-  using Matrix9 = Eigen::Matrix<double, 9, 9>;
+  using detail::Matrix9, detail::Vector9;
 
   // What is used of the cloud, gathered once.
   struct Sample {
@@ -172,26 +219,13 @@ std::optional<EllipsoidFit> fit_ellipsoid(const PointCloud<S>& cloud, const Indi
     const Ellipsoid body = fit.body;
     const double inlier = 3.0 * std::max(parameters.noise, 0.01 * size);
     for (const Sample& sample : samples) {
-      // Everything is taken at the point's radial projection on the body: derivatives that saw the point's own error
-      // would be correlated with its residual, and crescents turn that into millimetres.
-      Eigen::Vector3d d = sample.point - body.center;
-      const double g = body.times(d).norm();
-      if (!(g > 1e-9)) continue;
-      d /= g;
-      const Eigen::Vector3d a = body.times(d), slope = body.times(a);
-      const double steep = slope.norm();
-      if (slope.dot(sample.normal) < cos_max * steep) continue;
-      const double residual = (g - 1.0) / steep;
-      const double t = residual / gate;
-      if (std::abs(t) >= 1.0) continue;
-      const double w = (1.0 - t * t) * (1.0 - t * t), scale = 1.0 / (steep * size);
+      const auto row = detail::ellipsoid_row(body, sample.point, sample.normal, size, gate, cos_max);
+      if (!(row.weight > 0.0)) continue;
       Eigen::Matrix<double, 10, 1> j;
-      j << slope * (-size / steep), a.x() * d.x() * scale, a.y() * d.y() * scale, a.z() * d.z() * scale,
-          (a.x() * d.y() + a.y() * d.x()) * scale, (a.x() * d.z() + a.z() * d.x()) * scale,
-          (a.y() * d.z() + a.z() * d.y()) * scale, residual;
-      products.noalias() += (w * j).lazyProduct(j.transpose());
-      weights += w;
-      if (std::abs(residual) < inlier) ++inliers, squares += residual * residual;
+      j << row.derivatives, row.residual;
+      products.noalias() += (row.weight * j).lazyProduct(j.transpose());
+      weights += row.weight;
+      if (std::abs(row.residual) < inlier) ++inliers, squares += row.residual * row.residual;
     }
     Matrix9 normal_matrix = products.topLeftCorner<9, 9>();
     Vector9 rhs = -products.topRightCorner<9, 1>();
@@ -201,11 +235,7 @@ std::optional<EllipsoidFit> fit_ellipsoid(const PointCloud<S>& cloud, const Indi
     rhs *= certainty;
     // The prior: the deviatoric part of B is small.
     const Eigen::Matrix3d B = body.A * size - Eigen::Matrix3d::Identity();
-    const double relative = body.A.trace() * size / 3.0;  // mean of the inverse semi-axes, in units of 1 / size
-    Matrix9 prior = Matrix9::Zero();
-    prior.block<3, 3>(3, 3) = Eigen::Matrix3d::Identity() - Eigen::Matrix3d::Constant(1.0 / 3.0);
-    prior.diagonal().tail<3>().setConstant(2.0);
-    prior /= parameters.shape_prior * parameters.shape_prior * relative * relative;
+    const Matrix9 prior = detail::shape_information(body, size, parameters.shape_prior);
     Vector9 b = Vector9::Zero();
     b.tail<6>() << B(0, 0), B(1, 1), B(2, 2), B(0, 1), B(0, 2), B(1, 2);
     rhs -= prior * b;

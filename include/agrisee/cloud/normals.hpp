@@ -7,7 +7,6 @@
 /// Any frame, metres. Cost: a grid, the sorting of some 30 neighbours and one 3 x 3 eigenproblem a point.
 #pragma once
 
-#include <agrisee/cloud/hybrid_query.hpp>
 #include <agrisee/core/all_neighbors.hpp>
 #include <agrisee/geometry/pca.hpp>
 
@@ -65,15 +64,17 @@ std::vector<Vector3<scalar_t<C>>> estimate_normals(const C& cloud, const NormalP
   std::vector<Vector3<S>> normals(n, Vector3<S>::Zero());
   if (curvatures) curvatures->assign(n, S(0));
   parallel_chunks(n, threads, 512, [&](std::size_t begin, std::size_t end) {
-    HybridQuery<S> query(static_cast<S>(params.radius), static_cast<std::size_t>(params.max_neighbors));
+    Neighbors<S> near;
     Moments moments;
     for (std::size_t i = begin; i < end; ++i) {
-      const Vector3<S> p = point(cloud, i);
-      const auto& neighbors = query(search, p);
-      if (neighbors.size() < 3) continue;
-      moments.reset(p.template cast<double>());
-      for (const auto& neighbor : neighbors)
-        moments.add(point(cloud, static_cast<std::size_t>(neighbor.index)).template cast<double>());
+      search.knn(point(cloud, i), static_cast<std::size_t>(params.max_neighbors), near);
+      while (!near.empty() && !(near.back().distance <= static_cast<S>(params.radius))) near.pop_back();
+      if (near.size() < 3) continue;
+      const auto at = [&](const Neighbor<S>& n) -> Eigen::Vector3d {
+        return point(cloud, static_cast<std::size_t>(n.index)).template cast<double>();
+      };
+      moments.reset(at(near[0]));
+      for (const auto& neighbor : near) moments.add(at(neighbor));
       normals[i] = detail::normal_of<S>(moments, curvatures ? &(*curvatures)[i] : nullptr);
     }
   });

@@ -152,16 +152,17 @@ Labels connected_regions(const C& cloud, const std::vector<Vector3<scalar_t<C>>>
   const S *x = grid.x().data(), *y = grid.y().data(), *z = grid.z().data();
   const S *u = nx.data(), *v = ny.data(), *w = nz.data();
   const auto join = [&](DisjointSets& sets, const auto& cosine) {
-    join_neighbors(grid, box_stencil(1), threads, sets,
-                   [&](std::size_t j, std::size_t begin, std::size_t end, std::uint8_t* is) {
-                     const S qx = x[j], qy = y[j], qz = z[j], qu = u[j], qv = v[j], qw = w[j];
-                     for (std::size_t i = begin; i < end; ++i) {
-                       const S dx = x[i] - qx, dy = y[i] - qy, dz = z[i] - qz;
-                       const bool near = dx * dx + dy * dy + dz * dz < radius_sq;
-                       const bool smooth = cosine(u[i] * qu + (v[i] * qv + w[i] * qw)) > cos_min;
-                       is[i - begin] = static_cast<std::uint8_t>(near & smooth);
-                     }
-                   });
+    join_neighbors(
+        grid, box_stencil(1), threads, sets, [&](std::size_t j) { return !std::isnan(u[j]); },
+        [&](std::size_t j, std::size_t begin, std::size_t end, std::uint8_t* is) {
+          const S qx = x[j], qy = y[j], qz = z[j], qu = u[j], qv = v[j], qw = w[j];
+          for (std::size_t i = begin; i < end; ++i) {
+            const S dx = x[i] - qx, dy = y[i] - qy, dz = z[i] - qz;
+            const bool near = dx * dx + dy * dy + dz * dz < radius_sq;
+            const bool smooth = cosine(u[i] * qu + (v[i] * qv + w[i] * qw)) > cos_min;
+            is[i - begin] = static_cast<std::uint8_t>(near & smooth);
+          }
+        });
   };
   DisjointSets sets(grid.stored());
   if (params.unsigned_normals)

@@ -46,8 +46,7 @@ double relative_volume_error(const PointCloud<S>& cloud, const Indices& indices,
                              const FitParameters& parameters = {}) {
   parameters.check();
   check_input(cloud.normals.size() == cloud.points.size(), "relative_volume_error: the cloud has no normals");
-  using Vector9 = Eigen::Matrix<double, 9, 1>;
-  using Matrix9 = Eigen::Matrix<double, 9, 9>;
+  using detail::Matrix9, detail::Vector9;
   if (indices.empty()) return 1.0;
   const std::size_t used = std::min(indices.size(), static_cast<std::size_t>(parameters.max_points));
   const double share = static_cast<double>(indices.size()) / static_cast<double>(used);
@@ -57,26 +56,16 @@ double relative_volume_error(const PointCloud<S>& cloud, const Indices& indices,
   double weights = 0.0;
   for (std::size_t k = 0; k < used; ++k) {
     const auto i = static_cast<std::size_t>(indices[k * indices.size() / used]);
-    Eigen::Vector3d d = cloud.points[i].template cast<double>() - body.center;
-    const double g = body.times(d).norm();
-    if (!(g > 1e-9)) continue;
-    d /= g;
-    const Eigen::Vector3d a = body.times(d), slope = body.times(a);
-    const double steep = slope.norm(), t = (g - 1.0) / steep / gate;
-    if (slope.dot(cloud.normals[i].template cast<double>()) < cos_max * steep || !(std::abs(t) < 1.0)) continue;
-    const double w = (1.0 - t * t) * (1.0 - t * t), scale = 1.0 / (steep * size);
-    Vector9 j;
-    j << slope * (-size / steep), a.x() * d.x() * scale, a.y() * d.y() * scale, a.z() * d.z() * scale,
-        (a.x() * d.y() + a.y() * d.x()) * scale, (a.x() * d.z() + a.z() * d.x()) * scale,
-        (a.y() * d.z() + a.z() * d.y()) * scale;
-    information.noalias() += (w * j).lazyProduct(j.transpose());
-    weights += w;
+    const auto row =
+        detail::ellipsoid_row(body, cloud.points[i].template cast<double>(), cloud.normals[i].template cast<double>(),
+                              size, gate, cos_max);
+    if (!(row.weight > 0.0)) continue;
+    information.noalias() += (row.weight * row.derivatives).lazyProduct(row.derivatives.transpose());
+    weights += row.weight;
   }
   if (!(weights > 0.0)) return 1.0;
   information *= std::min(share, parameters.independent / weights) / (parameters.noise * parameters.noise);
-  const double relative = body.A.trace() * size / 3.0, tight = 1.0 / std::pow(parameters.shape_prior * relative, 2);
-  information.block<3, 3>(3, 3) += tight * (Eigen::Matrix3d::Identity() - Eigen::Matrix3d::Constant(1.0 / 3.0));
-  information.diagonal().tail<3>().array() += 2.0 * tight;
+  information += detail::shape_information(body, size, parameters.shape_prior);
   information.diagonal().array() += 1e-9 * information.diagonal().maxCoeff();
   const Eigen::Matrix3d inverse = body.A.inverse() / size;
   Vector9 gradient = Vector9::Zero();

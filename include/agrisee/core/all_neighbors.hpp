@@ -1,16 +1,18 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// Neighbours of all points of a cloud at once, several times as fast as query by query: points are visited cell by
-/// cell of a grid, and the few whose neighbours are farther than the next cells ask a kd-tree. Answers are those of
-/// neighbors.hpp, whatever the number of threads.
+/// cell of a grid; the few whose neighbours are farther than the next cells look further by a kd-tree of the cells, and
+/// those in crowds by a kd-tree of the points. Answers are those of neighbors.hpp, whatever the number of threads.
 ///
-/// Any frame, metres. Cost O(n k) for evenly dense clouds; memory about 20 bytes a point and no lists but those returned.
+/// Any frame, metres. Cost O(n k) for evenly dense clouds, O(n k log n) for others; memory about 20 bytes a point and no
+/// lists but those returned.
 #pragma once
 
 #include <agrisee/core/kdtree.hpp>
 #include <agrisee/core/tiles.hpp>
 
 #include <optional>
+#include <tuple>
 
 namespace agrisee {
 
@@ -59,7 +61,7 @@ class TileNearest {
  public:
   /// @param first_trial distance (m) within which k points are expected
   TileNearest(const Grid<S>& grid, std::size_t k, S first_trial)
-      : grid_(grid), k_(k), trial_sq_(first_trial * first_trial) {}
+      : grid_(grid), k_(k), trial_sq_(std::max(first_trial * first_trial, std::numeric_limits<S>::min())) {}
 
   /// The k candidates nearest to q that are at most `reach` away (m).
   const Neighborhood<S>& operator()(const Tile<S>& tile, const Vector3<S>& q, S reach) {
@@ -75,7 +77,7 @@ class TileNearest {
     rank(tile);
     near_.size = std::min(k_, kept_);
     for (std::size_t i = 0; i < near_.size; ++i) ids_[i] = grid_.ids()[tile.at[at_[i]]];
-    if (near_.size == k_) trial_sq_ = S(1.3) * sorted_[k_ - 1];
+    if (near_.size == k_ && sorted_[k_ - 1] > 0) trial_sq_ = S(1.3) * sorted_[k_ - 1];
     for (std::size_t i = 0; i < near_.size; ++i) sorted_[i] = std::sqrt(sorted_[i]);
     near_.distance = sorted_.data(), near_.ids = ids_.data(), near_.at = at_.data();
     near_.x = tile.x.data(), near_.y = tile.y.data(), near_.z = tile.z.data();
@@ -158,7 +160,7 @@ class TileNearest {
 
   const Grid<S>& grid_;
   std::size_t k_, kept_ = 0;
-  S trial_sq_;
+  S trial_sq_;  // > 0, that it can grow
   std::vector<S> all_, kept_sq_, sorted_;
   std::vector<std::uint32_t> kept_at_, at_;
   std::vector<Rank> ranks_;
@@ -211,62 +213,138 @@ class FarCells {
   std::optional<KdTree<S>> tree_;
 };
 
-/// body(i, neighbourhood) for the points of which all neighbours are found within two rings of cells; the stored places
-/// of the others.
+/// The neighbourhood of a point by a search over the cloud; not to be shared between threads.
+template <typename S>
+class SearchNearest {
+ public:
+  template <typename C, typename Search>
+  const Neighborhood<S>& operator()(const C& cloud, const Search& search, const Vector3<S>& q, std::size_t k, S radius) {
+    search.knn(q, k, found_);
+    while (!found_.empty() && !(found_.back().distance <= radius)) found_.pop_back();
+    distance_.clear(), x_.clear(), y_.clear(), z_.clear(), ids_.clear(), at_.clear();
+    for (const Neighbor<S>& n : found_) {
+      const Vector3<S> p = point(cloud, static_cast<std::size_t>(n.index));
+      at_.push_back(static_cast<std::uint32_t>(at_.size()));
+      ids_.push_back(n.index);
+      distance_.push_back(n.distance);
+      x_.push_back(p.x()), y_.push_back(p.y()), z_.push_back(p.z());
+    }
+    near_ = {ids_.size(), distance_.data(), ids_.data(), x_.data(), y_.data(), z_.data(), at_.data()};
+    return near_;
+  }
+
+ private:
+  Neighbors<S> found_;
+  std::vector<S> distance_, x_, y_, z_;
+  Indices ids_;
+  std::vector<std::uint32_t> at_;
+  Neighborhood<S> near_;
+};
+
+/// body(i, neighbourhood) for those of the stored points [begin, end) of a cell that coincide with k - 1 others or more:
+/// all that lie at one place have the same neighbours. Sensors that write missing points as zeros make many of them.
 template <typename S, typename Body>
-Indices near_neighborhoods(const Grid<S>& grid, std::size_t k, S radius, S typical, int threads, const Body& body) {
+void coinciding_neighborhoods(const Grid<S>& grid, std::size_t begin, std::size_t end, std::size_t k,
+                              std::vector<char>& done, const Body& body) {
+  std::vector<std::uint32_t> order(end - begin);
+  std::iota(order.begin(), order.end(), static_cast<std::uint32_t>(begin));
+  const auto place = [&](std::uint32_t j) { return std::make_tuple(grid.x()[j], grid.y()[j], grid.z()[j]); };
+  std::stable_sort(order.begin(), order.end(), [&](auto a, auto b) { return place(a) < place(b); });
+  const std::vector<S> zeros(k, S(0));
+  Indices ids(k);
+  for (auto group = order.begin(); group != order.end();) {
+    const auto next = std::upper_bound(group, order.end(), *group, [&](auto a, auto b) { return place(a) < place(b); });
+    if (static_cast<std::size_t>(next - group) >= k) {
+      for (std::size_t i = 0; i < k; ++i) ids[i] = grid.ids()[group[static_cast<std::ptrdiff_t>(i)]];
+      const Neighborhood<S> near{k, zeros.data(), ids.data(), grid.x().data(), grid.y().data(), grid.z().data(), &*group};
+      for (; group != next; ++group) {
+        body(grid.ids()[*group], near);
+        done[*group] = 1;
+      }
+    }
+    group = next;
+  }
+}
+
+/// The points that near_neighborhoods leaves: their places among the stored points.
+struct Left {
+  Indices far;      ///< neighbours are not within two rings of cells
+  Indices crowded;  ///< more points in the next cells than are worth reading
+};
+
+/// body(i, neighbourhood) for the points of which all neighbours are found within two rings of cells.
+template <typename S, typename Body>
+Left near_neighborhoods(const Grid<S>& grid, std::size_t k, S radius, S typical, int threads, const Body& body) {
+  constexpr char kFar = 0, kDone = 1, kCrowded = 2;
   const Stencil rings[] = {box_stencil(1), box_stencil(2)};
-  const std::size_t crowd = 32 * k + 1024;  // more candidates than are worth reading
-  std::vector<char> done(grid.stored(), 0);
+  const std::size_t crowd = 32 * k + 1024;
+  std::vector<char> state(grid.stored(), kFar);
   for_cells(grid, threads, [&] {
     return [&, tile = Tile<S>(), nearest = TileNearest<S>(grid, k, typical)](const typename Grid<S>::Cell& cell,
                                                                              std::size_t begin, std::size_t end) mutable {
       std::size_t left = end - begin;
       for (int r = 1; r <= 2 && left > 0; ++r) {
         tile.gather(grid, cell, rings[r - 1]);
-        if (tile.size > crowd) return;
+        if (tile.size > crowd) {
+          if (r == 1 && left > k) coinciding_neighborhoods(grid, begin, end, k, state, body);
+          for (std::size_t j = begin; j < end; ++j)
+            if (state[j] != kDone) state[j] = kCrowded;
+          return;
+        }
         for (std::size_t j = begin; j < end; ++j) {
-          if (done[j]) continue;
+          if (state[j] == kDone) continue;
           const Vector3<S> q = grid.stored_point(j);
           const S reach = std::min(radius, static_cast<S>(grid.clearance(q, cell, r)));
           const Neighborhood<S>& near = nearest(tile, q, reach);
           if (near.size < k && reach < radius) continue;
           body(grid.ids()[j], near);
-          done[j] = 1;
+          state[j] = kDone;
           --left;
         }
       }
     };
   });
-  Indices far;
+  Left out;
   for (std::size_t j = 0; j < grid.stored(); ++j)
-    if (!done[j]) far.push_back(static_cast<Index>(j));
-  return far;
+    if (state[j] != kDone) (state[j] == kFar ? out.far : out.crowded).push_back(static_cast<Index>(j));
+  return out;
 }
 
 }  // namespace detail
 
 /// body(i, neighbourhood) for every finite point i of a cloud, in no particular order: its k >= 1 nearest points (itself
-/// included) that are at most `radius` away (m; infinite for all). A body writes only what belongs to point i.
+/// included) that are at most `radius` >= 0 away (m; infinite for all). A body writes only what belongs to point i.
 template <typename C, typename Body>
 void for_each_neighborhood(const C& cloud, std::size_t k, scalar_t<C> radius, int threads, const Body& body) {
   using S = scalar_t<C>;
   const S typical = detail::typical_distance(cloud, k);
-  const Grid<S> grid(cloud, std::min(S(1.25) * typical, S(1.00001) * radius));
-  const Indices far = detail::near_neighborhoods(grid, k, radius, typical, threads, body);
-  if (far.empty()) return;
-  const detail::FarCells<S> cells(grid);
-  parallel_chunks(far.size(), threads, 64, [&](std::size_t begin, std::size_t end) {
-    Tile<S> tile;
-    Neighbors<S> scratch;
-    detail::TileNearest<S> nearest(grid, k, typical);
-    for (std::size_t f = begin; f < end; ++f) {
-      const auto j = static_cast<std::size_t>(far[f]);
-      const Vector3<S> q = grid.stored_point(j);
-      cells.gather(q, k, radius, scratch, tile);
-      body(grid.ids()[j], nearest(tile, q, radius));
-    }
-  });
+  const S nearby = S(1.25) * typical;
+  const Grid<S> grid(cloud, radius > 0 ? std::min(nearby, S(1.00001) * radius) : nearby);
+  const detail::Left left = detail::near_neighborhoods(grid, k, radius, typical, threads, body);
+  if (!left.far.empty()) {
+    const detail::FarCells<S> cells(grid);
+    parallel_chunks(left.far.size(), threads, 64, [&](std::size_t begin, std::size_t end) {
+      Tile<S> tile;
+      Neighbors<S> scratch;
+      detail::TileNearest<S> nearest(grid, k, typical);
+      for (std::size_t f = begin; f < end; ++f) {
+        const auto j = static_cast<std::size_t>(left.far[f]);
+        const Vector3<S> q = grid.stored_point(j);
+        cells.gather(q, k, radius, scratch, tile);
+        body(grid.ids()[j], nearest(tile, q, radius));
+      }
+    });
+  }
+  if (!left.crowded.empty()) {
+    const KdTree<S> tree(cloud);
+    parallel_chunks(left.crowded.size(), threads, 64, [&](std::size_t begin, std::size_t end) {
+      detail::SearchNearest<S> nearest;
+      for (std::size_t c = begin; c < end; ++c) {
+        const auto j = static_cast<std::size_t>(left.crowded[c]);
+        body(grid.ids()[j], nearest(cloud, tree, grid.stored_point(j), k, radius));
+      }
+    });
+  }
 }
 
 /// The k nearest points of every point, itself included, k a point and nearest first; -1 where there are fewer and for

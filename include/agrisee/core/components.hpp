@@ -41,32 +41,51 @@ class DisjointSets {
   std::vector<std::atomic<Index>> parent_;
 };
 
-/// Join in `sets` all stored points of a grid that are neighbours. `test(j, begin, end, is)` sets is[i - begin] to 1 for
-/// the stored points i of [begin, end) that are neighbours of j and to 0 for others; it must be symmetric.
-/// @param stencil cells about a cell in which neighbours may be
-template <typename S, typename Test>
-void join_neighbors(const Grid<S>& grid, const Stencil& stencil, int threads, DisjointSets& sets, const Test& test) {
+/// Join in `sets` all members among the stored points of a grid that are neighbours.
+/// @param stencil cells about a cell in which neighbours may be; all members in cells that lie inside are neighbours
+/// @param member whether the stored point j may have neighbours
+/// @param test test(j, begin, end, is) sets is[i - begin] to 1 for the members i of [begin, end) that are neighbours of
+///   the member j and to 0 for others; it must be symmetric
+template <typename S, typename Member, typename Test>
+void join_neighbors(const Grid<S>& grid, const Stencil& stencil, int threads, DisjointSets& sets, const Member& member,
+                    const Test& test) {
   for_cells(grid, threads, [&] {
     return [&, is = std::vector<std::uint8_t>(), hits = std::vector<std::uint32_t>()](
                const typename Grid<S>::Cell& cell, std::size_t first, std::size_t last) mutable {
+      while (first < last && !member(first)) ++first;
+      if (first == last) return;
+      const auto join_near = [&](std::size_t j, std::size_t begin, std::size_t end) {
+        if (begin >= end) return;
+        if (is.size() < end - begin) is.resize(end - begin), hits.resize(end - begin);
+        test(j, begin, end, is.data());
+        std::size_t found = 0;
+        for (std::size_t i = begin; i < end; ++i) {
+          hits[found] = static_cast<std::uint32_t>(i);
+          found += is[i - begin];
+        }
+        if (found == 0) return;
+        Index mine = sets.root(static_cast<Index>(j));
+        for (std::size_t i = 0; i < found; ++i) mine = sets.join(mine, static_cast<Index>(hits[i]));
+      };
       for (const StencilRow& row : stencil) {  // the other half of the pairs is seen from the other side
         if (row.dz > 0 || (row.dz == 0 && row.dy > 0)) continue;
         const bool own = row.dz == 0 && row.dy == 0;
-        const auto [begin, end] =
-            grid.run(cell[2] - row.outer, cell[2] + (own ? 0 : row.outer), cell[1] + row.dy, cell[0] + row.dz);
+        const auto cells = [&](int reach) {
+          return grid.run(cell[2] - reach, cell[2] + (own ? 0 : reach), cell[1] + row.dy, cell[0] + row.dz);
+        };
+        const auto [begin, end] = cells(row.outer);
         if (begin == end) continue;
-        is.resize(std::max(is.size(), end - begin)), hits.resize(is.size());
+        auto inside = std::make_pair(end, end);
+        if (row.inner >= 0) inside = cells(row.inner);
+        if (inside.first == inside.second) inside = {end, end};
+        Index mine = static_cast<Index>(first);
+        for (std::size_t i = inside.first; i < inside.second; ++i)
+          if (member(i)) mine = sets.join(mine, static_cast<Index>(i));
         for (std::size_t j = first; j < last; ++j) {
-          const std::size_t n = (own ? j : end) - begin;
-          test(j, begin, begin + n, is.data());
-          std::size_t found = 0;
-          for (std::size_t i = 0; i < n; ++i) {
-            hits[found] = static_cast<std::uint32_t>(begin + i);
-            found += is[i];
-          }
-          if (found == 0) continue;
-          Index mine = sets.root(static_cast<Index>(j));
-          for (std::size_t i = 0; i < found; ++i) mine = sets.join(mine, static_cast<Index>(hits[i]));
+          if (!member(j)) continue;
+          const std::size_t until = own ? j : end;  // of the own cell the points before this one
+          join_near(j, begin, std::min(until, inside.first));
+          join_near(j, inside.second, until);
         }
       }
     };
