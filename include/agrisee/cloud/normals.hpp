@@ -70,8 +70,8 @@ std::vector<Vector3<scalar_t<C>>> estimate_normals(const C& cloud, const NormalP
       search.knn(point(cloud, i), static_cast<std::size_t>(params.max_neighbors), near);
       while (!near.empty() && !(near.back().distance <= static_cast<S>(params.radius))) near.pop_back();
       if (near.size() < 3) continue;
-      const auto at = [&](const Neighbor<S>& n) -> Eigen::Vector3d {
-        return point(cloud, static_cast<std::size_t>(n.index)).template cast<double>();
+      const auto at = [&](const Neighbor<S>& found) -> Eigen::Vector3d {
+        return point(cloud, static_cast<std::size_t>(found.index)).template cast<double>();
       };
       moments.reset(at(near[0]));
       for (const auto& neighbor : near) moments.add(at(neighbor));
