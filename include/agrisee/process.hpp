@@ -133,24 +133,12 @@ inline void complete_normals(Cloud& cloud, const Parameters& parameters, const C
   }
 }
 
-}  // namespace detail
-
-/// Clean, split and locate (paper: SOR, region growing, DBSCAN, localization).
-///
-/// Points that are not finite are dropped. Normals that the cloud has are kept, unless `origin.check_normals` asks to
-/// turn those that face away from where their points were seen from; missing ones are estimated and turned to the
-/// views, to the one viewpoint, or, where neither is known, by consistency. Where normals had to be estimated, the fit
-/// of bodies
-/// (`split.bodies.fit.noise`) reckons with four times the noise that the cloud shows locally: a ready cloud's errors go
-/// on beyond the neighbourhood in which they can be told from the surface. Works for any number of points; too few to
-/// be anything give no fruit.
-/// @param seen_through evidence of free space from the views, or empty
-/// @throws ParameterError
-inline ScanResult process(const Cloud& cloud, const Parameters& parameters = {}, const CloudOrigin& origin = {},
-                          const SeenThrough& seen_through = {}, int threads = 1) {
+/// process() on points that are all finite.
+inline ScanResult process_finite(Cloud raw, const Parameters& parameters, const CloudOrigin& origin,
+                                 const SeenThrough& seen_through, int threads) {
   parameters.check();
   ScanResult result;
-  result.raw = select(cloud, finite_indices(cloud));
+  result.raw = std::move(raw);
   if (result.raw.views.empty()) result.raw.views.assign(result.raw.size(), -1);
   Timing& t = result.seconds;
   {
@@ -181,6 +169,33 @@ inline ScanResult process(const Cloud& cloud, const Parameters& parameters = {},
   }
   t.total = t.filter + t.normals + t.segment + t.locate;
   return result;
+}
+
+}  // namespace detail
+
+/// Clean, split and locate (paper: SOR, region growing, DBSCAN, localization).
+///
+/// Points that are not finite are dropped. Normals that the cloud has are kept, unless `origin.check_normals` asks to
+/// turn those that face away from where their points were seen from; missing ones are estimated and turned to the
+/// views, to the one viewpoint, or, where neither is known, by consistency. Where normals had to be estimated, the fit
+/// of bodies (`split.bodies.fit.noise`) reckons with four times the noise that the cloud shows locally: a ready cloud's
+/// errors go on beyond the neighbourhood in which they can be told from the surface. Works for any number of points;
+/// too few to be anything give no fruit.
+/// @param seen_through evidence of free space from the views, or empty
+/// @throws ParameterError
+inline ScanResult process(const Cloud& cloud, const Parameters& parameters = {}, const CloudOrigin& origin = {},
+                          const SeenThrough& seen_through = {}, int threads = 1) {
+  return detail::process_finite(select(cloud, finite_indices(cloud)), parameters, origin, seen_through, threads);
+}
+
+/// The same on any other cloud that meets the contract of core/traits.hpp: vectors and maps of Eigen, or with a header
+/// of `interop/` clouds of PCL, Open3D and ROS. It is read where it lies, once, into the `raw` cloud of the result,
+/// which every result owns and which holds its finite points. Its views are unknown.
+/// @throws ParameterError
+template <typename C, typename = scalar_t<C>>
+ScanResult process(const C& cloud, const Parameters& parameters = {}, const CloudOrigin& origin = {},
+                   const SeenThrough& seen_through = {}, int threads = 1) {
+  return detail::process_finite(finite_points(cloud), parameters, origin, seen_through, threads);
 }
 
 }  // namespace agrisee
