@@ -3,12 +3,12 @@
 function(agrisee_oracle NAME)
   cmake_parse_arguments(ARG "" "" "LIBRARIES;INCLUDES" ${ARGN})
   if(AGRISEE_BUILD_ORACLES AND ARG_LIBRARIES)
-    # Clouds of theirs in place, and files for them to read, where there are such tests.
-    file(GLOB more CONFIGURE_DEPENDS interop/${NAME}_test.cpp interop/${NAME}_ply_test.cpp)
-    if(AGRISEE_BUILD_IO)
+    # Where there are such: tests of their clouds in place, and of files for them to read.
+    file(GLOB more CONFIGURE_DEPENDS interop/${NAME}_test.cpp)
+    file(GLOB ply CONFIGURE_DEPENDS interop/${NAME}_ply_test.cpp)
+    if(ply AND AGRISEE_BUILD_IO)
+      list(APPEND more ${ply})
       list(APPEND ARG_LIBRARIES agrisee::io)
-    else()
-      list(FILTER more EXCLUDE REGEX "_ply_test.cpp")
     endif()
     agrisee_test(oracle_${NAME} oracles/${NAME}_test.cpp ${more} LIBRARIES ${ARG_LIBRARIES})
     target_include_directories(test_oracle_${NAME} SYSTEM PRIVATE ${ARG_INCLUDES})
