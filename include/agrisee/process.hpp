@@ -74,22 +74,30 @@ inline std::vector<Eigen::Vector3f> estimated_normals(const Cloud& cloud, const 
   OrientationParameters orientation;
   bool all_known = true;
   for (std::size_t i = 0; i < cloud.size() && all_known; ++i) all_known = seen_from(cloud, i, origin).has_value();
-  std::optional<KdTree<float>> search;
-  if (parameters.adaptive_normals || !all_known) search.emplace(cloud);
-  const double spacing = parameters.adaptive_normals ? estimate_spacing(cloud, *search) : 0.0;
+  const double spacing = parameters.adaptive_normals ? estimate_spacing(cloud) : 0.0;
   noise = 0.0;
   if (spacing > 0.0) {
     const BodyParameters& bodies = parameters.split.bodies;
     normals.radius = parameters.normal_reach * spacing;
-    noise = estimate_noise(cloud, *search, normals.radius, std::sqrt(bodies.radius_min * bodies.radius_max));
+    noise = estimate_noise(cloud, Grid<float>(cloud, static_cast<float>(normals.radius)), normals.radius,
+                           std::sqrt(bodies.radius_min * bodies.radius_max));
     // Eight deviations across tell a slope; more than half a fruit's radius would round it off.
     normals.radius = std::max(normals.radius, std::min(8.0 * noise, 0.5 * bodies.radius_min));
     const double across = std::min(normals.radius / spacing, 20.0);
     normals.max_neighbors = std::max(normals.max_neighbors, static_cast<int>(kPi * across * across));
     orientation.max_distance = normals.radius;
   }
-  auto estimated = estimate_normals(cloud, normals, threads);
-  if (!all_known) estimated = orient_normals_consistently(std::move(estimated), cloud, orientation, *search, threads);
+  std::vector<Eigen::Vector3f> estimated;
+  if (all_known) {
+    estimated = estimate_normals(cloud, normals, threads);
+  } else if (normals.max_neighbors <= 64) {  // lists of neighbours serve twice, as long as they are short
+    const int k = std::max(normals.max_neighbors, orientation.neighbors + 1);
+    const NeighborLists lists = nearest_neighbors(cloud, static_cast<std::size_t>(k), threads);
+    estimated = orient_normals_consistently(estimate_normals(cloud, normals, lists, threads), cloud, orientation, lists,
+                                            threads);
+  } else {
+    estimated = orient_normals_consistently(estimate_normals(cloud, normals, threads), cloud, orientation, threads);
+  }
   for (std::size_t i = 0; i < cloud.size(); ++i)
     if (const auto eye = seen_from(cloud, i, origin))
       if (estimated[i].cast<double>().dot(*eye - cloud.points[i].cast<double>()) < 0.0) estimated[i] = -estimated[i];

@@ -32,7 +32,8 @@ class DisjointSets {
       if (a == b) return a;
       if (a < b) std::swap(a, b);
       Index expected = a;  // still a root?
-      if (parent_[static_cast<std::size_t>(a)].compare_exchange_strong(expected, b, std::memory_order_relaxed)) return b;
+      if (parent_[static_cast<std::size_t>(a)].compare_exchange_strong(expected, b, std::memory_order_relaxed))
+        return b;
     }
   }
 
