@@ -155,7 +155,8 @@ for (const size of [wide, narrow])
     await page.click('#layers summary');
     await page.click('[data-layer=fruit]');
     await page.click('[data-layer=bodies]');
-    assert.ok((await pixels(page, hues)).counts[0] < 0.2 * all.counts[0], 'the layer is still there');
+    // Not fruit 1: its red is that of the frames' axes, of which more remains the smaller the picture.
+    assert.ok((await pixels(page, hues)).counts[2] < 0.2 * all.counts[2], 'the layer is still there');
     await page.click('[data-layer=fruit]');
     await page.click('[data-layer=bodies]');
     for (const name of ['merged', 'keep_out', 'approaches']) await page.click(`[data-layer=${name}]`);
