@@ -81,6 +81,34 @@ std::vector<Vector3<scalar_t<C>>> estimate_normals(const C& cloud, const NormalP
   return normals;
 }
 
+/// The same from neighbour lists that are there already, as far as they reach: `max_neighbors` of them within `radius`.
+template <typename C>
+std::vector<Vector3<scalar_t<C>>> estimate_normals(const C& cloud, const NormalParameters& params,
+                                                   const NeighborLists& lists, int threads = 1,
+                                                   std::vector<scalar_t<C>>* curvatures = nullptr) {
+  using S = scalar_t<C>;
+  params.check();
+  const std::size_t n = agrisee::size(cloud), most = std::min(lists.k, static_cast<std::size_t>(params.max_neighbors));
+  check_input(lists.size() == n, "the neighbour lists and the cloud differ in size");
+  std::vector<Vector3<S>> normals(n, Vector3<S>::Zero());
+  if (curvatures) curvatures->assign(n, S(0));
+  const S reach_sq = static_cast<S>(params.radius) * static_cast<S>(params.radius);
+  parallel_for(n, threads, [&](std::size_t i) {
+    const Vector3<S> q = point(cloud, i);
+    Moments moments;
+    moments.reset(q.template cast<double>());
+    std::size_t used = 0;
+    const Index* ids = lists.ids.data() + i * lists.k;
+    for (; used < most && ids[used] >= 0; ++used) {
+      const Vector3<S> p = point(cloud, static_cast<std::size_t>(ids[used]));
+      if (distance_sq<S>(p, q) > reach_sq) break;
+      moments.add(p.template cast<double>());
+    }
+    if (used >= 3) normals[i] = detail::normal_of<S>(moments, curvatures ? &(*curvatures)[i] : nullptr);
+  });
+  return normals;
+}
+
 /// The same without a search; several times as fast.
 template <typename C>
 std::vector<Vector3<scalar_t<C>>> estimate_normals(const C& cloud, const NormalParameters& params = {}, int threads = 1,

@@ -218,20 +218,28 @@ Labels grow_regions(const C& cloud, const std::vector<Vector3<scalar_t<C>>>& nor
   });
 }
 
-/// The same without a search; several times as fast. Memory for k nearest neighbours is 4 k bytes a point.
+/// The same with neighbour lists that are there already; their k stands for `params.neighbors`.
+template <typename C>
+Labels grow_regions(const C& cloud, const std::vector<Vector3<scalar_t<C>>>& normals,
+                    const RegionGrowingParameters& params, const NeighborLists& lists,
+                    const std::vector<scalar_t<C>>& curvatures = {}) {
+  params.check();
+  check_input(lists.size() == agrisee::size(cloud), "the neighbour lists and the cloud differ in size");
+  detail::check_growing(cloud, normals, params, curvatures);
+  return detail::grow_from_seeds(cloud, normals, params, curvatures,
+                                 [&](std::size_t i, auto&& offer) { lists.visit(i, offer); });
+}
+
+/// The same without a search; several times as fast.
 template <typename C>
 Labels grow_regions(const C& cloud, const std::vector<Vector3<scalar_t<C>>>& normals,
                     const RegionGrowingParameters& params = {}, const std::vector<scalar_t<C>>& curvatures = {},
                     int threads = 1) {
   params.check();
   detail::check_growing(cloud, normals, params, curvatures);
-  if (params.neighbors > 0) {
-    const auto k = static_cast<std::size_t>(params.neighbors);
-    const Indices nearest = nearest_neighbors(cloud, k, threads);
-    return detail::grow_from_seeds(cloud, normals, params, curvatures, [&](std::size_t i, auto&& offer) {
-      for (std::size_t j = i * k; j < (i + 1) * k && nearest[j] >= 0; ++j) offer(nearest[j]);
-    });
-  }
+  if (params.neighbors > 0)
+    return grow_regions(cloud, normals, params,
+                        nearest_neighbors(cloud, static_cast<std::size_t>(params.neighbors), threads), curvatures);
   if (params.max_curvature < 1.0 / 3.0)  // not all grow: the order matters
     return grow_regions(cloud, normals, params, Grid<scalar_t<C>>(cloud, static_cast<scalar_t<C>>(params.radius)),
                         curvatures);

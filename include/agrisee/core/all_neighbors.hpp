@@ -347,14 +347,26 @@ void for_each_neighborhood(const C& cloud, std::size_t k, scalar_t<C> radius, in
   }
 }
 
-/// The k nearest points of every point, itself included, k a point and nearest first; -1 where there are fewer and for
-/// points that are not finite.
+/// The k nearest points of every point of a cloud, computed once for several stages.
+struct NeighborLists {
+  std::size_t k = 0;
+  Indices ids;  ///< k a point, nearest first, itself included; -1 where there are fewer and for points not finite
+
+  std::size_t size() const { return k == 0 ? 0 : ids.size() / k; }
+  /// f(j) for the neighbours j of point i, nearest first.
+  template <typename F>
+  void visit(std::size_t i, F&& f) const {
+    for (std::size_t j = i * k; j < (i + 1) * k && ids[j] >= 0; ++j) f(ids[j]);
+  }
+};
+
+/// The neighbour lists of a cloud, for k >= 1. 4 k bytes a point.
 template <typename C>
-Indices nearest_neighbors(const C& cloud, std::size_t k, int threads = 1) {
+NeighborLists nearest_neighbors(const C& cloud, std::size_t k, int threads = 1) {
   using S = scalar_t<C>;
-  Indices out(agrisee::size(cloud) * k, -1);
+  NeighborLists out{k, Indices(agrisee::size(cloud) * k, -1)};
   for_each_neighborhood(cloud, k, std::numeric_limits<S>::infinity(), threads, [&](Index i, const Neighborhood<S>& near) {
-    std::copy_n(near.ids, near.size, out.begin() + static_cast<std::ptrdiff_t>(static_cast<std::size_t>(i) * k));
+    std::copy_n(near.ids, near.size, out.ids.begin() + static_cast<std::ptrdiff_t>(static_cast<std::size_t>(i) * k));
   });
   return out;
 }
