@@ -123,17 +123,22 @@ class Pipeline {
   /// The arm could not take the view that `next_view` returned last: ask again for another.
   void refused() { planner_->refused(); }
 
+  /// Why next_view() returned nothing last.
   StopReason stop_reason() const { return stop_reason_; }
   /// How much of the fruit's surface the planner believes to have been seen, and that the arm can see at all, as of the
   /// last next_view(); nothing where the planner does not reckon with surfaces.
   std::optional<Completeness> completeness() const { return planner_->completeness(); }
+  /// The views taken so far.
   const std::vector<View>& views() const { return views_; }
   /// The cloud merged so far, before any filter at the end.
   const Cloud& merged() const { return cloud_; }
   /// All points merged so far, filtered away later or not, each with its view.
   Cloud raw() const { return raw_cloud(); }
+  /// As given.
   const Workcell& workcell() const { return workcell_; }
+  /// As given.
   const Parameters& parameters() const { return parameters_; }
+  /// What answers for the arm.
   const plan::Reach& reach() const { return reach_; }
 
   /// Clean, split and locate what has been seen so far, and plan the picking from where the arm stood last.

@@ -14,6 +14,7 @@ namespace agrisee {
 /// Adds the seconds of its own lifetime to a counter.
 class Stopwatch {
  public:
+  /// Starts; `seconds` has to outlive it.
   explicit Stopwatch(double& seconds) : seconds_(seconds), start_(std::chrono::steady_clock::now()) {}
   Stopwatch(const Stopwatch&) = delete;
   Stopwatch& operator=(const Stopwatch&) = delete;

@@ -28,11 +28,14 @@ struct IcpResult {
   bool accepted = false;                    ///< the correction lowers the residual and is within its limits
   /// Residuals (m) at the initial pose and at the end of the search, over the points matched at both:
   /// sqrt(mean(2 rho(r))), the root mean square where the kernel is `none`. 0 without matches.
-  double rms_before = 0.0, rms_after = 0.0;
-  std::size_t matches_before = 0, matches = 0;  ///< matched points at the initial pose and at the end
+  double rms_before = 0.0;
+  double rms_after = 0.0;                       ///< the same at the end
+  std::size_t matches_before = 0;               ///< matched points at the initial pose
+  std::size_t matches = 0;                      ///< and at the end
   int iterations = 0;                           ///< steps taken
   int constrained = 0;                          ///< of six directions, those that the surface determines, last step
-  double translation = 0.0, rotation = 0.0;     ///< size (m at the source's centroid, rad) of the motion found
+  double translation = 0.0;                     ///< size of the motion found (m, at the source's centroid)
+  double rotation = 0.0;                        ///< and its turn (rad)
 };
 
 namespace detail {

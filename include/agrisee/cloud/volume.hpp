@@ -19,6 +19,7 @@ struct MassParameters {
     check_parameter(density_error >= 0 && std::isfinite(density_error), "mass.density_error", ">= 0", density_error);
     check_parameter(shape_error >= 0 && std::isfinite(shape_error), "mass.shape_error", ">= 0", shape_error);
   }
+  /// f(name, field) for every field.
   template <typename P, typename F>
   static void fields(P& p, F&& f) {
     f("density", p.density);
@@ -29,8 +30,8 @@ struct MassParameters {
 
 /// A value with its standard error.
 struct Estimate {
-  double value = 0.0;
-  double error = 0.0;
+  double value = 0.0;  ///< in its own unit
+  double error = 0.0;  ///< standard error, in the same unit
 };
 
 /// Volume (m3) of an ellipsoid.

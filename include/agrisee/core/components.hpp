@@ -13,9 +13,11 @@ namespace agrisee {
 /// Disjoint sets of indices; the smallest index of a set is its root. Any number of threads may call at once.
 class DisjointSets {
  public:
+  /// n sets of one each.
   explicit DisjointSets(std::size_t n) : parent_(n) {
     for (std::size_t i = 0; i < n; ++i) parent_[i].store(static_cast<Index>(i), std::memory_order_relaxed);
   }
+  /// The one that stands for the set of i.
   Index root(Index i) {
     for (Index up = parent(i); up != i;) {  // each step lets i point at its grandparent
       const Index above = parent(up);

@@ -27,7 +27,8 @@ class Bvh {
   struct Hit {
     float t;                 ///< distance in units of the direction's length
     std::uint32_t triangle;  ///< index in the mesh
-    float u, v;              ///< barycentric coordinates: (1 - u - v) a + u b + v c
+    float u;                 ///< barycentric coordinates: (1 - u - v) a + u b + v c
+    float v;                 ///< the other of them
   };
   /// A point of the surface.
   struct SurfacePoint {

@@ -27,7 +27,9 @@ Mesh read_mesh(const std::filesystem::path& path, StlCorners corners = StlCorner
 
 /// Read one format, whatever the file is called. @throws FileError as read_mesh
 Mesh read_stl(const std::filesystem::path& path, StlCorners corners = StlCorners::merge);
+/// Read an OBJ file, whatever it is called. @throws FileError as read_mesh
 Mesh read_obj(const std::filesystem::path& path);
+/// Read a PLY file, whatever it is called. @throws FileError as read_mesh
 Mesh read_ply_mesh(const std::filesystem::path& path);
 
 /// Write a binary STL file with facet normals, atomically.

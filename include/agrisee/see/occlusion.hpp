@@ -53,8 +53,8 @@ std::vector<Eigen::Vector3f> occluder_directions(const C& cloud, const Eigen::Ve
 
 /// A direction and its angle (rad) to the nearest occluder, pi where there is none.
 struct FreeDirection {
-  Eigen::Vector3d direction = Eigen::Vector3d::UnitZ();
-  double clearance = kPi;
+  Eigen::Vector3d direction = Eigen::Vector3d::UnitZ();  ///< unit
+  double clearance = kPi;                                ///< angle to the nearest occluder (rad)
 };
 
 namespace detail {

@@ -11,7 +11,7 @@ namespace agrisee::see {
 
 /// `sees[i]`: the frontiers, by their position in the list given, that view i sees; ascending.
 struct VisibilityGraph {
-  std::vector<Indices> sees;
+  std::vector<Indices> sees;  ///< of each view, the frontiers that it sees
 
   /// True when view i sees the frontier j.
   bool edge(std::size_t i, std::size_t j) const {

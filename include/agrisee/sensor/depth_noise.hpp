@@ -18,13 +18,14 @@ namespace agrisee::sensor {
 
 /// Which noise a simulated sensor has.
 struct NoiseModel {
+  /// Its kind.
   enum class Kind {
     none,      ///< the truth
     gaussian,  ///< independent along the ray, standard deviation `sigma`
     l515,      ///< fits the sensor's published figures (2.5 mm at 1 m, 15.5 mm at 9 m)
     rough      ///< a harder sensor: correlated noise, range bias, many flying pixels, a wrong pose
   };
-  Kind kind = Kind::none;
+  Kind kind = Kind::none;  ///< which
   double sigma = 0.0;  ///< m; of `gaussian` alone
 
   /// @throws ParameterError

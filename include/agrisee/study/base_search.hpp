@@ -15,6 +15,7 @@ struct BaseSearchParameters {
   double share = 0.95;             ///< of what can be observed, for which the views are counted
   LimitParameters limit = {1000};  ///< how densely poses are tried at each place: less so than where there is one
 
+  /// The paper searches no place; the defaults.
   static BaseSearchParameters paper() { return {}; }
   /// @throws ParameterError naming the field
   void check() const {
@@ -24,6 +25,7 @@ struct BaseSearchParameters {
     check_parameter(share > 0.0 && share <= 1.0, "share", "in (0, 1]", share);
     limit.check();
   }
+  /// f(name, field) for every field.
   template <typename P, typename F>
   static void fields(P& p, F&& f) {
     f("range", p.range);

@@ -89,7 +89,7 @@ inline double share(const Samples& samples, const Flags& flags) {
 
 /// What can be observed of one fruit.
 struct FruitShare {
-  int id = 0;
+  int id = 0;               ///< of the scene's fruit
   std::size_t samples = 0;  ///< of its surface
   double observable = 0.0;  ///< share of them
 };
