@@ -23,6 +23,8 @@ namespace agrisee {
 /// One scan of one truss.
 class Pipeline {
  public:
+  /// @param parameters of all stages
+  /// @param threads the result does not depend on it
   /// @param workcell arm, sensor, scan volume and keep-out; see workcell.hpp
   /// @param reach answers whether and how the arm can take a view; the default asks our UR3 model
   /// @param planner decides where to look next; the default is the one that `parameters.planner` names

@@ -145,6 +145,10 @@ inline void complete_normals(Cloud& cloud, const Parameters& parameters, const C
 /// (`split.bodies.fit.noise`) reckons with four times the noise that the cloud shows locally: a ready cloud's errors go
 /// on beyond the neighbourhood in which they can be told from the surface. Works for any number of points; too few to
 /// be anything give no fruit.
+/// @param cloud points (m), any frame; normals and views where it has them
+/// @param parameters see their struct
+/// @param origin where the points were seen from
+/// @param threads the result does not depend on it
 /// @param seen_through evidence of free space from the views, or empty
 /// @throws ParameterError
 inline ScanResult process(const Cloud& cloud, const Parameters& parameters = {}, const CloudOrigin& origin = {},

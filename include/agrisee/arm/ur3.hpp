@@ -184,6 +184,8 @@ void for_each_solution(const Pose& base_link_T_tool0, double q6_desired, Body&& 
 /// Solutions that coincide (at the singularities of shoulder, elbow and wrist) are listed once. At a wrist singularity
 /// (|sin q5| < kWristSingularity) joints 2, 3, 4 and 6 move together without moving the tool; joint 6 is then
 /// `q6_desired`, or the angle nearest to it that the links can reach.
+/// @param base_link_T_tool0 where tool0 shall be
+/// @param limits of the joints
 /// @param q6_desired joint 6 at wrist singularities (rad); usually its present angle
 /// @throws InputError when the pose is not finite or its rotation is no rotation (to 1e-6)
 inline std::vector<Joints> inverse(const Pose& base_link_T_tool0, const JointLimits& limits = {},

@@ -184,6 +184,10 @@ class IcpProblem {
 /// normal (zero), where one is needed, are not matched. The motion found is dropped (`accepted` false, the initial pose
 /// returned) when it does not lower the residual, is larger than the limits, loses half of the matches, or there are
 /// fewer than `min_matches`.
+/// @param source points (m) that are laid on the target
+/// @param target points (m) that stay
+/// @param params see their struct
+/// @param threads the result does not depend on it
 /// @param source_normals one unit normal a source point, or empty: the angle between normals is not tested then
 /// @param target_normals one unit normal a target point; may be empty for point to point
 /// @param search a KdTree or Grid over `target`; a grid with cells of about `max_distance` / 2 is fastest

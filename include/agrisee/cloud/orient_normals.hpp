@@ -121,6 +121,10 @@ class Patches {
 /// The normals, turned so that neighbours agree and that each connected patch faces away from its own centroid:
 /// outwards for whole bodies and for the convex caps that are seen of them. A patch that has no such side (a plane)
 /// keeps the sign of its first point. Normals that are zero stay so.
+/// @param normals one per point, unit; zero where unknown
+/// @param cloud points (m)
+/// @param params see their struct
+/// @param threads the result does not depend on it
 /// @param search a KdTree or Grid over `cloud`
 /// @throws ParameterError for a bad parameter, InputError when sizes disagree
 template <typename C, typename Search>

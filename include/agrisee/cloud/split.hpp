@@ -222,6 +222,8 @@ void extend_labels(Labels& labels, const PointCloud<S>& cloud, const std::vector
 }  // namespace detail
 
 /// Split a cloud with normals (facing outwards) into fruit.
+/// @param cloud points (m) with normals
+/// @param parameters see their struct
 /// @param seen_through evidence of free space for the competition, or empty
 /// @throws ParameterError; InputError when the cloud has no normals
 template <typename S>
@@ -298,6 +300,9 @@ Split split(const PointCloud<S>& cloud, const SplitParameters& parameters = {}, 
 /// The bodies of a cloud that has grown, or changed a little, since `known` were found: those and what the points off
 /// them vote for compete anew. Far quicker than `split`, and as good while the cloud grows view by view; who found a
 /// body is kept. Points are labelled by the body on which they lie; regions are not grown.
+/// @param cloud points (m) with normals
+/// @param known bodies found before
+/// @param parameters see their struct
 /// @param seen_through evidence of free space for the competition, or empty
 /// @throws ParameterError; InputError when the cloud has no normals
 template <typename S>

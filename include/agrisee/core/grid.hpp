@@ -19,6 +19,7 @@ namespace agrisee {
 template <typename S>
 class Grid {
  public:
+  /// @param cloud points (m), any cloud type
   /// @param cell edge length of a cell (m), > 0; half to one times the usual query radius serves best
   /// @throws ParameterError when `cell` is not positive and finite
   template <typename C>

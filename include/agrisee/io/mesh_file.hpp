@@ -38,6 +38,8 @@ Mesh read_ply_mesh(const std::filesystem::path& path);
 void write_stl(const std::filesystem::path& path, const Mesh& mesh);
 
 /// Write a binary little-endian PLY mesh, atomically.
+/// @param path of the file
+/// @param mesh to be written
 /// @param colors one per vertex, or none
 /// @throws InputError when an index is out of range, a vertex not finite, or the colours are not one per vertex
 /// @throws FileError when the file cannot be written

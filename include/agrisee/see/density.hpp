@@ -49,6 +49,7 @@ class DensityMap {
 
   /// Merge a view (any cloud, world). A point is kept if no kept point is nearer than the minimum separation, so the
   /// first wins; points that are not finite are dropped. Kept points are appended in order.
+  /// @param cloud points (m) to be merged
   /// @param view number of the view, remembered with the points
   /// @param threads the result does not depend on it
   /// @return indices of the kept points in `cloud`, ascending

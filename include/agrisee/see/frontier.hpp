@@ -78,6 +78,8 @@ void k_nearest(const Search& search, const Vector3<S>& q, std::size_t k, S radiu
 /// its neighbours, pointing away from that mean. Where all neighbours lie on a line, the normal is the one nearest to
 /// the sight.
 ///
+/// @param index of the frontier point
+/// @param params see their struct
 /// @param cloud any cloud (m, world)
 /// @param search a KdTree or Grid over the cloud
 /// @param near a search with `count(q, r, cap)` for small radii over the same points (may be the same object)

@@ -131,6 +131,11 @@ inline Pose reported_pose(const Pose& world_T_optical, const NoiseModel& model, 
 /// A pixel at a depth edge (its depth z differs by more than the limit from that of one of its four neighbours) flies
 /// with the share given: its range is then uniform between the two surfaces, and whether it returns does not depend on
 /// incidence, as its beam falls on both. All others are lost by their incidence. Noise and bias come on top.
+/// @param intrinsics of the camera
+/// @param model of the noise
+/// @param seed names the random draws, with `view`
+/// @param view number of the view
+/// @param threads the result does not depend on it
 /// @param range        true range of each pixel (m), row by row; 0 = nothing is met
 /// @param incidence    angle between ray and surface normal where something is met (rad)
 /// @param max_incidence returns beyond it are always lost (rad)

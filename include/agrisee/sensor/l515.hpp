@@ -36,6 +36,10 @@ struct Capture {
 
 /// Look at a scene from `world_T_optical` (the true pose). A surface nearer than `range_min` hides what is behind it
 /// and returns nothing; a measured range outside of the limits is no return either.
+/// @param scene what is seen
+/// @param sensor camera and range
+/// @param world_T_optical true pose of the sensor
+/// @param noise model of the noise
 /// @param seed, view name the random draws: the same pair gives the same frame, other pairs give independent ones
 /// @param threads    the result does not depend on it
 /// @throws ParameterError for unusable limits or noise, InputError for an unusable camera

@@ -60,6 +60,8 @@ struct Observability {
 /// Views of a box that `reach` grants: directions on a Fibonacci sphere, targets in the box and preferred distances by
 /// a low-discrepancy sequence (Roberts' R4), so that nothing about the reach is assumed. Nothing is random; the order
 /// is fixed.
+/// @param params see their struct
+/// @param threads the result does not depend on it
 /// @param reach    called from several threads at once when `threads` > 1
 /// @param current  joints that the arm comes from (rad)
 /// @param box      what to look at (m)

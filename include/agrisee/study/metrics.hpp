@@ -46,6 +46,9 @@ struct Truth {
   sensor::L515 sensor;            ///< what views were taken with
 };
 
+/// @param scene what is seen
+/// @param sensor of the robot
+/// @param params see their struct
 /// @param known the ground truth where more is known than the meshes tell (growth axes, hidden fruit)
 /// @throws InputError when `known` does not list the scene's fruit in its order, and as ground_truth() does
 inline Truth make_truth(const Scene& scene, const std::optional<GroundTruth>& known = std::nullopt,

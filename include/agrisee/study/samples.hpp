@@ -41,6 +41,9 @@ struct SampleParameters {
 /// Append round(area / params.area) samples (at least one) of a mesh: its surface, laid out triangle after triangle, is
 /// cut into equal shares and each share gives one point, uniform within it (stratified sampling). Degenerate triangles
 /// get none.
+/// @param samples receives them
+/// @param mesh of the fruit (m)
+/// @param params see their struct
 /// @param id names the samples' fruit and selects the random stream
 /// @throws InputError as mesh_moments() does
 inline void append_samples(Samples& samples, const Mesh& mesh, int id, const SampleParameters& params = {}) {

@@ -26,6 +26,10 @@ inline bool unobstructed(const Bvh& bvh, const Eigen::Vector3f& p, const Eigen::
 }
 
 /// Samples that are seen from `eye`, whatever the field of view.
+/// @param scene what is seen
+/// @param samples of the fruit's surface
+/// @param eye where from (m, world)
+/// @param threads the result does not depend on it
 /// @param max_incidence largest angle between the line of sight and the normal (rad)
 inline Flags visible_from(const TracedScene& scene, const Samples& samples, const Eigen::Vector3d& eye,
                           double max_incidence = 0.5 * kPi, int threads = 1) {
