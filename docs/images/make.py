@@ -53,6 +53,7 @@ def panel(sheet, x, caption, result, oblique):
     picture.thumbnail(PANEL, Image.LANCZOS)
     sheet.paste(picture, (x + (PANEL[0] - picture.width) // 2, 42))
     draw = ImageDraw.Draw(sheet)
+    draw.rectangle((x, 42, x + PANEL[0], 49), fill="white")  # rest of the picture's own caption
     font = lambda bold, size: ImageFont.truetype("DejaVuSans-Bold.ttf" if bold else "DejaVuSans.ttf", size)
     draw.text((x + 10, 5), caption, (31, 38, 48), font(True, 13))
     facts = f"{fruits} fruit, {told['views']} views, {told['points']['filtered']} points"

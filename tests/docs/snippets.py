@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The snippets of the documents, compiled and run.
 
-  python3 snippets.py cpp WORKDIR COMPILER FLAGS...    ```cpp blocks
+  python3 snippets.py cpp WORKDIR COMPILER FOLDERS...  ```cpp blocks; FOLDERS of headers, separated by colons
   python3 snippets.py shell WORKDIR AGRISEE            ```sh and ```python blocks, and other lines that call agrisee
 
 A ```cpp block with `<!-- from: FILE -->` above it consists of lines of that file, which a ctest of its own compiles and
@@ -31,7 +31,7 @@ def is_part_of(block, path):
     return all(any(line.strip() == other for other in lines) for line in block.lines if line.strip())
 
 
-def compile_cpp(work, compiler, flags):
+def compile_cpp(work, compiler, folders):
     includes, bodies, count = {}, [], 0
     for document in documents():
         for block in blocks(document)[0]:
@@ -58,7 +58,9 @@ def compile_cpp(work, compiler, flags):
         file.write("\n".join(['#include "context.hpp"', *includes, *bodies]) + "\n")
     here = os.path.dirname(os.path.abspath(__file__))
     quiet = ["-Wno-unused-variable", "-Wno-unused-but-set-variable", "-Wno-missing-declarations"]
-    command = [compiler, *flags, "-std=c++17", "-fsyntax-only", "-I", here, "-I", os.path.join(ROOT, "include"),
+    # After all other folders, since /usr/include among them would lose its place.
+    after = [flag for folder in ":".join(folders).split(":") if folder for flag in ("-idirafter", folder)]
+    command = [compiler, *after, "-std=c++17", "-fsyntax-only", "-I", here, "-I", os.path.join(ROOT, "include"),
                "-Wall", "-Wextra", "-Wconversion", "-Wshadow", "-Werror", *quiet, source]
     if subprocess.run(command).returncode:
         fail("a C++ block does not compile")
