@@ -23,12 +23,12 @@ namespace agrisee {
 /// One scan of one truss.
 class Pipeline {
  public:
-  /// @param parameters of all stages
-  /// @param threads the result does not depend on it
   /// @param workcell arm, sensor, scan volume and keep-out; see workcell.hpp
+  /// @param parameters of all stages
   /// @param reach answers whether and how the arm can take a view; the default asks our UR3 model
   /// @param planner decides where to look next; the default is the one that `parameters.planner` names
   /// @param seed of whatever the planner draws
+  /// @param threads the result does not depend on it
   /// @param approach answers whether and how the arm can approach a fruit to pick it; the default asks our UR3 model,
   /// or
   ///   nobody where `reach` is the caller's own (an arm that we do not know)

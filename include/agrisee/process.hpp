@@ -148,8 +148,8 @@ inline void complete_normals(Cloud& cloud, const Parameters& parameters, const C
 /// @param cloud points (m), any frame; normals and views where it has them
 /// @param parameters see their struct
 /// @param origin where the points were seen from
-/// @param threads the result does not depend on it
 /// @param seen_through evidence of free space from the views, or empty
+/// @param threads the result does not depend on it
 /// @throws ParameterError
 inline ScanResult process(const Cloud& cloud, const Parameters& parameters = {}, const CloudOrigin& origin = {},
                           const SeenThrough& seen_through = {}, int threads = 1) {

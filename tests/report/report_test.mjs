@@ -166,7 +166,7 @@ for (const size of [wide, narrow])
       assert.ok((await pixels(page, [])).drawn > 500, `camera ${camera} shows nothing`);
     }
     await page.click('#play');
-    await page.waitForFunction(() => document.body.dataset.view === '2');
+    await page.waitForFunction(() => Number(document.body.dataset.view) > 1);  // a slow machine may not show every view
     await page.click('#play');
     await slide(views.length);
     assert.ok((await page.locator('#curves path').count()) >= 2, 'no curves');

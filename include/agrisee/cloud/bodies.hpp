@@ -157,8 +157,8 @@ inline double overlap(const Ellipsoid& a, const Ellipsoid& b) {
 /// Let candidates compete for the points of a cloud with outward normals.
 ///
 /// @param cloud points (m) with normals
-/// @param parameters see their struct
 /// @param candidates in the order that decides ties
+/// @param parameters see their struct
 /// @param seen_through evidence of free space, or empty
 /// @return the bodies that won, best first; their points are those that `assign_to_bodies` gives them
 /// @throws ParameterError; InputError when the cloud has no normals

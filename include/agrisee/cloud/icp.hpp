@@ -185,13 +185,13 @@ class IcpProblem {
 /// returned) when it does not lower the residual, is larger than the limits, loses half of the matches, or there are
 /// fewer than `min_matches`.
 /// @param source points (m) that are laid on the target
-/// @param target points (m) that stay
-/// @param params see their struct
-/// @param threads the result does not depend on it
 /// @param source_normals one unit normal a source point, or empty: the angle between normals is not tested then
+/// @param target points (m) that stay
 /// @param target_normals one unit normal a target point; may be empty for point to point
+/// @param params see their struct
 /// @param search a KdTree or Grid over `target`; a grid with cells of about `max_distance` / 2 is fastest
 /// @param initial pose of the source frame in the target frame to start from and to measure the correction against
+/// @param threads the result does not depend on it
 /// @throws ParameterError for a bad parameter; InputError when sizes disagree, target normals are missing or `initial`
 /// is
 ///         not rigid

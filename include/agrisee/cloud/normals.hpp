@@ -53,8 +53,8 @@ Vector3<S> normal_of(const Moments& moments, S* curvature) {
 /// them on a line or at one place (within the rounding of the coordinates), or a point that is not finite.
 /// @param cloud points (m), any cloud type
 /// @param params see their struct
-/// @param threads the result does not depend on it
 /// @param search a KdTree or Grid over `cloud`
+/// @param threads the result does not depend on it
 /// @param curvatures if given, receives one surface variation (0 to 1/3; 0 where the normal is unknown) a point
 /// @throws ParameterError for a bad parameter, InputError when the search is over a cloud of another size
 template <typename C, typename Search>

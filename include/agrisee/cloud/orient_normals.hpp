@@ -124,8 +124,8 @@ class Patches {
 /// @param normals one per point, unit; zero where unknown
 /// @param cloud points (m)
 /// @param params see their struct
-/// @param threads the result does not depend on it
 /// @param search a KdTree or Grid over `cloud`
+/// @param threads the result does not depend on it
 /// @throws ParameterError for a bad parameter, InputError when sizes disagree
 template <typename C, typename Search>
 std::vector<Vector3<scalar_t<C>>> orient_normals_consistently(std::vector<Vector3<scalar_t<C>>> normals, const C& cloud,

@@ -192,8 +192,8 @@ Labels connected_regions(const C& cloud, const std::vector<Vector3<scalar_t<C>>>
 ///
 /// Points that are not finite, or whose normal is zero or not finite, never join.
 /// @param cloud points (m), any cloud type
-/// @param params see their struct
 /// @param normals one unit normal a point, all turned to the same side unless `unsigned_normals`
+/// @param params see their struct
 /// @param search a KdTree or Grid over `cloud`
 /// @param curvatures one finite surface variation a point where the parameters ask for it (estimate_normals gives them)
 /// @throws ParameterError for a bad parameter, InputError when sizes disagree or curvatures are missing

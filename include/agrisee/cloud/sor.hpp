@@ -44,8 +44,8 @@ struct SorParameters {
 /// those there are; 0 for a point alone; NaN for a point that is not finite.
 /// @param cloud points (m), any cloud type
 /// @param k how many others
-/// @param threads the result does not depend on it
 /// @param search a KdTree or Grid over `cloud`
+/// @param threads the result does not depend on it
 /// @throws InputError when the search is over a cloud of another size
 template <typename C, typename Search>
 std::vector<double> mean_neighbor_distances(const C& cloud, int k, const Search& search, int threads = 1) {
@@ -111,8 +111,8 @@ std::vector<double> mean_neighbor_distances(const C& cloud, int k, int threads =
 /// equal.
 /// @param cloud points (m), any cloud type
 /// @param params see their struct
-/// @param threads the result does not depend on it
 /// @param search a KdTree or Grid over `cloud`
+/// @param threads the result does not depend on it
 /// @throws ParameterError for a bad parameter, InputError when the search is over a cloud of another size
 template <typename C, typename Search>
 Indices remove_statistical_outliers(const C& cloud, const SorParameters& params, const Search& search,

@@ -79,8 +79,8 @@ double relative_volume_error(const PointCloud<S>& cloud, const Indices& indices,
 
 /// Volume (m3) of a fitted body, with its standard error: that of the fit and that of the shape.
 /// @param body as fitted
-/// @param parameters see their struct
 /// @param relative_fit_error see relative_volume_error
+/// @param parameters see their struct
 inline Estimate volume_of(const Ellipsoid& body, double relative_fit_error, const MassParameters& parameters = {}) {
   const double v = volume(body);
   return {v, v * std::hypot(relative_fit_error, parameters.shape_error)};

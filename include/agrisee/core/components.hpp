@@ -45,9 +45,9 @@ class DisjointSets {
 
 /// Join in `sets` all members among the stored points of a grid that are neighbours.
 /// @param grid of the points
+/// @param stencil cells about a cell in which neighbours may be; all members in cells that lie inside are neighbours
 /// @param threads the result does not depend on it
 /// @param sets receives who belongs together
-/// @param stencil cells about a cell in which neighbours may be; all members in cells that lie inside are neighbours
 /// @param member whether the stored point j may have neighbours
 /// @param test test(j, begin, end, is) sets is[i - begin] to 1 for the members i of [begin, end) that are neighbours of
 ///   the member j and to 0 for others; it must be symmetric

@@ -52,9 +52,9 @@ class Bvh {
 
   /// The first triangle that the ray meets at t in [max(t_min, 0), t_max], seen from either side.
   ///
+  /// @param origin, direction any length but zero; a ray that is not finite meets nothing
   /// @param t_min nearest distance along the ray that counts
   /// @param t_max farthest
-  /// @param origin, direction any length but zero; a ray that is not finite meets nothing
   std::optional<Hit> closest(const Eigen::Vector3f& origin, const Eigen::Vector3f& direction, float t_min = 0.0f,
                              float t_max = std::numeric_limits<float>::infinity()) const;
 

@@ -64,10 +64,10 @@ class GainPlanner : public Planner {
  public:
   /// @param sensor intrinsics and range
   /// @param volume to be scanned (world)
+  /// @param eye the arm's base in world, from which the truss is first looked at
   /// @param split see its struct
   /// @param free_space see its struct
   /// @param parameters see its struct
-  /// @param eye the arm's base in world, from which the truss is first looked at
   /// @throws ParameterError
   GainPlanner(const sensor::L515& sensor, const Aabb& volume, const Eigen::Vector3d& eye, const SplitParameters& split,
               const FreeSpaceParameters& free_space, const GainPlannerParameters& parameters = {})

@@ -18,11 +18,11 @@ namespace agrisee::see {
 /// Those before the first empty one belong to the surface of p itself; every later one must be empty too. A line along
 /// which no ball is empty is blocked. Where `bounds` is given, the part of the line outside it (plus upsilon) is known
 /// to be free. Cost: at most psi / upsilon ball queries.
+/// @param search a neighbour search with `count(q, r, cap)`, of scalar S
 /// @param p the point (m)
 /// @param sensor position of the sensor (m)
 /// @param params see their struct
 /// @param bounds box about the cloud; nothing beyond it occludes
-/// @param search a neighbour search with `count(q, r, cap)`, of scalar S
 template <typename S, typename Search>
 bool is_visible(const Search& search, const Eigen::Vector3d& p, const Eigen::Vector3d& sensor, const Parameters& params,
                 const Aabb& bounds) {
@@ -165,9 +165,9 @@ inline FreeDirection freest_direction(const std::vector<Eigen::Vector3f>& occlud
 
 /// The proposal for a frontier: along its normal where that sight is free, else from the freest side within
 /// `max_incidence` of the normal (which may still be blocked).
+/// @param cloud any cloud (m, world); @param search a search over it with `count(q, r, cap)`
 /// @param f the frontier
 /// @param params see their struct
-/// @param cloud any cloud (m, world); @param search a search over it with `count(q, r, cap)`
 /// @param bounds a box that holds the cloud
 template <typename C, typename Search>
 ViewProposal propose_visible(const C& cloud, const Search& search, const Frontier& f, const Parameters& params,

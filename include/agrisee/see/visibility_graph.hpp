@@ -32,12 +32,12 @@ bool sees(const Search& search, const ViewProposal& view, const Frontier& f, con
 }
 
 /// Test every view against every frontier.
+/// @param search a search with `count(q, r, cap)` of scalar S over the merged cloud; @param bounds a box that holds the
+/// cloud
 /// @param views the proposals
 /// @param frontiers that are to be seen
 /// @param params see their struct
 /// @param threads the result does not depend on it
-/// @param search a search with `count(q, r, cap)` of scalar S over the merged cloud; @param bounds a box that holds the
-/// cloud
 template <typename S, typename Search>
 VisibilityGraph visibility_graph(const Search& search, const std::vector<ViewProposal>& views,
                                  const std::vector<Frontier>& frontiers, const Parameters& params, const Aabb& bounds,

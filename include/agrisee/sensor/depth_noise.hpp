@@ -132,13 +132,13 @@ inline Pose reported_pose(const Pose& world_T_optical, const NoiseModel& model, 
 /// with the share given: its range is then uniform between the two surfaces, and whether it returns does not depend on
 /// incidence, as its beam falls on both. All others are lost by their incidence. Noise and bias come on top.
 /// @param intrinsics of the camera
+/// @param range        true range of each pixel (m), row by row; 0 = nothing is met
+/// @param incidence    angle between ray and surface normal where something is met (rad)
+/// @param max_incidence returns beyond it are always lost (rad)
 /// @param model of the noise
 /// @param seed names the random draws, with `view`
 /// @param view number of the view
 /// @param threads the result does not depend on it
-/// @param range        true range of each pixel (m), row by row; 0 = nothing is met
-/// @param incidence    angle between ray and surface normal where something is met (rad)
-/// @param max_incidence returns beyond it are always lost (rad)
 /// @return as `range`; 0 = no return
 /// @throws InputError when an image is not as large as the intrinsics say
 inline std::vector<float> measured_ranges(const Intrinsics& intrinsics, const std::vector<float>& range,

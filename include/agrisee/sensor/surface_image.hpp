@@ -113,10 +113,10 @@ struct Patch {
 /// Pixels outside the volume, invalid ones, and cells without support are left out of `points`; `depth` keeps what lies
 /// outside too, as evidence of free space.
 /// @param frame as measured
+/// @param world_T_optical pose of the sensor when the frame was taken
 /// @param volume what lies outside is left out (world)
 /// @param parameters see their struct
 /// @param threads the result does not depend on it
-/// @param world_T_optical pose of the sensor when the frame was taken
 /// @throws InputError for a frame whose size disagrees with its intrinsics or a pose that is not rigid; ParameterError
 inline SurfaceImage reconstruct_surface(const DepthFrame& frame, const Pose& world_T_optical, const Aabb& volume,
                                         const SurfaceParameters& parameters = {}, int threads = 1) {

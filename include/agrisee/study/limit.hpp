@@ -60,11 +60,11 @@ struct Observability {
 /// Views of a box that `reach` grants: directions on a Fibonacci sphere, targets in the box and preferred distances by
 /// a low-discrepancy sequence (Roberts' R4), so that nothing about the reach is assumed. Nothing is random; the order
 /// is fixed.
-/// @param params see their struct
-/// @param threads the result does not depend on it
 /// @param reach    called from several threads at once when `threads` > 1
 /// @param current  joints that the arm comes from (rad)
 /// @param box      what to look at (m)
+/// @param params see their struct
+/// @param threads the result does not depend on it
 /// @throws InputError for an empty box; ParameterError for unusable parameters
 inline std::vector<plan::ReachableView> reachable_views(const plan::Reach& reach, const Joints& current,
                                                         const Aabb& box, const LimitParameters& params = {},

@@ -47,9 +47,9 @@ struct Truth {
 };
 
 /// @param scene what is seen
+/// @param known the ground truth where more is known than the meshes tell (growth axes, hidden fruit)
 /// @param sensor of the robot
 /// @param params see their struct
-/// @param known the ground truth where more is known than the meshes tell (growth axes, hidden fruit)
 /// @throws InputError when `known` does not list the scene's fruit in its order, and as ground_truth() does
 inline Truth make_truth(const Scene& scene, const std::optional<GroundTruth>& known = std::nullopt,
                         const sensor::L515& sensor = {}, const SampleParameters& params = {}) {

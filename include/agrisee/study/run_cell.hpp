@@ -25,8 +25,8 @@ struct Subject {
 /// @param fingerprint of whatever its records depend on
 /// @param scene its objects
 /// @param workcell of the scene
-/// @param threads the result does not depend on it
 /// @param known the ground truth where more is known than the meshes tell
+/// @param threads the result does not depend on it
 /// @throws InputError as make_truth() does
 inline Subject make_subject(std::string name, std::string fingerprint, const Scene& scene, const Workcell& workcell,
                             const std::optional<GroundTruth>& known, int threads = 1) {
@@ -109,8 +109,8 @@ inline std::unique_ptr<plan::Planner> study_planner(const Subject& subject, cons
 /// Scan a subject and judge the scan.
 /// @param subject the scene
 /// @param cell what is run
-/// @param threads the result does not depend on it
 /// @param parameters of the cell's preset; the planner is the cell's
+/// @param threads the result does not depend on it
 /// @throws ParameterError for an unknown planner or noise; InputError as the scan does
 inline CellRecord run_cell(const Subject& subject, const Cell& cell, Parameters parameters, int threads = 1) {
   const Truth& truth = *subject.truth;

@@ -43,8 +43,8 @@ struct SampleParameters {
 /// get none.
 /// @param samples receives them
 /// @param mesh of the fruit (m)
-/// @param params see their struct
 /// @param id names the samples' fruit and selects the random stream
+/// @param params see their struct
 /// @throws InputError as mesh_moments() does
 inline void append_samples(Samples& samples, const Mesh& mesh, int id, const SampleParameters& params = {}) {
   params.check();

@@ -29,8 +29,8 @@ inline bool unobstructed(const Bvh& bvh, const Eigen::Vector3f& p, const Eigen::
 /// @param scene what is seen
 /// @param samples of the fruit's surface
 /// @param eye where from (m, world)
-/// @param threads the result does not depend on it
 /// @param max_incidence largest angle between the line of sight and the normal (rad)
+/// @param threads the result does not depend on it
 inline Flags visible_from(const TracedScene& scene, const Samples& samples, const Eigen::Vector3d& eye,
                           double max_incidence = 0.5 * kPi, int threads = 1) {
   Flags seen(samples.size(), 0);
