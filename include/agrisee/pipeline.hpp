@@ -24,9 +24,11 @@ namespace agrisee {
 class Pipeline {
  public:
   /// @param workcell arm, sensor, scan volume and keep-out; see workcell.hpp
+  /// @param parameters of all stages
   /// @param reach answers whether and how the arm can take a view; the default asks our UR3 model
   /// @param planner decides where to look next; the default is the one that `parameters.planner` names
   /// @param seed of whatever the planner draws
+  /// @param threads the result does not depend on it
   /// @param approach answers whether and how the arm can approach a fruit to pick it; the default asks our UR3 model,
   /// or
   ///   nobody where `reach` is the caller's own (an arm that we do not know)
@@ -123,17 +125,22 @@ class Pipeline {
   /// The arm could not take the view that `next_view` returned last: ask again for another.
   void refused() { planner_->refused(); }
 
+  /// Why next_view() returned nothing last.
   StopReason stop_reason() const { return stop_reason_; }
   /// How much of the fruit's surface the planner believes to have been seen, and that the arm can see at all, as of the
   /// last next_view(); nothing where the planner does not reckon with surfaces.
   std::optional<Completeness> completeness() const { return planner_->completeness(); }
+  /// The views taken so far.
   const std::vector<View>& views() const { return views_; }
   /// The cloud merged so far, before any filter at the end.
   const Cloud& merged() const { return cloud_; }
   /// All points merged so far, filtered away later or not, each with its view.
   Cloud raw() const { return raw_cloud(); }
+  /// As given.
   const Workcell& workcell() const { return workcell_; }
+  /// As given.
   const Parameters& parameters() const { return parameters_; }
+  /// What answers for the arm.
   const plan::Reach& reach() const { return reach_; }
 
   /// Clean, split and locate what has been seen so far, and plan the picking from where the arm stood last.

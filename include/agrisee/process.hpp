@@ -14,6 +14,7 @@ namespace agrisee {
 /// Adds the seconds of its own lifetime to a counter.
 class Stopwatch {
  public:
+  /// Starts; `seconds` has to outlive it.
   explicit Stopwatch(double& seconds) : seconds_(seconds), start_(std::chrono::steady_clock::now()) {}
   Stopwatch(const Stopwatch&) = delete;
   Stopwatch& operator=(const Stopwatch&) = delete;
@@ -152,7 +153,11 @@ inline void complete_normals(Cloud& cloud, const Parameters& parameters, const C
 /// (`split.bodies.fit.noise`) reckons with four times the noise that the cloud shows locally: a ready cloud's errors go
 /// on beyond the neighbourhood in which they can be told from the surface. Works for any number of points; too few to
 /// be anything give no fruit.
+/// @param cloud points (m), any frame; normals and views where it has them
+/// @param parameters see their struct
+/// @param origin where the points were seen from
 /// @param seen_through evidence of free space from the views, or empty
+/// @param threads the result does not depend on it
 /// @throws ParameterError
 inline ScanResult process(const Cloud& cloud, const Parameters& parameters = {}, const CloudOrigin& origin = {},
                           const SeenThrough& seen_through = {}, int threads = 1) {

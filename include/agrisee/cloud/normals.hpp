@@ -51,7 +51,10 @@ Vector3<S> normal_of(const Moments& moments, S* curvature) {
 
 /// One unit normal a point, its sign arbitrary; zero where the normal is unknown: fewer than three neighbours, all of
 /// them on a line or at one place (within the rounding of the coordinates), or a point that is not finite.
+/// @param cloud points (m), any cloud type
+/// @param params see their struct
 /// @param search a KdTree or Grid over `cloud`
+/// @param threads the result does not depend on it
 /// @param curvatures if given, receives one surface variation (0 to 1/3; 0 where the normal is unknown) a point
 /// @throws ParameterError for a bad parameter, InputError when the search is over a cloud of another size
 template <typename C, typename Search>
@@ -146,6 +149,8 @@ std::vector<Vector3<scalar_t<C>>> orient_normals_to_viewpoint(std::vector<Vector
 
 /// The normals, each turned so that it faces the sensor that saw its point; those of points without a view (-1) are
 /// zero, since nothing is known of their side.
+/// @param normals one per point
+/// @param cloud points (m)
 /// @param views one index into `sensors` a point, or -1
 /// @param sensors sensor positions (m, the cloud's frame), one a view
 /// @throws InputError when sizes disagree or a view has no sensor position

@@ -120,8 +120,12 @@ class Patches {
 /// The normals, turned so that neighbours agree and that each connected patch faces away from its own centroid:
 /// outwards for whole bodies and for the convex caps that are seen of them. A patch that has no such side (a plane)
 /// keeps the sign of its first point. Normals that are zero stay so.
+/// @param normals one per point, unit; zero where unknown
+/// @param cloud points (m)
+/// @param params see their struct
 /// @param lists neighbour lists of `cloud` of more than `params.neighbors` points (the point itself is one of them);
 ///   shorter ones are used as far as they reach
+/// @param threads the result does not depend on it
 /// @throws ParameterError for a bad parameter, InputError when sizes disagree
 template <typename C>
 std::vector<Vector3<scalar_t<C>>> orient_normals_consistently(std::vector<Vector3<scalar_t<C>>> normals, const C& cloud,

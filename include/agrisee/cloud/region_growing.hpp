@@ -191,7 +191,9 @@ Labels connected_regions(const C& cloud, const std::vector<Vector3<scalar_t<C>>>
 /// One label per point: regions from 1 in order of creation, 0 = residual. The cloud is not changed.
 ///
 /// Points that are not finite, or whose normal is zero or not finite, never join.
+/// @param cloud points (m), any cloud type
 /// @param normals one unit normal a point, all turned to the same side unless `unsigned_normals`
+/// @param params see their struct
 /// @param search a KdTree or Grid over `cloud`
 /// @param curvatures one finite surface variation a point where the parameters ask for it (estimate_normals gives them)
 /// @throws ParameterError for a bad parameter, InputError when sizes disagree or curvatures are missing

@@ -13,6 +13,8 @@ namespace agrisee {
 
 /// The mean point of every cell of edge `leaf` (m) that holds finite points, cells by z, then y, then x.
 /// Normals, where all points have them, are averaged and made unit; views are dropped.
+/// @param cloud points (m)
+/// @param leaf edge of the voxels (m)
 /// @param members if given, receives the number of points behind each mean
 /// @throws ParameterError when `leaf` is not positive
 template <typename S>

@@ -19,12 +19,15 @@ namespace agrisee {
 /// The neighbours of one point, nearest first, ties by index; itself included.
 template <typename S>
 struct Neighborhood {
-  std::size_t size = 0;
-  const S* distance = nullptr;                       ///< m
-  const Index* ids = nullptr;                        ///< in the cloud
-  const S *x = nullptr, *y = nullptr, *z = nullptr;  ///< coordinates of the point number at[i] (m) ...
-  const std::uint32_t* at = nullptr;                 ///< ... of neighbour i
+  std::size_t size = 0;          ///< number of neighbours
+  const S* distance = nullptr;   ///< m
+  const Index* ids = nullptr;    ///< in the cloud
+  const S* x = nullptr;          ///< x of neighbour i is x[at[i]] (m)
+  const S* y = nullptr;          ///< y likewise
+  const S* z = nullptr;          ///< and z
+  const std::uint32_t* at = nullptr;  ///< where neighbour i is among them
 
+  /// Neighbour number i (m).
   Vector3<S> point(std::size_t i) const { return {x[at[i]], y[at[i]], z[at[i]]}; }
 };
 
@@ -353,9 +356,10 @@ void for_each_neighborhood(const C& cloud, std::size_t k, scalar_t<C> radius, in
 
 /// The k nearest points of every point of a cloud, computed once for several stages.
 struct NeighborLists {
-  std::size_t k = 0;
+  std::size_t k = 0;  ///< neighbours a point
   Indices ids;  ///< k a point, nearest first, itself included; -1 where there are fewer and for points not finite
 
+  /// Number of points.
   std::size_t size() const { return k == 0 ? 0 : ids.size() / k; }
   /// f(j) for the neighbours j of point i, nearest first.
   template <typename F>

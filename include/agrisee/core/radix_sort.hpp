@@ -14,8 +14,8 @@ namespace agrisee {
 
 /// An index and what it is sorted by.
 struct Keyed {
-  std::uint64_t key;
-  Index index;
+  std::uint64_t key;  ///< what is sorted by
+  Index index;        ///< what is sorted
 };
 
 /// Sort by key; equal keys keep their order. Cost O(n) a pass, one pass for each 11 bits of the largest key.

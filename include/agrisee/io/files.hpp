@@ -17,9 +17,10 @@ namespace agrisee::io {
 
 /// The bytes of a file.
 struct Bytes {
-  std::unique_ptr<char[]> data;
-  std::size_t size = 0;
+  std::unique_ptr<char[]> data;  ///< the bytes
+  std::size_t size = 0;          ///< how many
 
+  /// Them as text.
   std::string_view view() const { return {data.get(), size}; }
 };
 
@@ -39,6 +40,7 @@ class AtomicFile {
 
   /// Append bytes. @throws FileError when they cannot be written
   void write(const void* data, std::size_t size);
+  /// Append text. @throws FileError when it cannot be written
   void write(std::string_view text) { write(text.data(), text.size()); }
   /// Put the file in its place. @throws FileError when that fails
   void commit();

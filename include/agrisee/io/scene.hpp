@@ -13,7 +13,7 @@ namespace agrisee::io {
 
 /// A scene file in memory.
 struct SceneFile {
-  Workcell workcell;
+  Workcell workcell;  ///< all but the objects
   Scene scene;  ///< meshes in world coordinates; object i is the i-th of the file
 };
 

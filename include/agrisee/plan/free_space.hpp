@@ -26,6 +26,7 @@ struct FreeSpaceParameters {
     check_parameter(max_incidence > 0 && max_incidence < kPi / 2, "free_space.max_incidence", "in (0, pi/2)", max_incidence);
     check_parameter(min_refuting >= 1, "free_space.min_refuting", ">= 1", min_refuting);
   }
+  /// f(name, field) for every field.
   template <typename P, typename F>
   static void fields(P& p, F&& f) {
     f("margin", p.margin);
