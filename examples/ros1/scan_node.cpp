@@ -197,11 +197,8 @@ class ScanNode {
     return h;
   }
 
-  geometry_msgs::PoseArray pose_array(const std::vector<Pose>& poses) const {
-    geometry_msgs::PoseArray out;
-    out.header = header();
-    for (const Pose& p : poses) out.poses.push_back(pose_message<geometry_msgs::Pose>(p));
-    return out;
+  geometry_msgs::PoseArray poses_message(const std::vector<Pose>& poses) const {
+    return pose_array<geometry_msgs::PoseArray>(header(), poses);
   }
 
   /// Everything that is known now. The joint goal goes first: the arm moves while the rest is computed; the status last.
@@ -220,7 +217,7 @@ class ScanNode {
     const auto candidates = session_.goal() ? pipeline.candidates() : std::vector<plan::ReachableView>{};
     std::vector<Pose> poses;
     for (const auto& c : candidates) poses.push_back(c.world_T_optical);
-    candidates_.publish(pose_array(poses));
+    candidates_.publish(poses_message(poses));
     if (session_.goal()) {
       geometry_msgs::PoseStamped chosen;
       chosen.header = header();
@@ -237,23 +234,10 @@ class ScanNode {
     cloud.header = header();
     fill_cloud(cloud, result.cloud, result.labels);
     cloud_.publish(cloud);
-    std::vector<Pose> poses, bodies;
-    std::map<int, Pose> pre_grasps;
-    for (const Fruit& f : result.fruits) {
-      poses.push_back(f.pose());
-      Pose body = f.pose();
-      if (f.body) {
-        body.linear() = f.body->axes;
-        body.translation() = f.body->center;
-      }
-      bodies.push_back(body);
-      if (f.picking && f.picking->reachable) pre_grasps[f.picking->order] = f.picking->world_T_pre_grasp;
-    }
-    fruits_.publish(pose_array(poses));
-    bodies_.publish(pose_array(bodies));
-    poses.clear();
-    for (const auto& entry : pre_grasps) poses.push_back(entry.second);
-    pre_grasps_.publish(pose_array(poses));
+    const ResultPoses poses = result_poses(result.fruits);
+    fruits_.publish(poses_message(poses.fruits));
+    bodies_.publish(poses_message(poses.bodies));
+    pre_grasps_.publish(poses_message(poses.pre_grasps));
     MarkerMaker<visualization_msgs::MarkerArray> markers(header());
     markers.fruits(result.fruits);
     fruit_markers_.publish(markers.take());

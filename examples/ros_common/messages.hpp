@@ -9,6 +9,7 @@
 #include <agrisee/result.hpp>
 
 #include <cstring>
+#include <map>
 #include <string>
 
 namespace agrisee::robot {
@@ -48,6 +49,38 @@ Message point_message(const Eigen::Vector3d& p) {
   m.y = p.y();
   m.z = p.z();
   return m;
+}
+
+/// The poses that a result is published as, each list by its own order.
+struct ResultPoses {
+  std::vector<Pose> fruits;      ///< pose frames, by id
+  std::vector<Pose> bodies;      ///< centre and semi-axes of the bodies, by id; the pose frame where none was fitted
+  std::vector<Pose> pre_grasps;  ///< of the tool, in the order of picking; only of fruit that can be picked
+};
+inline ResultPoses result_poses(const std::vector<Fruit>& fruits) {
+  ResultPoses out;
+  std::map<int, Pose> by_order;
+  for (const Fruit& f : fruits) {
+    out.fruits.push_back(f.pose());
+    out.bodies.push_back(f.pose());
+    if (f.body) {
+      out.bodies.back().linear() = f.body->axes;
+      out.bodies.back().translation() = f.body->center;
+    }
+    if (f.picking && f.picking->reachable) by_order[f.picking->order] = f.picking->world_T_pre_grasp;
+  }
+  for (const auto& entry : by_order) out.pre_grasps.push_back(entry.second);
+  return out;
+}
+
+/// A geometry_msgs/PoseArray.
+template <typename PoseArray, typename Header>
+PoseArray pose_array(const Header& header, const std::vector<Pose>& poses) {
+  PoseArray out;
+  out.header = header;
+  for (const Pose& p : poses)
+    out.poses.push_back(pose_message<typename decltype(PoseArray::poses)::value_type>(p));
+  return out;
 }
 
 /// Fill a sensor_msgs/PointCloud2 with x, y, z, normal_x, normal_y, normal_z, rgb (a colour per fruit) and instance
