@@ -36,7 +36,8 @@ class ScanNode {
     bodies_ = private_.advertise<geometry_msgs::PoseArray>("bodies", 1, true);
     fruit_markers_ = private_.advertise<visualization_msgs::MarkerArray>("fruit_markers", 1, true);
     pre_grasps_ = private_.advertise<geometry_msgs::PoseArray>("pre_grasps", 1, true);
-    joint_goal_ = private_.advertise<trajectory_msgs::JointTrajectory>("joint_goal", 1, true);
+    // Not latched: whoever connects late must not be sent off by an old goal.
+    joint_goal_ = private_.advertise<trajectory_msgs::JointTrajectory>("joint_goal", 1);
     status_ = private_.advertise<std_msgs::String>("status", 10, true);
 
     // One frame is kept: while a view is planned, those that come are old by the time it is done.
@@ -55,16 +56,8 @@ class ScanNode {
               }),
         serve("skip_view",
               [this] { return session_.refuse(now()) ? said("skipped") : refused("no view was asked for"); })};
-    timer_ = node_.createTimer(ros::Duration(0.5), [this](const ros::TimerEvent&) {
-      if (!session_.tick(now())) return;
-      ROS_WARN("The view was not reached in time, the next best follows");
-      publish();
-    });
+    timer_ = node_.createTimer(ros::Duration(0.5), [this](const ros::TimerEvent&) { tick(); });
     publish();
-    if (own_.start) {
-      session_.start(now());
-      publish();
-    }
   }
 
  private:
@@ -128,10 +121,23 @@ class ScanNode {
         });
   }
 
+  void tick() {
+    if (own_.start && joints_heard_ && joint_goal_.getNumSubscribers() > 0) {
+      own_.start = false;
+      if (session_.start(now())) publish();
+    }
+    if (!session_.tick(now())) return;
+    ROS_WARN("The view was not reached in time, the next best follows");
+    publish();
+  }
+
   void take_info(const sensor_msgs::CameraInfoConstPtr& info) { info_ = info; }
 
   void take_joints(const sensor_msgs::JointStateConstPtr& message) {
-    if (const auto joints = joints_of(*message)) guarded([&] { session_.set_joints(*joints); });
+    const auto joints = joints_of(*message);
+    if (!joints) return;
+    guarded([&] { session_.set_joints(*joints); });
+    joints_heard_ = true;
   }
 
   void take_image(const sensor_msgs::ImageConstPtr& image) {
@@ -263,6 +269,7 @@ class ScanNode {
   tf2_ros::Buffer buffer_;
   tf2_ros::TransformListener listener_;
   sensor_msgs::CameraInfoConstPtr info_;
+  bool joints_heard_ = false;
   std::size_t goals_published_ = 0;
   ros::Publisher cloud_, candidates_, chosen_, view_markers_, fruits_, bodies_, fruit_markers_, pre_grasps_,
       joint_goal_, status_;

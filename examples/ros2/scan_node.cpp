@@ -64,7 +64,7 @@ class ScanNode : public rclcpp::Node {
     bodies_ = create_publisher<PoseArray>("~/bodies", latched);
     fruit_markers_ = create_publisher<Markers>("~/fruit_markers", latched);
     pre_grasps_ = create_publisher<PoseArray>("~/pre_grasps", latched);
-    joint_goal_ = create_publisher<Trajectory>("~/joint_goal", latched);
+    joint_goal_ = create_publisher<Trajectory>("~/joint_goal", 1);  // not latched: an old goal must not move anybody
     status_ = create_publisher<std_msgs::msg::String>("~/status", latched);
 
     const auto sensor = rclcpp::SensorDataQoS().keep_last(1);
@@ -73,7 +73,10 @@ class ScanNode : public rclcpp::Node {
         create_subscription<Image>("depth/image", sensor, [this](Image::ConstSharedPtr m) { take_image(*m); }),
         create_subscription<Cloud2>("points", sensor, [this](Cloud2::ConstSharedPtr m) { take_points(*m); }),
         create_subscription<JointState>("joint_states", 1, [this](JointState::ConstSharedPtr m) {
-          if (const auto joints = joints_of(*m)) guarded([&] { session_->set_joints(*joints); });
+          const auto joints = joints_of(*m);
+          if (!joints) return;
+          guarded([&] { session_->set_joints(*joints); });
+          joints_heard_ = true;
         })};
     services_ = {serve("~/start", "a scan is going on", [this] { return session_->start(seconds()); }),
                  serve("~/stop", "no scan is going on", [this] { return session_->stop(); }),
@@ -83,8 +86,7 @@ class ScanNode : public rclcpp::Node {
                          return true;
                        }),
                  serve("~/skip_view", "no view was asked for", [this] { return session_->refuse(seconds()); })};
-    timer_ = create_timer_of_half_a_second();
-    if (autostart_) session_->start(seconds());
+    timer_ = create_wall_timer(std::chrono::milliseconds(500), [this] { tick(); });
     publish();
   }
 
@@ -127,12 +129,14 @@ class ScanNode : public rclcpp::Node {
                                          static_cast<std::uint64_t>(seed), threads);
   }
 
-  rclcpp::TimerBase::SharedPtr create_timer_of_half_a_second() {
-    return create_wall_timer(std::chrono::milliseconds(500), [this] {
-      if (!session_->tick(seconds())) return;
-      RCLCPP_WARN(get_logger(), "The view was not reached in time, the next best follows");
-      publish();
-    });
+  void tick() {
+    if (autostart_ && joints_heard_ && joint_goal_->get_subscription_count() > 0) {
+      autostart_ = false;
+      if (session_->start(seconds())) publish();
+    }
+    if (!session_->tick(seconds())) return;
+    RCLCPP_WARN(get_logger(), "The view was not reached in time, the next best follows");
+    publish();
   }
 
   template <typename Action>
@@ -264,6 +268,7 @@ class ScanNode : public rclcpp::Node {
   tf2_ros::Buffer buffer_;
   tf2_ros::TransformListener listener_;
   CameraInfo::ConstSharedPtr info_;
+  bool joints_heard_ = false;
   std::size_t goals_published_ = 0;
   rclcpp::Publisher<Cloud2>::SharedPtr cloud_;
   rclcpp::Publisher<PoseArray>::SharedPtr candidates_, fruits_, bodies_, pre_grasps_;
