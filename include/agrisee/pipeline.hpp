@@ -130,6 +130,8 @@ class Pipeline {
   /// How much of the fruit's surface the planner believes to have been seen, and that the arm can see at all, as of the
   /// last next_view(); nothing where the planner does not reckon with surfaces.
   std::optional<Completeness> completeness() const { return planner_->completeness(); }
+  /// The views that the last next_view() chose from, best first; nothing where the planner does not compare views.
+  std::vector<plan::ReachableView> candidates() const { return planner_->candidates(); }
   /// The views taken so far.
   const std::vector<View>& views() const { return views_; }
   /// The cloud merged so far, before any filter at the end.

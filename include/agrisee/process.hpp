@@ -142,28 +142,12 @@ inline void complete_normals(Cloud& cloud, const Parameters& parameters, const C
   }
 }
 
-}  // namespace detail
-
-/// Clean, split and locate (paper: SOR, region growing, DBSCAN, localization).
-///
-/// Points that are not finite are dropped. Normals that the cloud has are kept, unless `origin.check_normals` asks to
-/// turn those that face away from where their points were seen from; missing ones are estimated and turned to the
-/// views, to the one viewpoint, or, where neither is known, by consistency. Where normals had to be estimated, the fit
-/// of bodies
-/// (`split.bodies.fit.noise`) reckons with four times the noise that the cloud shows locally: a ready cloud's errors go
-/// on beyond the neighbourhood in which they can be told from the surface. Works for any number of points; too few to
-/// be anything give no fruit.
-/// @param cloud points (m), any frame; normals and views where it has them
-/// @param parameters see their struct
-/// @param origin where the points were seen from
-/// @param seen_through evidence of free space from the views, or empty
-/// @param threads the result does not depend on it
-/// @throws ParameterError
-inline ScanResult process(const Cloud& cloud, const Parameters& parameters = {}, const CloudOrigin& origin = {},
-                          const SeenThrough& seen_through = {}, int threads = 1) {
+/// `process` of a cloud whose points are all finite.
+inline ScanResult process_finite(Cloud raw, const Parameters& parameters, const CloudOrigin& origin,
+                                 const SeenThrough& seen_through, int threads) {
   parameters.check();
   ScanResult result;
-  result.raw = select(cloud, finite_indices(cloud));
+  result.raw = std::move(raw);
   if (result.raw.views.empty()) result.raw.views.assign(result.raw.size(), -1);
   Timing& t = result.seconds;
   {
@@ -194,6 +178,40 @@ inline ScanResult process(const Cloud& cloud, const Parameters& parameters = {},
   }
   t.total = t.filter + t.normals + t.segment + t.locate;
   return result;
+}
+
+}  // namespace detail
+
+/// Clean, split and locate (paper: SOR, region growing, DBSCAN, localization).
+///
+/// Points that are not finite are dropped. Normals that the cloud has are kept, unless `origin.check_normals` asks to
+/// turn those that face away from where their points were seen from; missing ones are estimated and turned to the
+/// views, to the one viewpoint, or, where neither is known, by consistency. Where normals had to be estimated, the fit
+/// of bodies (`split.bodies.fit.noise`) reckons with four times the noise that the cloud shows locally: a ready cloud's
+/// errors go on beyond the neighbourhood in which they can be told from the surface. Works for any number of points;
+/// too few to be anything give no fruit.
+/// @param cloud points (m), any frame; normals and views where it has them
+/// @param parameters see their struct
+/// @param origin where the points were seen from
+/// @param seen_through evidence of free space from the views, or empty
+/// @param threads the result does not depend on it
+/// @throws ParameterError
+inline ScanResult process(const Cloud& cloud, const Parameters& parameters = {}, const CloudOrigin& origin = {},
+                          const SeenThrough& seen_through = {}, int threads = 1) {
+  return detail::process_finite(select(cloud, finite_indices(cloud)), parameters, origin, seen_through, threads);
+}
+
+/// The same for the points of a cloud of any other type (core/traits.hpp), read where they lie.
+template <typename C, typename = std::enable_if_t<!std::is_convertible_v<const C&, const Cloud&>>>
+ScanResult process(const C& points, const Parameters& parameters = {}, const CloudOrigin& origin = {},
+                   const SeenThrough& seen_through = {}, int threads = 1) {
+  Cloud raw;
+  raw.points.reserve(agrisee::size(points));
+  for (std::size_t i = 0; i < agrisee::size(points); ++i) {
+    const Eigen::Vector3f p = point(points, i).template cast<float>();
+    if (is_finite(p)) raw.points.push_back(p);
+  }
+  return detail::process_finite(std::move(raw), parameters, origin, seen_through, threads);
 }
 
 }  // namespace agrisee

@@ -133,6 +133,13 @@ class GainPlanner : public Planner {
 
   std::optional<Completeness> completeness() const override { return completeness_; }
 
+  std::vector<ReachableView> candidates() const override {
+    std::vector<ReachableView> views;
+    views.reserve(ranked_.size());
+    for (const Scored& s : ranked_) views.push_back(s.view);
+    return views;
+  }
+
   /// The planner's model of the truss.
   const ExpectedSurface& model() const { return model_; }
 

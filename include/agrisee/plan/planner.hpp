@@ -67,6 +67,10 @@ class Planner {
   /// How complete the scan is, as of the last call of `next`; nothing where the planner does not reckon with surfaces,
   /// or knows of none yet.
   virtual std::optional<Completeness> completeness() const { return std::nullopt; }
+
+  /// The views that the last call of `next` compared and found worth taking, best first; empty where the planner does
+  /// not compare views.
+  virtual std::vector<ReachableView> candidates() const { return {}; }
 };
 
 }  // namespace agrisee::plan
