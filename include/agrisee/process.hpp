@@ -201,17 +201,19 @@ inline ScanResult process(const Cloud& cloud, const Parameters& parameters = {},
   return detail::process_finite(select(cloud, finite_indices(cloud)), parameters, origin, seen_through, threads);
 }
 
-/// The same for the points of a cloud of any other type (core/traits.hpp), read where they lie.
-template <typename C, typename = std::enable_if_t<!std::is_convertible_v<const C&, const Cloud&>>>
-ScanResult process(const C& points, const Parameters& parameters = {}, const CloudOrigin& origin = {},
+/// The same on any other cloud that meets the contract of core/traits.hpp: vectors and maps of Eigen, or with a header
+/// of `interop/` clouds of PCL, Open3D and ROS. It is read where it lies, once, into the `raw` cloud of the result,
+/// which every result owns and which holds its finite points. Its views are unknown.
+/// @param cloud points (m), any frame
+/// @param parameters see their struct
+/// @param origin where the points were seen from
+/// @param seen_through evidence of free space from the views, or empty
+/// @param threads the result does not depend on it
+/// @throws ParameterError
+template <typename C, typename = scalar_t<C>>
+ScanResult process(const C& cloud, const Parameters& parameters = {}, const CloudOrigin& origin = {},
                    const SeenThrough& seen_through = {}, int threads = 1) {
-  Cloud raw;
-  raw.points.reserve(agrisee::size(points));
-  for (std::size_t i = 0; i < agrisee::size(points); ++i) {
-    const Eigen::Vector3f p = point(points, i).template cast<float>();
-    if (is_finite(p)) raw.points.push_back(p);
-  }
-  return detail::process_finite(std::move(raw), parameters, origin, seen_through, threads);
+  return detail::process_finite(finite_points(cloud), parameters, origin, seen_through, threads);
 }
 
 }  // namespace agrisee

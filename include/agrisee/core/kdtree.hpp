@@ -88,7 +88,11 @@ class KdTree {
   // nanoflann prunes with bounds that carry rounding errors; a slightly larger "worst" keeps exact ties in.
   static S padded(S d_sq) { return d_sq * (S(1) + S(64) * std::numeric_limits<S>::epsilon()) + std::numeric_limits<S>::min(); }
 
+  // What nanoflann calls result sets; from 1.6 on it asks each for its two types.
+  using TreeIndex = std::uint32_t;
   struct KnnResult {
+    using DistanceType = S;
+    using IndexType = TreeIndex;
     detail::Nearest<S> nearest;
     const std::vector<Index>& ids;
     bool full() const { return nearest.full(); }
@@ -103,6 +107,8 @@ class KdTree {
     }
   };
   struct CountResult {
+    using DistanceType = S;
+    using IndexType = TreeIndex;
     S r_sq;
     std::size_t found, cap;
     bool full() const { return true; }
@@ -118,6 +124,8 @@ class KdTree {
   };
   template <typename F>
   struct VisitResult {
+    using DistanceType = S;
+    using IndexType = TreeIndex;
     S r_sq;
     F& f;
     const std::vector<Index>& ids;

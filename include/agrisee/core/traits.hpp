@@ -4,16 +4,18 @@
 ///
 /// Fulfilled here for `std::vector<Eigen::Matrix<S, 3, 1>>` and for every dense Eigen expression with three rows
 /// (a point a column) or, failing that, three columns (a point a row): matrices, maps over any stride, blocks.
-/// Specialise `CloudTraits<C>` for others; see `interop/` for examples.
+/// Specialise `CloudTraits<C>` for others; see `interop/` for examples (PCL, Open3D, ROS).
 #pragma once
 
 #include <agrisee/core/types.hpp>
 
 #include <type_traits>
+#include <utility>
 
 namespace agrisee {
 
-/// `Scalar`, `size(cloud)` and `point(cloud, i)` of a cloud type `C`.
+/// `Scalar`, `size(cloud)` and `point(cloud, i)` of a cloud type `C`; where it may know normals also `normal(cloud,
+/// i)`: a unit vector towards the side from which the surface was seen, or zero, which means unknown.
 template <typename C, typename Enable = void>
 struct CloudTraits;
 
@@ -64,4 +66,14 @@ decltype(auto) point(const C& cloud, std::size_t i) {
   return CloudTraits<C>::point(cloud, i);
 }
 
+namespace detail {
+
+/// Whether the traits of C have `normal`.
+template <typename C, typename = void>
+struct KnowsNormals : std::false_type {};
+template <typename C>
+struct KnowsNormals<C, std::void_t<decltype(CloudTraits<C>::normal(std::declval<const C&>(), std::size_t{}))>>
+    : std::true_type {};
+
+}  // namespace detail
 }  // namespace agrisee
