@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: BSD-3-Clause
-# Installs what is missing of Debian's or Ubuntu's packages: cmake/packages.sh [build] [test] [oracles] [bench]
+# Installs what is missing of Debian's or Ubuntu's packages: cmake/packages.sh [build] [test] [oracles] [bench] [fuzz]
 # Says what it does; asks sudo only when there is something to install and the caller is not root.
 set -euo pipefail
 
@@ -9,6 +9,7 @@ declare -A groups=(
   [test]="catch2 pkg-config python3"
   [oracles]="libpcl-dev libopen3d-dev liborocos-kdl-dev libembree-dev"
   [bench]="libbenchmark-dev"
+  [fuzz]="clang"
 )
 wanted=()
 for group in "$@"; do

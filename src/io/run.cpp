@@ -84,7 +84,8 @@ void write_result(const std::filesystem::path& folder, const ScanResult& result,
   write_file(folder / "fruits.csv", table);
   write_raw_ply(folder / "cloud_raw.ply", result.raw);
   write_ply(folder / "cloud.ply", result.cloud, result.labels);
-  write_file(folder / "run.json", run);
+  make_durable(folder);
+  write_file(folder / "run.json", run, Durability::now);
 }
 
 RunFile read_run(const std::filesystem::path& path) {
