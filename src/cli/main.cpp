@@ -28,6 +28,7 @@ int main(int argc, char** argv) {
   cli::add_paper_scenes(app, run);
   cli::add_experiment(app, run);
   cli::add_limit(app, run);
+  cli::add_faults(app, run);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& e) {

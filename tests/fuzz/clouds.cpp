@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <agrisee/io/mesh_file.hpp>
 #include <agrisee/io/pcd.hpp>
 #include <agrisee/io/ply.hpp>
 

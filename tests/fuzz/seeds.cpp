@@ -121,7 +121,7 @@ void add_texts(std::vector<Seed>& seeds, const fs::path& folder) {
 
   for (const char* preset : {"default", "paper"})
     seeds.push_back({"parameters", preset, io::parameters_to_yaml(Parameters::named(preset))});
-  seeds.push_back({"parameters", "few", "preset: paper\nmax_views: 3\nsor: {mean_k: 12, std_mul: 1.5}\nicp:\n  kernel: huber\n"});
+  seeds.push_back({"parameters", "few", "preset: paper\nmax_views: 3\nsor: {mean_k: 12, std_ratio: 1.5}\nicp:\n  kernel: huber\n"});
 
   io::ScanTask task;
   task.scene = "/s.yaml";
