@@ -50,6 +50,7 @@ struct View {
   std::size_t points_in = 0;                         ///< points returned inside the scan volume
   std::size_t points_new = 0;                        ///< points that the merged cloud kept
   double plan_seconds = 0.0;                         ///< time it took to choose this view
+  bool discarded = false;                            ///< what it saw was not believed: see Pipeline::observe
 };
 
 /// A body fitted to a fruit: an ellipsoid.

@@ -74,7 +74,7 @@ void add_process(CLI::App& app, Run& run) {
   auto* command = app.add_subcommand("process", "locate the fruit in a cloud from elsewhere (PLY or PCD)");
   auto options = std::make_shared<ProcessOptions>();
   command->add_option("cloud", options->cloud, "cloud file (PLY or PCD; metres)")->required();
-  add_pipeline_options(*command, *options);
+  add_pipeline_options(*command, *options)->required();
   command->add_option("--viewpoint", options->viewpoint, "position x,y,z (m) from which all points were seen")
       ->delimiter(',')
       ->expected(3);

@@ -28,6 +28,13 @@ struct Bytes {
 /// @throws FileError when it is missing, a directory, a device, or cannot be read
 Bytes read_bytes(const std::filesystem::path& path);
 
+/// What of a file is left after a power cut. Either way it is complete or absent for whoever looks while the machine
+/// runs, however the process that writes it ends.
+enum class Durability {
+  whenever,  ///< the operating system brings it to the disk in its own time
+  now        ///< it is on the disk when the call returns (fsync); some 30 ms
+};
+
 /// A file that appears under its name only when it is complete: it is written to a temporary beside `path`, then
 /// renamed. Without commit() nothing is left behind and an older file stays as it was.
 class AtomicFile {
@@ -43,7 +50,7 @@ class AtomicFile {
   /// Append text. @throws FileError when it cannot be written
   void write(std::string_view text) { write(text.data(), text.size()); }
   /// Put the file in its place. @throws FileError when that fails
-  void commit();
+  void commit(Durability durability = Durability::whenever);
 
  private:
   struct Closer {
@@ -54,7 +61,14 @@ class AtomicFile {
 };
 
 /// Write a whole file, atomically. @throws FileError
-void write_file(const std::filesystem::path& path, std::string_view bytes);
+void write_file(const std::filesystem::path& path, std::string_view bytes,
+                Durability durability = Durability::whenever);
+
+/// Bring what was written to a folder's own files to the disk. @throws FileError when the disk refuses
+void make_durable(const std::filesystem::path& folder);
+
+/// Remove the temporaries that killed writers left in a folder; other files are not touched.
+void remove_leftovers(const std::filesystem::path& folder);
 
 /// Throw FileError("<path>: <message>").
 [[noreturn]] void fail(const std::filesystem::path& path, const std::string& message);

@@ -53,9 +53,10 @@ void write_fruits(const std::filesystem::path& path, const std::vector<Fruit>& f
 /// covariance the upper triangle is written, the ids of `picking_after` are separated by spaces.
 void write_fruits_csv(const std::filesystem::path& path, const std::vector<Fruit>& fruits);
 
-/// Write run.json. Beside the contract's keys `completeness` says which share of the fruit's surface the planner
-/// believes to have been seen (`seen`) and that the arm can see at all (`observable`), and `cluster_origin_world` says
-/// where the cluster frame {R} is, when the workcell has a scan volume.
+/// Write run.json. Beside the contract's keys `views_discarded` counts the views that were not believed, `completeness`
+/// says which share of the fruit's surface the planner believes to have been seen (`seen`) and that the arm can see at
+/// all (`observable`), and `cluster_origin_world` says where the cluster frame {R} is, when the workcell has a scan
+/// volume.
 /// @throws InputError when `parameters_json` is not JSON  @throws FileError when it cannot be written
 void write_run(const std::filesystem::path& path, const ScanResult& result, const Workcell& workcell,
                const RunInfo& info);

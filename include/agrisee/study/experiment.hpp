@@ -13,6 +13,13 @@
 
 namespace agrisee::study {
 
+/// A name as that of a file: it names no other folder.
+inline std::string file_name(std::string name) {
+  for (char& c : name)
+    if (c == ':' || c == '/' || c == '\\') c = '-';
+  return name;
+}
+
 /// Which scan. The seed of noise and planner is the trial, so that `agrisee scan --seed TRIAL` repeats it.
 struct Cell {
   std::string scene;  ///< name of the scene
@@ -32,10 +39,7 @@ struct Cell {
   }
   /// Unlike that of any other cell, and fit for a file: scene, preset, planner, noise and trial.
   std::string name() const {
-    std::string text = scene + "__" + preset + "__" + planner + "__" + noise + "__" + std::to_string(trial);
-    for (char& c : text)
-      if (c == ':' || c == '/' || c == '\\') c = '-';
-    return text;
+    return file_name(scene + "__" + preset + "__" + planner + "__" + noise + "__" + std::to_string(trial));
   }
 };
 
