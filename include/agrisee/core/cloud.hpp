@@ -32,6 +32,7 @@ struct CloudTraits<PointCloud<S>> {
   static std::size_t size(const PointCloud<S>& c) { return c.points.size(); }
   /// Point i (m).
   static const Vector3<S>& point(const PointCloud<S>& c, std::size_t i) { return c.points[i]; }
+  /// Normal i; zero where it is not known.
   static Vector3<S> normal(const PointCloud<S>& c, std::size_t i) {
     return c.normals.empty() ? Vector3<S>(Vector3<S>::Zero()) : c.normals[i];
   }

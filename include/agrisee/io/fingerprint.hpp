@@ -16,10 +16,12 @@ namespace agrisee::io {
 /// Bytes are added one after the other; their order counts, how they are divided among calls does not.
 class Fingerprint {
  public:
+  /// `size` bytes.
   void add(const void* data, std::size_t size) {
     const auto* bytes = static_cast<const unsigned char*>(data);
     for (std::size_t i = 0; i < size; ++i) hash_ = (hash_ ^ bytes[i]) * 1099511628211ULL;
   }
+  /// The bytes of a text.
   void add(std::string_view text) { add(text.data(), text.size()); }
   /// The meshes of a scene.
   void add(const Scene& scene) {
@@ -28,6 +30,7 @@ class Fingerprint {
       add(object.mesh.triangles.data(), object.mesh.triangles.size() * sizeof(object.mesh.triangles[0]));
     }
   }
+  /// Of all that was added.
   std::uint64_t value() const { return hash_; }
   /// As 16 hexadecimal digits.
   std::string text() const {

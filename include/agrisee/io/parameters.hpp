@@ -22,6 +22,7 @@ std::string parameters_to_yaml(const Parameters& parameters);
 std::string parameters_to_json(const Parameters& parameters);
 
 /// Read them back: the same values.
+/// @param text as of parameters_to_json
 /// @param path the file that the text is from, for the message
 /// @throws FileError as read_parameters does
 Parameters parameters_from_json(const std::string& text, const std::string& path);

@@ -24,11 +24,11 @@ struct ScanTask {
   std::string scene;    ///< scene file, as an absolute path
   std::string content;  ///< fingerprint of the scene file and its meshes
   std::string version;  ///< of AgriSEE
-  std::uint64_t seed = 0;
-  int threads = 1;
+  std::uint64_t seed = 0;  ///< of everything random
+  int threads = 1;         ///< the result does not depend on it
   std::string noise = "none";  ///< model of the simulated sensor's noise
-  std::string planner;
-  Parameters parameters;
+  std::string planner;         ///< see Parameters::planner, or greedy
+  Parameters parameters;       ///< all of them
 
   /// Unlike that of any other scan: all of the above but `scene` and `threads`, which change nothing of the result.
   std::string fingerprint() const;
@@ -52,12 +52,14 @@ ScanTask read_scan_task(const std::filesystem::path& path);
 std::filesystem::path view_record_path(const std::filesystem::path& folder, std::size_t view);
 
 /// Write the record of a view into a result folder.
+/// @param folder of the result  @param view its number, from 0  @param record what to write
 /// @param scan the task's fingerprint()
 /// @throws InputError for a frame, pose or joints that are not usable  @throws FileError when it cannot be written
 void write_view_record(const std::filesystem::path& folder, std::size_t view, const ViewRecord& record,
                        const std::string& scan);
 
 /// Read the record of a view; nothing where there is none.
+/// @param folder of the result  @param view its number, from 0  @param scan the task's fingerprint()
 /// @param pixels of the image; no larger one is made room for, whatever the record says
 /// @throws FileError when it is damaged, of another scan, view or image size, or of another format version
 std::optional<ViewRecord> read_view_record(const std::filesystem::path& folder, std::size_t view,

@@ -10,13 +10,16 @@ namespace agrisee::plan {
 
 /// Points of views that other views saw too (`agree`), or looked through (`refute`).
 struct Evidence {
-  std::size_t agree = 0, refute = 0;
+  std::size_t agree = 0;   ///< points seen by others, too
+  std::size_t refute = 0;  ///< points looked through
 
+  /// All of it.
   std::size_t count() const { return agree + refute; }
   /// Share of the evidence that contradicts, 0..1; 0 without any.
   double contradiction() const {
     return count() > 0 ? static_cast<double>(refute) / static_cast<double>(count()) : 0.0;
   }
+  /// Add other evidence.
   Evidence& operator+=(const Evidence& other) {
     agree += other.agree;
     refute += other.refute;

@@ -27,8 +27,9 @@ enum class Fault {
   refused_motion,    ///< the arm does not move
   timeout            ///< no answer in time: as if refused
 };
-constexpr std::size_t kFaults = 9;
+constexpr std::size_t kFaults = 9;  ///< how many kinds there are
 
+/// Its name.
 inline const char* to_string(Fault fault) {
   constexpr const char* kNames[kFaults] = {"empty_frame", "nan_frame",  "frozen_frame",   "dropped_frame", "wrong_intrinsics",
                                            "noisy_pose",  "wrong_pose", "refused_motion", "timeout"};
@@ -59,6 +60,9 @@ using FaultCounts = std::array<int, kFaults>;
 
 /// Put faults around sensor and arm. What goes wrong follows from the seed and the number of times that a view was
 /// asked for.
+/// @param look what takes views when nothing goes wrong
+/// @param parameters how often what goes wrong
+/// @param seed names the random draws
 /// @param counts filled where given; has to live as long as the Look
 /// @throws ParameterError
 inline Look faulty(Look look, const FaultParameters& parameters, std::uint64_t seed, FaultCounts* counts = nullptr) {
@@ -121,8 +125,9 @@ inline Look faulty(Look look, const FaultParameters& parameters, std::uint64_t s
 
 /// A scan under faults, and what came of it.
 struct FaultRecord {
-  std::string scene, kind = "any";  ///< names
-  double rate = 0.0;
+  std::string scene;         ///< its name
+  std::string kind = "any";  ///< the fault's name
+  double rate = 0.0;         ///< see FaultParameters
   int trial = 1;           ///< the seed
   int fruit = 0;           ///< that there are
   int found = 0;           ///< of them
@@ -132,12 +137,19 @@ struct FaultRecord {
   int faults = 0;          ///< that struck
   int wrong_poses = 0;     ///< of them: the reported pose was 50 mm off
   int wrong_believed = 0;  ///< of these: views that were not discarded, though they showed something
-  std::string stop_reason;
+  std::string stop_reason;  ///< see StopReason
   double seconds = 0.0;    ///< of computing
 };
 
 /// Scan a scene under faults.
+/// @param name of the scene
+/// @param workcell arm, sensor, scan volume
+/// @param truth of the scene
+/// @param parameters of the pipeline
+/// @param noise of the sensor
+/// @param faults how often what goes wrong
 /// @param trial seed of noise, planner and faults
+/// @param threads the result does not depend on it
 /// @throws ParameterError, InputError as scan() does
 inline FaultRecord scan_with_faults(const std::string& name, const Workcell& workcell, const Truth& truth,
                                     const Parameters& parameters, const sensor::NoiseModel& noise,
