@@ -28,6 +28,7 @@ void add_evaluate(CLI::App& app, Run& run);
 void add_paper_scenes(CLI::App& app, Run& run);
 void add_experiment(CLI::App& app, Run& run);
 void add_limit(CLI::App& app, Run& run);
+void add_merge(CLI::App& app, Run& run);
 void add_faults(CLI::App& app, Run& run);
 
 /// Options that scan and process have in common.

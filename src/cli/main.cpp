@@ -29,6 +29,7 @@ int main(int argc, char** argv) {
   cli::add_experiment(app, run);
   cli::add_limit(app, run);
   cli::add_faults(app, run);
+  cli::add_merge(app, run);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& e) {

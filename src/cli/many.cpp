@@ -153,10 +153,6 @@ Shard parse_shard(const std::string& text) {
   return shard;
 }
 
-bool is_list(const std::vector<std::string>& inputs, const std::string& shard) {
-  return inputs.size() > 1 || !shard.empty() || (inputs.size() == 1 && is_pattern(inputs[0]));
-}
-
 std::vector<Job> jobs_of(const std::vector<std::string>& inputs) {
   std::vector<std::string> paths;
   std::set<std::string> known;
@@ -189,8 +185,7 @@ std::vector<Job> jobs_of(const std::vector<std::string>& inputs) {
   return jobs;
 }
 
-int run_jobs(const std::vector<Job>& jobs, const Shard& shard, const std::string& output,
-             const std::function<int(const std::string& input, const std::string& folder)>& run) {
+int run_jobs(const std::vector<Job>& jobs, const Shard& shard, const std::string& output, const RunOne& run) {
   make_folder(output);
   const fs::path summary = fs::path(output) / summary_name(shard);
   std::vector<std::string> rows, failures;
@@ -213,6 +208,17 @@ int run_jobs(const std::vector<Job>& jobs, const Shard& shard, const std::string
   std::cout << rows.size() << " inputs, " << failures.size() << " failed: " << summary.string() << "\n";
   for (const std::string& failure : failures) std::cerr << "agrisee: failed: " << failure << "\n";
   return failures.empty() ? kSuccess : kBadInput;
+}
+
+int run_inputs(const std::vector<std::string>& inputs, const std::string& shard, const std::string& output,
+               const RunOne& run) {
+  const bool list = inputs.size() > 1 || !shard.empty() || (inputs.size() == 1 && is_pattern(inputs[0]));
+  if (!list) return run(inputs.empty() ? std::string() : inputs[0], output);
+  return run_jobs(jobs_of(inputs), parse_shard(shard), output, run);
+}
+
+void add_shard_option(CLI::App& command, std::string& shard) {
+  command.add_option("--shard", shard, "I/N: only every N-th of the inputs, from the I-th on; `agrisee merge` joins them");
 }
 
 void add_merge(CLI::App& app, Run& run) {

@@ -3,6 +3,7 @@
 // own and a line in a summary; one that fails does not stop the rest.
 #pragma once
 
+#include <CLI/CLI.hpp>
 #include <functional>
 #include <string>
 #include <vector>
@@ -27,13 +28,17 @@ struct Job {
 /// truss_7). The same for the same inputs, whatever the shard. @throws UsageError for a pattern that matches nothing
 std::vector<Job> jobs_of(const std::vector<std::string>& inputs);
 
-/// Whether inputs are treated as a list: more than one, a pattern, or a shard of them.
-bool is_list(const std::vector<std::string>& inputs, const std::string& shard);
-
 /// Runs the shard's jobs one after the other and writes OUTPUT/summary.csv, or summary-I-of-N.csv, anew after each.
 /// @param run does one job with the folder to write to, and returns its exit code; what it throws is a failure too
 /// @return kSuccess, or kBadInput when any failed (their messages are repeated at the end)
-int run_jobs(const std::vector<Job>& jobs, const Shard& shard, const std::string& output,
-             const std::function<int(const std::string& input, const std::string& folder)>& run);
+using RunOne = std::function<int(const std::string& input, const std::string& folder)>;
+int run_jobs(const std::vector<Job>& jobs, const Shard& shard, const std::string& output, const RunOne& run);
+
+/// One input goes to `output` itself; several, a pattern, or a shard of them are jobs, each with a folder below it. No
+/// input at all (a scan that is resumed) is one without a name.
+int run_inputs(const std::vector<std::string>& inputs, const std::string& shard, const std::string& output,
+               const RunOne& run);
+
+void add_shard_option(CLI::App& command, std::string& shard);
 
 }  // namespace agrisee::cli

@@ -23,6 +23,7 @@
 #include <unistd.h>
 
 #include "commands.hpp"
+#include "many.hpp"
 
 namespace agrisee::cli {
 namespace {
@@ -30,6 +31,8 @@ namespace {
 namespace fs = std::filesystem;
 
 struct ScanOptions : PipelineOptions {
+  std::vector<std::string> scenes;
+  std::string shard;
   std::string scene, planner, noise = "none", resume;
   int max_views = 0;
 };
@@ -247,7 +250,8 @@ int run_scan(const ScanOptions& options) {
 void add_scan(CLI::App& app, Run& run) {
   auto* command = app.add_subcommand("scan", "scan a scene with the simulated sensor and arm, and locate its fruit");
   auto options = std::make_shared<ScanOptions>();
-  auto* scene = command->add_option("scene", options->scene, "scene file (YAML)");
+  auto* scene = command->add_option("scene", options->scenes,
+                                    "scene file (YAML); several, or a pattern, each get a folder of their own in DIR");
   auto* output = add_pipeline_options(*command, *options);
   command->add_option("--planner", options->planner, "where to look next; greedy knows the truth, for studies")
       ->check(CLI::IsMember({"gain", "see", "fixed", "random", "greedy"}));
@@ -255,11 +259,12 @@ void add_scan(CLI::App& app, Run& run) {
       ->capture_default_str();
   command->add_option("--max-views", options->max_views, "view budget (default: the preset's)")
       ->check(CLI::Range(1, 10000));
+  add_shard_option(*command, options->shard);
   auto* resume = command->add_option(
       "--resume", options->resume,
       "go on with the scan in this folder that was interrupted; the scene is only named when it was moved");
   for (const char* given : {"--output", "--preset", "--params", "--radius", "--seed", "--force", "--planner", "--noise",
-                            "--max-views"})
+                            "--max-views", "--shard"})
     resume->excludes(given);  // all of them are as they were
   command->footer(
       "Examples:\n"
@@ -267,13 +272,24 @@ void add_scan(CLI::App& app, Run& run) {
       "  agrisee scan truss/scene.yaml -o paper --preset paper --noise gaussian:0.002 --max-views 20\n"
       "  agrisee scan cherries/scene.yaml -o result --radius 0.01,0.02\n"
       "  agrisee scan --resume result\n"
+      "  agrisee scan 'season/*/scene.yaml' -o results --shard 2/8\n"
       "DIR holds cloud.ply, cloud_raw.ply, views.csv, fruits.json, fruits.csv, run.json, truss.png and report.html,\n"
       "and what a scan that is killed goes on from: scan.json and views/, a file a view.");
   command->callback([options, scene, output, resume, &run] {
     if (resume->count() == 0)
       for (const CLI::Option* needed : {scene, output})
         if (needed->count() == 0) throw CLI::RequiredError(needed->get_name());
-    run = [options] { return run_scan(*options); };
+    if (resume->count() > 0 && options->scenes.size() > 1)
+      throw CLI::ValidationError("--resume", "goes on with one scan, so at most one scene can be named");
+    run = [options] {
+      return run_inputs(options->scenes, options->shard, options->output,
+                        [&](const std::string& input, const std::string& folder) {
+                          ScanOptions one = *options;
+                          one.scene = input;
+                          one.output = folder;
+                          return run_scan(one);
+                        });
+    };
   });
 }
 
