@@ -17,15 +17,22 @@ struct PointCloud {
   std::vector<Vector3<S>> normals;  ///< unit normals towards the side the surface was seen from; zero = unknown
   std::vector<int> views;           ///< index of the view that observed the point, -1 = unknown
 
+  /// Number of points.
   std::size_t size() const { return points.size(); }
+  /// Whether there is none.
   bool empty() const { return points.empty(); }
 };
 
+/// Our own clouds.
 template <typename S>
 struct CloudTraits<PointCloud<S>> {
+  /// Of coordinates.
   using Scalar = S;
+  /// Number of points.
   static std::size_t size(const PointCloud<S>& c) { return c.points.size(); }
+  /// Point i (m).
   static const Vector3<S>& point(const PointCloud<S>& c, std::size_t i) { return c.points[i]; }
+  /// Normal i; zero where it is not known.
   static Vector3<S> normal(const PointCloud<S>& c, std::size_t i) {
     return c.normals.empty() ? Vector3<S>(Vector3<S>::Zero()) : c.normals[i];
   }

@@ -19,19 +19,28 @@ namespace agrisee {
 template <typename C, typename Enable = void>
 struct CloudTraits;
 
+/// Vectors of Eigen vectors.
 template <typename S, typename A>
 struct CloudTraits<std::vector<Vector3<S>, A>> {
+  /// Of coordinates.
   using Scalar = S;
+  /// Number of points.
   static std::size_t size(const std::vector<Vector3<S>, A>& c) { return c.size(); }
+  /// Point i (m).
   static const Vector3<S>& point(const std::vector<Vector3<S>, A>& c, std::size_t i) { return c[i]; }
 };
 
+/// Dense Eigen expressions with three rows or columns.
 template <typename C>
 struct CloudTraits<C, std::enable_if_t<std::is_base_of<Eigen::DenseBase<C>, C>::value &&
                                        (C::RowsAtCompileTime == 3 || C::ColsAtCompileTime == 3)>> {
+  /// Of coordinates.
   using Scalar = typename C::Scalar;
+  /// Whether a point is a column.
   static constexpr bool by_column = C::RowsAtCompileTime == 3;
+  /// Number of points.
   static std::size_t size(const C& c) { return static_cast<std::size_t>(by_column ? c.cols() : c.rows()); }
+  /// Point i (m).
   static Vector3<Scalar> point(const C& c, std::size_t i) {
     const auto j = static_cast<Eigen::Index>(i);
     if constexpr (by_column)

@@ -11,11 +11,16 @@
 
 namespace agrisee {
 
+/// Open3D's clouds.
 template <>
 struct CloudTraits<open3d::geometry::PointCloud> {
+  /// Of coordinates.
   using Scalar = double;
+  /// Number of points.
   static std::size_t size(const open3d::geometry::PointCloud& c) { return c.points_.size(); }
+  /// Point i (m).
   static const Eigen::Vector3d& point(const open3d::geometry::PointCloud& c, std::size_t i) { return c.points_[i]; }
+  /// Normal i; zero where it is not known.
   static Eigen::Vector3d normal(const open3d::geometry::PointCloud& c, std::size_t i) {
     return c.HasNormals() ? c.normals_[i] : Eigen::Vector3d(Eigen::Vector3d::Zero());
   }

@@ -11,16 +11,21 @@
 
 namespace agrisee {
 
+/// PCL's clouds of any point type with x, y and z.
 template <typename T>
 struct CloudTraits<pcl::PointCloud<T>, std::void_t<decltype(std::declval<T&>().x), decltype(std::declval<T&>().y),
                                                    decltype(std::declval<T&>().z)>> {
+  /// Of coordinates.
   using Scalar = decltype(std::declval<T&>().x);
+  /// Number of points.
   static std::size_t size(const pcl::PointCloud<T>& c) { return c.size(); }
+  /// Point i (m).
   static Vector3<Scalar> point(const pcl::PointCloud<T>& c, std::size_t i) {
     const T& p = c.points[i];
     return {p.x, p.y, p.z};
   }
 
+  /// Normal i, where the point type has one.
   template <typename U = T>
   static auto normal(const pcl::PointCloud<U>& c, std::size_t i) -> Vector3<decltype(std::declval<U&>().normal_x)> {
     const U& p = c.points[i];

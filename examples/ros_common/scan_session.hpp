@@ -1,0 +1,190 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What a robot node decides, without ROS: when to ask for the next view, whether the arm has arrived and stands still,
+// which frame to take, what to do when a move fails. Times are seconds of the sensor's clock, poses are in world.
+#pragma once
+
+#include <agrisee/pipeline.hpp>
+
+namespace agrisee::robot {
+
+/// When a frame counts as taken from the view that was asked for.
+struct SessionParameters {
+  double position_tolerance = 0.02;  ///< between the sensor and the view (m)
+  double angle_tolerance = 0.05;     ///< between the sensor's orientation and the view's (rad)
+  double settle = 0.3;               ///< for how long the sensor has to stand before a frame is taken (s)
+  double still_distance = 0.0005;    ///< it stands when it moves no more than this meanwhile (m)
+  double still_angle = 0.002;        ///< and turns no more than this (rad)
+  double move_timeout = 60.0;        ///< a view that is not reached by then is given up for the next best (s)
+
+  /// @throws ParameterError naming the field
+  void check() const {
+    fields(*this, [](const char* name, double value) {
+      check_parameter(std::isfinite(value) && value > 0.0, name, "positive", value);
+    });
+  }
+  /// f(name, field) for every field.
+  template <typename P, typename F>
+  static void fields(P& p, F&& f) {
+    f("position_tolerance", p.position_tolerance);
+    f("angle_tolerance", p.angle_tolerance);
+    f("settle", p.settle);
+    f("still_distance", p.still_distance);
+    f("still_angle", p.still_angle);
+    f("move_timeout", p.move_timeout);
+  }
+};
+
+/// Where a session is.
+enum class SessionState {
+  idle,    ///< not started, or reset
+  moving,  ///< the arm is on its way to goal(), or stands there and a frame is awaited
+  paused,  ///< stopped by the caller; start() goes on
+  done     ///< there is no further view; stop_reason() says why
+};
+
+inline const char* to_string(SessionState state) {
+  switch (state) {
+    case SessionState::idle:
+      return "idle";
+    case SessionState::moving:
+      return "moving";
+    case SessionState::paused:
+      return "paused";
+    case SessionState::done:
+      return "done";
+  }
+  return "unknown";
+}
+
+/// Angle (rad) between two orientations.
+inline double angle_between(const Pose& a, const Pose& b) {
+  return Eigen::AngleAxisd(a.linear().transpose() * b.linear()).angle();
+}
+
+/// One scan after another of one workcell, driven by start, stop, reset, time and frames.
+class ScanSession {
+ public:
+  /// @throws ParameterError, InputError for an unusable workcell
+  ScanSession(const Workcell& workcell, const Parameters& parameters, const SessionParameters& session = {},
+              std::uint64_t seed = 0, int threads = 1)
+      : workcell_(workcell), parameters_(parameters), session_(session), seed_(seed), threads_(threads) {
+    session_.check();
+    begin();
+  }
+
+  /// Begin a scan, or go on with one that was stopped. A scan that is done is followed by a new one.
+  /// @return false when one is going on already, which is left alone
+  bool start(double now) {
+    if (state_ == SessionState::moving) return false;
+    if (state_ == SessionState::done) begin();
+    choose(now);
+    return true;
+  }
+
+  /// Take no further frame; what was seen so far is kept.
+  /// @return false when no scan is going on
+  bool stop() {
+    if (state_ != SessionState::moving) return false;
+    goal_.reset();
+    state_ = SessionState::paused;
+    return true;
+  }
+
+  /// Forget what was seen.
+  void reset() { begin(); }
+
+  /// The arm cannot take the view: the next best follows. @return false when no view was asked for
+  bool refuse(double now) {
+    if (state_ != SessionState::moving) return false;
+    ++refused_;
+    pipeline_->refused();
+    choose(now);
+    return true;
+  }
+
+  /// To be called now and then: a view that is not reached in time is refused. @return true when that has happened
+  bool tick(double now) {
+    return state_ == SessionState::moving && now - asked_at_ > session_.move_timeout && refuse(now);
+  }
+
+  /// Where the arm stands (rad); without it the planner reckons from the last goal.
+  void set_joints(const Joints& joints) {
+    check_input(joints.allFinite(), "a joint angle is not finite");
+    joints_ = joints;
+    joints_known_ = true;
+  }
+
+  /// Whether a frame stamped `stamp`, when the sensor was at `world_T_optical`, and at `before` `settle` seconds
+  /// earlier, is the one awaited.
+  bool arrived(double stamp, const Pose& world_T_optical, const Pose& before) const {
+    return state_ == SessionState::moving && stamp - session_.settle >= asked_at_ &&
+           near(world_T_optical, goal_->world_T_optical, session_.position_tolerance, session_.angle_tolerance) &&
+           near(world_T_optical, before, session_.still_distance, session_.still_angle);
+  }
+
+  /// Take in the frame of the view that was asked for, and choose the next.
+  /// @throws InputError for an unusable frame or pose; the session stays where it is then, and another may follow
+  void observe(const sensor::DepthFrame& frame, const Pose& world_T_optical, double now) {
+    check_input(state_ == SessionState::moving, "a frame that nobody asked for");
+    if (!joints_known_ && goal_->joints) joints_ = *goal_->joints;
+    pipeline_->observe(frame, world_T_optical, joints_);
+    choose(now);
+  }
+  /// The same for points in the optical frame, any cloud type.
+  template <typename C>
+  void observe_points(const C& points, const Pose& world_T_optical, double now) {
+    observe(sensor::frame_from_points(points, workcell_.sensor.intrinsics), world_T_optical, now);
+  }
+
+  SessionState state() const { return state_; }
+  const SessionParameters& session_parameters() const { return session_; }
+  /// The view to move to; empty unless moving. With every new one `goals()` grows.
+  const std::optional<plan::ReachableView>& goal() const { return goal_; }
+  std::size_t goals() const { return goals_; }
+  int refused() const { return refused_; }
+  const Pipeline& pipeline() const { return *pipeline_; }
+
+  /// One line for people.
+  std::string status() const {
+    std::string text = std::string(to_string(state_)) + ", " + std::to_string(pipeline_->views().size()) + " views";
+    if (refused_ > 0) text += ", " + std::to_string(refused_) + " refused";
+    if (state_ == SessionState::done) text += std::string(", ") + agrisee::to_string(pipeline_->stop_reason());
+    return text;
+  }
+
+ private:
+  static bool near(const Pose& a, const Pose& b, double distance, double angle) {
+    return (a.translation() - b.translation()).norm() <= distance && angle_between(a, b) <= angle;
+  }
+
+  void begin() {
+    pipeline_ = std::make_unique<Pipeline>(workcell_, parameters_, plan::Reach{}, nullptr, seed_, threads_);
+    if (!joints_known_) joints_ = workcell_.start;
+    goal_.reset();
+    refused_ = 0;
+    state_ = SessionState::idle;
+  }
+
+  void choose(double now) {
+    goal_ = pipeline_->next_view(joints_);
+    asked_at_ = now;
+    goals_ += goal_.has_value();
+    state_ = goal_ ? SessionState::moving : SessionState::done;
+  }
+
+  Workcell workcell_;
+  Parameters parameters_;
+  SessionParameters session_;
+  std::uint64_t seed_;
+  int threads_;
+  std::unique_ptr<Pipeline> pipeline_;
+  SessionState state_ = SessionState::idle;
+  std::optional<plan::ReachableView> goal_;
+  std::size_t goals_ = 0;
+  double asked_at_ = 0.0;
+  Joints joints_ = Joints::Zero();
+  bool joints_known_ = false;
+  int refused_ = 0;
+};
+
+}  // namespace agrisee::robot

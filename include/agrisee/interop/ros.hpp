@@ -1,0 +1,209 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// @file
+/// ROS messages in place: `sensor_msgs/PointCloud2` as a cloud, `sensor_msgs/Image` with `CameraInfo` as a depth frame.
+///
+/// The message types are template parameters, so those of ROS 1 and of ROS 2 fit alike and nothing of ROS is included.
+/// A message is checked before it is read: whatever its sizes claim, nothing outside of its data is touched.
+#pragma once
+
+#include <agrisee/core/cloud.hpp>
+#include <agrisee/sensor/depth_frame.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cstring>
+#include <limits>
+#include <string>
+#include <type_traits>
+
+namespace agrisee::interop {
+
+namespace detail {
+
+/// Throw InputError("<what>: <message>") unless `ok`.
+inline void check_message(bool ok, const char* what, const std::string& message) {
+  if (!ok) throw InputError(std::string(what) + ": " + message);
+}
+
+inline bool host_is_big_endian() {
+  const std::uint16_t one = 1;
+  std::uint8_t first = 0;
+  std::memcpy(&first, &one, 1);
+  return first == 0;
+}
+
+/// A number of type T from bytes that need not be aligned, in reverse order where `swap`.
+template <typename T>
+T read_number(const std::uint8_t* bytes, bool swap) {
+  std::array<std::uint8_t, sizeof(T)> own;
+  std::memcpy(own.data(), bytes, sizeof(T));
+  if (swap) std::reverse(own.begin(), own.end());
+  T value;
+  std::memcpy(&value, own.data(), sizeof(T));
+  return value;
+}
+
+/// The camera matrix is named K and P in ROS 1, k and p in ROS 2.
+template <typename Info, typename = void>
+struct InRos1 : std::false_type {};
+template <typename Info>
+struct InRos1<Info, std::void_t<decltype(std::declval<const Info&>().K)>> : std::true_type {};
+
+}  // namespace detail
+
+/// The points of a `sensor_msgs/PointCloud2` where they lie: a cloud (see core/traits.hpp) of scalar S whose fields x, y
+/// and z are all float32 or all float64, at any offsets, strides and byte order. Other fields are passed over. Points that are
+/// not finite (a sensor's pixels without return) stay where they are, as in every cloud of the library: indices are those
+/// of the message, row by row, and each stage leaves such points out.
+///
+/// Holds a reference: the message has to live, unchanged, as long as the view.
+template <typename Message, typename S = float>
+class PointCloud2View {
+ public:
+  /// O(number of fields).
+  /// @throws InputError for a message without x, y or z, of another datatype, whose fields exceed the point, whose points
+  /// exceed the row, whose data are shorter than its rows, or with more points than an Index counts
+  explicit PointCloud2View(const Message& message) : data_(message.data.data()) {
+    const std::uint64_t width = message.width, height = message.height, step = message.point_step,
+                        row = message.row_step;
+    const auto check = [](bool ok, const std::string& text) { detail::check_message(ok, "PointCloud2", text); };
+    check(width * height <= static_cast<std::uint64_t>(std::numeric_limits<Index>::max()),
+          std::to_string(width) + " x " + std::to_string(height) + " points are too many");
+    size_ = static_cast<std::size_t>(width * height);
+    if (size_ == 0) return;
+    check(row >= width * step, "row_step " + std::to_string(row) + " is below width * point_step");
+    check(row <= std::numeric_limits<std::uint64_t>::max() / height && row * height <= message.data.size(),
+          "data hold " + std::to_string(message.data.size()) + " bytes, row_step * height says more");
+    width_ = static_cast<std::size_t>(width);
+    point_step_ = static_cast<std::size_t>(step);
+    row_step_ = static_cast<std::size_t>(row);
+    gapless_ = row == width * step;
+    swap_ = static_cast<bool>(message.is_bigendian) != detail::host_is_big_endian();
+    int type = 0;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const std::string name(1, "xyz"[axis]);
+      const auto has_name = [&](const auto& f) { return f.name == name; };
+      const auto field = std::find_if(message.fields.begin(), message.fields.end(), has_name);
+      check(field != message.fields.end(), "no field '" + name + "'");
+      check(std::count_if(message.fields.begin(), message.fields.end(), has_name) == 1,
+            "field '" + name + "' twice");
+      const int datatype = field->datatype;
+      check(datatype == kFloat32 || datatype == kFloat64,
+            "field '" + name + "' is neither FLOAT32 nor FLOAT64 but type " + std::to_string(datatype));
+      check(axis == 0 || datatype == type, "x, y and z differ in their type");
+      check(field->count <= 1, "field '" + name + "' holds several values");
+      const std::uint64_t offset = field->offset, bytes = datatype == kFloat64 ? 8 : 4;
+      check(offset + bytes <= step, "field '" + name + "' at offset " + std::to_string(offset) +
+                                        " lies outside of point_step " + std::to_string(step));
+      type = datatype;
+      offsets_[axis] = static_cast<std::size_t>(offset);
+    }
+    double_ = type == kFloat64;
+  }
+  explicit PointCloud2View(const Message&&) = delete;
+
+  /// Number of points, those that are not finite included.
+  std::size_t size() const { return size_; }
+  /// Point i < size() (m, in the frame that the message's header names).
+  Vector3<S> point(std::size_t i) const {
+    const std::size_t start =
+        gapless_ ? i * point_step_ : (i / width_) * row_step_ + (i % width_) * point_step_;
+    return {read(start + offsets_[0]), read(start + offsets_[1]), read(start + offsets_[2])};
+  }
+
+ private:
+  static constexpr int kFloat32 = 7, kFloat64 = 8;  // sensor_msgs/PointField
+
+  S read(std::size_t at) const {
+    return double_ ? static_cast<S>(detail::read_number<double>(data_ + at, swap_))
+                   : static_cast<S>(detail::read_number<float>(data_ + at, swap_));
+  }
+
+  const std::uint8_t* data_;
+  std::size_t size_ = 0, width_ = 0, point_step_ = 0, row_step_ = 0;
+  std::array<std::size_t, 3> offsets_{};
+  bool gapless_ = true, swap_ = false, double_ = false;
+};
+
+/// Intrinsics of a `sensor_msgs/CameraInfo`: its K, or, of a `rectified` image, its P.
+/// @throws InputError for a distorted camera whose image is not rectified, for binning or a region of interest, and for
+/// a size or a matrix that no pinhole has
+template <typename Info>
+sensor::Intrinsics intrinsics_of(const Info& info, bool rectified = false) {
+  const auto check = [](bool ok, const std::string& text) { detail::check_message(ok, "CameraInfo", text); };
+  constexpr std::uint32_t kMost = 16384;
+  check(info.width >= 1 && info.height >= 1 && info.width <= kMost && info.height <= kMost,
+        std::to_string(info.width) + " x " + std::to_string(info.height) + " pixels");
+  check(info.binning_x <= 1 && info.binning_y <= 1, "binning is not supported");
+  check(info.roi.x_offset == 0 && info.roi.y_offset == 0 && (info.roi.width == 0 || info.roi.width == info.width) &&
+            (info.roi.height == 0 || info.roi.height == info.height),
+        "a region of interest is not supported");
+  sensor::Intrinsics k;
+  k.width = static_cast<int>(info.width);
+  k.height = static_cast<int>(info.height);
+  const auto take = [&](const auto& camera, const auto& projection, const auto& distortion) {
+    check(rectified || std::all_of(distortion.begin(), distortion.end(), [](double d) { return d == 0.0; }),
+          "the lens distorts: rectify the depth image and say so");
+    k.fx = rectified ? projection[0] : camera[0];
+    k.cx = rectified ? projection[2] : camera[2];
+    k.fy = rectified ? projection[5] : camera[4];
+    k.cy = rectified ? projection[6] : camera[5];
+  };
+  if constexpr (detail::InRos1<Info>::value)
+    take(info.K, info.P, info.D);
+  else
+    take(info.k, info.p, info.d);
+  check(std::isfinite(k.fx) && std::isfinite(k.fy) && k.fx > 0.0 && k.fy > 0.0 && std::isfinite(k.cx) &&
+            std::isfinite(k.cy),
+        "unusable camera matrix");
+  return k;
+}
+
+/// A depth image, `16UC1` (mm, 0 = no return) or `32FC1` (m; 0, NaN and infinities = no return), as a frame in metres.
+/// @param image sensor_msgs/Image  @param info the CameraInfo that came with it
+/// @param rectified whether the image was rectified, see intrinsics_of
+/// @throws InputError for another encoding, data shorter than the rows, a size that differs from the camera's, or an
+/// unusable camera
+template <typename Image, typename Info>
+sensor::DepthFrame depth_frame(const Image& image, const Info& info, bool rectified = false) {
+  const auto check = [](bool ok, const std::string& text) { detail::check_message(ok, "Image", text); };
+  sensor::DepthFrame frame;
+  frame.intrinsics = intrinsics_of(info, rectified);
+  check(image.width == info.width && image.height == info.height,
+        std::to_string(image.width) + " x " + std::to_string(image.height) + " pixels, but CameraInfo says " +
+            std::to_string(info.width) + " x " + std::to_string(info.height));
+  const bool millimetres = image.encoding == "16UC1";
+  check(millimetres || image.encoding == "32FC1",
+        "encoding has to be 16UC1 or 32FC1, got '" + std::string(image.encoding) + "'");
+  const std::size_t width = image.width, height = image.height, step = image.step, bytes = millimetres ? 2 : 4;
+  check(step >= width * bytes, "step " + std::to_string(step) + " is below the row's " + std::to_string(width * bytes));
+  check(image.data.size() >= step * height,
+        "data hold " + std::to_string(image.data.size()) + " bytes, step * height says more");
+  const bool swap = static_cast<bool>(image.is_bigendian) != detail::host_is_big_endian();
+  frame.depth.resize(width * height);
+  for (std::size_t v = 0; v < height; ++v) {
+    const std::uint8_t* row = image.data.data() + v * step;
+    float* out = frame.depth.data() + v * width;
+    for (std::size_t u = 0; u < width; ++u)
+      out[u] = millimetres ? 0.001f * static_cast<float>(detail::read_number<std::uint16_t>(row + 2 * u, swap))
+                           : detail::read_number<float>(row + 4 * u, swap);
+  }
+  return frame;
+}
+
+}  // namespace agrisee::interop
+
+namespace agrisee {
+
+/// Clouds in messages.
+template <typename Message, typename S>
+struct CloudTraits<interop::PointCloud2View<Message, S>> {
+  /// Of coordinates.
+  using Scalar = S;
+  /// Number of points.
+  static std::size_t size(const interop::PointCloud2View<Message, S>& c) { return c.size(); }
+  /// Point i (m).
+  static Vector3<S> point(const interop::PointCloud2View<Message, S>& c, std::size_t i) { return c.point(i); }
+};
+
+}  // namespace agrisee
