@@ -206,8 +206,10 @@ std::optional<ViewRecord> read_view_record(const fs::path& folder, std::size_t v
   if (line == std::string_view::npos) damaged();
   Json json;
   try {
-    json = Json::parse(bytes.substr(0, line));
+    json = parse_json(bytes.substr(0, line));
   } catch (const nlohmann::json::exception&) {
+    damaged();
+  } catch (const InputError&) {
     damaged();
   }
   const JsonValue top(path, json, "");
