@@ -295,6 +295,11 @@ class Pipeline {
     for (std::size_t c = 0; c < image.points.size(); ++c)
       if (surfels_.add(image.points[c], image.normals[c], image.sigma[c], static_cast<int>(id)))
         added.push_back(image.points[c]);
+    // The depths are needed from now on, as evidence of free space, and some points, to compare later views with.
+    std::vector<Eigen::Vector3f> some;
+    const std::size_t step = plan::compared_step(image);
+    for (std::size_t c = 0; c < image.points.size(); c += step) some.push_back(image.points[c]);
+    image.points = std::move(some);
     image.normals = {};
     image.sigma = {};
     images_[id] = std::move(image);

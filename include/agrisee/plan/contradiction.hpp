@@ -24,13 +24,18 @@ struct Evidence {
   }
 };
 
-/// What view `b` says of the surface points of view `a`, at most some 1000 of them, and the other way round.
-/// @pre the images hold their points
+/// Of an image's points every so-many-th is compared: some 1000 of them.
+inline std::size_t compared_step(const sensor::SurfaceImage& image) {
+  return std::max<std::size_t>(1, image.points.size() / 1000);
+}
+
+/// What view `b` says of some of the surface points of view `a`, and the other way round.
+/// @pre the images hold their points, or those that are compared
 inline Evidence compare(const sensor::SurfaceImage& a, const sensor::SurfaceImage& b,
                         const FreeSpaceParameters& parameters) {
   Evidence out;
   const auto one_way = [&](const sensor::SurfaceImage& points, const sensor::SurfaceImage& view) {
-    const std::size_t step = std::max<std::size_t>(1, points.points.size() / 1000);
+    const std::size_t step = compared_step(points);
     for (std::size_t i = 0; i < points.points.size(); i += step) {
       const Eigen::Vector3d p = points.points[i].cast<double>();
       if (refutes(view, p, parameters))
