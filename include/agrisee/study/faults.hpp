@@ -148,7 +148,7 @@ struct FaultRecord {
 /// @param parameters of the pipeline
 /// @param noise of the sensor
 /// @param faults how often what goes wrong
-/// @param trial seed of noise, planner and faults
+/// @param trial seed of noise and planner, and with the name of the faults
 /// @param threads the result does not depend on it
 /// @throws ParameterError, InputError as scan() does
 inline FaultRecord scan_with_faults(const std::string& name, const Workcell& workcell, const Truth& truth,
@@ -163,11 +163,13 @@ inline FaultRecord scan_with_faults(const std::string& name, const Workcell& wor
   options.noise = noise;
   options.seed = static_cast<std::uint64_t>(trial);
   options.threads = threads;
+  std::uint64_t seed = options.seed;  // of the faults: other scenes are struck otherwise
+  for (const char c : name) seed = mix(seed ^ static_cast<unsigned char>(c));
   FaultCounts counts{};
   constexpr auto kWrong = static_cast<std::size_t>(Fault::wrong_pose);
   std::vector<std::size_t> wrong;  // numbers of the views whose pose was wrong
   options.around = [&](Look look) {
-    return [&, inner = faulty(std::move(look), faults, static_cast<std::uint64_t>(trial), &counts)](
+    return [&, inner = faulty(std::move(look), faults, seed, &counts)](
                const plan::ReachableView& view, std::size_t number) {
       const int before = counts[kWrong];
       auto capture = inner(view, number);
