@@ -6,13 +6,17 @@ CMAKE_ARGS ?=
 CONFIGURE := cmake -S . -B build/release -G Ninja -DCMAKE_BUILD_TYPE=Release $(CMAKE_ARGS)
 AGRISEE := build/release/agrisee
 
-.PHONY: help build demo test experiment bench format clean
+.PHONY: help build demo test experiment bench fuzz survive format clean
+SECONDS_IN_ALL ?= 14400
+KILLS ?= 100
 
 help:
 	@echo "make demo    install what is missing, build, scan a 7-fruit truss, evaluate it, draw it"
 	@echo "make test    install what is missing, build and run all tests"
 	@echo "make experiment  rerun what is missing of the paper's experiment, and write docs/experiment.md, docs/planners.md"
-	@echo "make bench   build and run the benchmarks"
+	@echo "make bench   build and run the benchmarks, against other libraries where they are installed; docs/benchmarks.md"
+	@echo "make fuzz    fuzz the readers with clang's libFuzzer, for hours (SECONDS_IN_ALL=60: for a minute)"
+	@echo "make survive kill a scan a hundred times (KILLS=...) and fill its disk: nothing may be lost"
 	@echo "make format  run clang-format on all sources"
 	@echo "make clean   remove build/ and demo/"
 
@@ -41,9 +45,20 @@ experiment: build
 
 bench:
 	@cmake/packages.sh build bench
-	@cmake -S . -B build/bench -G Ninja -DCMAKE_BUILD_TYPE=Release -DAGRISEE_BUILD_BENCHMARKS=ON -DAGRISEE_BUILD_TESTS=OFF
+	@cmake -S . -B build/bench -G Ninja -DCMAKE_BUILD_TYPE=Release -DAGRISEE_BUILD_BENCHMARKS=ON -DAGRISEE_BENCHMARK_PEERS=ON \
+	  -DAGRISEE_BUILD_TESTS=OFF -DAGRISEE_BUILD_EXAMPLES=OFF -DAGRISEE_BUILD_CLI=OFF
 	@cmake --build build/bench -j $(JOBS)
-	@for program in build/bench/benchmarks/bench_*; do [ ! -x $$program ] || $$program --benchmark_min_time=0.2; done
+	@benchmarks/report.py build/bench docs/benchmarks.md $(if $(LARGE),--large)
+
+fuzz:
+	@cmake/packages.sh build fuzz
+	@cmake --preset fuzz -G Ninja
+	@cmake --build --preset fuzz -j $(JOBS)
+	@tests/fuzz/run.sh build/fuzz/fuzz $(SECONDS_IN_ALL)
+
+survive: build
+	@python3 tests/cli/survive.py $(AGRISEE) build/survive kill $(KILLS)
+	@python3 tests/cli/survive.py $(AGRISEE) build/survive full || [ $$? = 77 ]
 
 format:
 	@git ls-files '*.hpp' '*.cpp' | xargs clang-format -i

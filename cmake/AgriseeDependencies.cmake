@@ -13,6 +13,10 @@ find_package(Threads REQUIRED)
 
 if(AGRISEE_BUILD_IO)
   find_package(yaml-cpp REQUIRED)
+  set(AGRISEE_YAML_CPP yaml-cpp)
+  if(TARGET yaml-cpp::yaml-cpp)  # from 0.8 on
+    set(AGRISEE_YAML_CPP yaml-cpp::yaml-cpp)
+  endif()
   find_package(nlohmann_json REQUIRED)
   find_path(AGRISEE_STB_INCLUDE_DIR stb_image_write.h PATH_SUFFIXES stb REQUIRED)
   mark_as_advanced(AGRISEE_STB_INCLUDE_DIR)

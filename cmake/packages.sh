@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: BSD-3-Clause
-# Installs what is missing of Debian's or Ubuntu's packages: cmake/packages.sh [build] [test] [oracles] [bench] [ros]
+# Installs what is missing of Debian's or Ubuntu's packages: cmake/packages.sh [build] [test] [oracles] [viewers] [bench] [docs] [ros] [fuzz]
 # Says what it does; asks sudo only when there is something to install and the caller is not root.
 set -euo pipefail
 
@@ -8,10 +8,13 @@ declare -A groups=(
   [build]="g++ cmake ninja-build libeigen3-dev libnanoflann-dev libyaml-cpp-dev nlohmann-json3-dev libcli11-dev libstb-dev"
   [test]="catch2 pkg-config python3"
   [oracles]="libpcl-dev libopen3d-dev liborocos-kdl-dev libembree-dev"
+  [viewers]="cloudcompare meshlab xvfb xauth"
   [bench]="libbenchmark-dev"
+  [docs]="doxygen"
   [ros]="libroscpp-dev libtf2-ros-dev libtf2-msgs-dev libgeometry-msgs-dev libsensor-msgs-dev libstd-msgs-dev libstd-srvs-dev \
 libtrajectory-msgs-dev libvisualization-msgs-dev python3-roslaunch python3-rosmaster rosout python3-rosservice \
 ros-robot-state-publisher rviz"
+  [fuzz]="clang"
 )
 wanted=()
 for group in "$@"; do

@@ -75,7 +75,7 @@ void counts(const char* stage, std::size_t n, int threads, double neighbors) {
 
 void nearest(std::size_t n, int threads) {
   constexpr std::size_t k = 20;
-  const auto ours = [=](int t) { return nearest_neighbors(peers::cloud(n), k, t); };
+  const auto ours = [=](int t) { return nearest_neighbors(peers::cloud(n), k, t).ids; };
   peers::add("knn", "ours", n, threads, ours, peers::Unchecked());
   peers::add("knn", "nanoflann", n, threads, [=](int t) { return nanoflann_nearest(peers::cloud(n), k, t); },
              [=](const Indices& theirs) {

@@ -45,7 +45,10 @@ inline Body body_of(const Cloud& cloud, const Indices& points, const FoundBody& 
 }  // namespace detail
 
 /// The fruit of a split cloud, numbered from the top of the truss down, and the labels renumbered alike.
+/// @param cloud points (m, world) with normals
+/// @param split of that cloud
 /// @param cluster_origin the origin of the cluster frame {R} in world (aabb.hpp)
+/// @param parameters see their struct
 /// @param labels in: those of `split`; out: the fruit's ids
 inline std::vector<Fruit> locate(const Cloud& cloud, const Split& split, const Eigen::Vector3d& cluster_origin,
                                  const Parameters& parameters, Labels& labels) {

@@ -10,23 +10,31 @@
 #include <agrisee/cloud/icp.hpp>
 #include <agrisee/cloud/merge.hpp>
 #include <agrisee/plan/arm_approach.hpp>
+#include <agrisee/plan/contradiction.hpp>
 #include <agrisee/plan/picking.hpp>
 #include <agrisee/planners.hpp>
 #include <agrisee/process.hpp>
 #include <agrisee/sensor/points_to_frame.hpp>
 #include <agrisee/workcell.hpp>
 
+#include <map>
 #include <memory>
+#include <numeric>
 
 namespace agrisee {
 
 /// One scan of one truss.
 class Pipeline {
  public:
+  /// So many refused views on end are the end of a scan.
+  static constexpr int kMostRefusals = 50;
+
   /// @param workcell arm, sensor, scan volume and keep-out; see workcell.hpp
+  /// @param parameters of all stages
   /// @param reach answers whether and how the arm can take a view; the default asks our UR3 model
   /// @param planner decides where to look next; the default is the one that `parameters.planner` names
   /// @param seed of whatever the planner draws
+  /// @param threads the result does not depend on it
   /// @param approach answers whether and how the arm can approach a fruit to pick it; the default asks our UR3 model,
   /// or
   ///   nobody where `reach` is the caller's own (an arm that we do not know)
@@ -53,7 +61,10 @@ class Pipeline {
   }
 
   /// Take in a depth frame that was seen from `world_T_optical` (at `joints`, where an arm is known).
-  /// A frame without returns inside the scan volume is a view that brought nothing.
+  /// A frame without returns inside the scan volume is a view that brought nothing. A view is discarded, and marked so,
+  /// when its frame is the last one bit by bit (a sensor that hangs), or where views are registered, when it
+  /// contradicts what other views saw (see FreeSpaceParameters::max_contradiction): its pose is wrong. Of views that
+  /// contradict one another the more are believed, so that a wrong first view is found out too.
   /// @return the view as recorded
   /// @throws InputError for a frame whose size disagrees with its intrinsics or a pose that is not rigid; the scan so
   /// far is kept
@@ -67,11 +78,18 @@ class Pipeline {
     view.joints = joints;
     view.plan_seconds = plan_seconds_;
     plan_seconds_ = 0.0;
+    refusals_ = 0;
     std::vector<Eigen::Vector3f> added;
     std::optional<Indices> kept;
     {
       const Stopwatch watch(seconds_.fuse);
-      parameters_.fuse_surfaces ? fuse_surface(frame, view, added) : merge_points(frame, view, added);
+      const bool frozen = is_last_frame(frame);
+      if (parameters_.fuse_surfaces)
+        kept = take_surface(frame, frozen, view, added);
+      else if (frozen)
+        view.discarded = true;
+      else
+        merge_points(frame, view, added);
     }
     if (parameters_.filter_each_view && !parameters_.fuse_surfaces && !points_.cloud().empty()) {
       const Stopwatch watch(seconds_.filter);
@@ -110,6 +128,8 @@ class Pipeline {
       const Stopwatch watch(spent);
       if (static_cast<int>(views_.size()) >= parameters_.max_views) {
         stop_reason_ = StopReason::max_views;
+      } else if (refusals_ >= kMostRefusals) {
+        stop_reason_ = StopReason::no_reachable_view;
       } else {
         next = planner_->next(progress({}, nullptr), current, reach_);
         stop_reason_ = next ? StopReason::not_stopped : planner_->stop_reason();
@@ -121,21 +141,30 @@ class Pipeline {
   }
 
   /// The arm could not take the view that `next_view` returned last: ask again for another.
-  void refused() { planner_->refused(); }
+  /// After kMostRefusals of them on end the scan is over: the arm does not move, or the sensor is silent.
+  void refused() {
+    planner_->refused();
+    ++refusals_;
+  }
 
+  /// Why next_view() returned nothing last.
   StopReason stop_reason() const { return stop_reason_; }
   /// How much of the fruit's surface the planner believes to have been seen, and that the arm can see at all, as of the
   /// last next_view(); nothing where the planner does not reckon with surfaces.
   std::optional<Completeness> completeness() const { return planner_->completeness(); }
   /// The views that the last next_view() chose from, best first; nothing where the planner does not compare views.
   std::vector<plan::ReachableView> candidates() const { return planner_->candidates(); }
+  /// The views taken so far.
   const std::vector<View>& views() const { return views_; }
   /// The cloud merged so far, before any filter at the end.
   const Cloud& merged() const { return cloud_; }
   /// All points merged so far, filtered away later or not, each with its view.
   Cloud raw() const { return raw_cloud(); }
+  /// As given.
   const Workcell& workcell() const { return workcell_; }
+  /// As given.
   const Parameters& parameters() const { return parameters_; }
+  /// What answers for the arm.
   const plan::Reach& reach() const { return reach_; }
 
   /// Clean, split and locate what has been seen so far, and plan the picking from where the arm stood last.
@@ -201,20 +230,88 @@ class Pipeline {
     return {cloud_, images_, views_, added, kept};
   }
 
-  /// The frame's surface, laid on what is fused so far, becomes part of it.
-  void fuse_surface(const sensor::DepthFrame& frame, View& view, std::vector<Eigen::Vector3f>& added) {
+  /// True when a frame that shows something is the last one again; a real sensor's noise never repeats.
+  bool is_last_frame(const sensor::DepthFrame& frame) {
+    const auto equal = [](float a, float b) { return a == b || (!(a > 0.0f) && !(b > 0.0f)); };
+    const bool same = std::equal(frame.depth.begin(), frame.depth.end(), last_frame_.begin(), last_frame_.end(), equal);
+    const bool shows = std::any_of(frame.depth.begin(), frame.depth.end(), sensor::DepthFrame::valid);
+    if (shows && !same) last_frame_ = frame.depth;
+    return shows && same;
+  }
+
+  /// The frame's surface becomes part of what is fused so far, unless it is not believed.
+  /// @return where what was fused before is not believed any more: the points that are kept, those from before counted
+  std::optional<Indices> take_surface(const sensor::DepthFrame& frame, bool frozen, View& view,
+                                      std::vector<Eigen::Vector3f>& added) {
     sensor::SurfaceImage image =
         sensor::reconstruct_surface(frame, view.world_T_optical, workcell_.scan_volume, parameters_.surface, threads_);
     view.points_in = image.points_in;
+    images_.emplace_back();  // nothing that counts as evidence
+    images_.back().world_T_optical = view.world_T_optical;
+    const std::size_t id = views_.size();
+    if (frozen) {
+      view.discarded = true;
+      return std::nullopt;
+    }
+    if (!parameters_.register_views || !contradicted(image)) {
+      fuse(std::move(image), id, added);
+      return std::nullopt;
+    }
+    // Those of the views that were not believed which tell the same as this one; more of them than of the others?
+    std::vector<std::size_t> group;
+    for (const auto& [other, held] : held_)
+      if (tell_the_same(plan::compare(held, image, parameters_.free_space))) group.push_back(other);
+    held_.emplace(id, std::move(image));
+    group.push_back(id);
+    const auto believed = static_cast<std::size_t>(
+        std::count_if(views_.begin(), views_.end(), [](const View& v) { return !v.discarded && v.points_in > 0; }));
+    if (group.size() <= believed) {
+      view.discarded = true;
+      return std::nullopt;
+    }
+    const std::size_t before = surfels_.size();
+    surfels_ = SurfelMap(parameters_.surfels);
+    for (View& v : views_) v.discarded |= v.points_in > 0;
+    for (std::size_t v = 0; v < images_.size(); ++v) {
+      images_[v] = {};
+      images_[v].world_T_optical = v < id ? views_[v].world_T_optical : view.world_T_optical;
+    }
+    for (const std::size_t v : group) {
+      if (v < id) views_[v].discarded = false;
+      fuse(std::move(held_.at(v)), v, added);
+      held_.erase(v);
+    }
+    Indices kept(added.size());
+    std::iota(kept.begin(), kept.end(), static_cast<Index>(before));
+    return kept;
+  }
+
+  bool tell_the_same(const plan::Evidence& evidence) const {
+    constexpr std::size_t kEnough = 50;
+    return evidence.count() >= kEnough && evidence.contradiction() <= parameters_.free_space.max_contradiction;
+  }
+
+  /// True when the views that are fused looked through what the image shows, or the other way round.
+  bool contradicted(const sensor::SurfaceImage& image) const {
+    plan::Evidence all;
+    for (const auto& other : images_) all += plan::compare(image, other, parameters_.free_space);
+    return all.contradiction() > parameters_.free_space.max_contradiction;
+  }
+
+  /// Lay an image on what is fused so far and add it.
+  void fuse(sensor::SurfaceImage image, std::size_t id, std::vector<Eigen::Vector3f>& added) {
     if (parameters_.register_views && surfels_.size() > 0) register_image(image);
-    const int id = static_cast<int>(views_.size());
     for (std::size_t c = 0; c < image.points.size(); ++c)
-      if (surfels_.add(image.points[c], image.normals[c], image.sigma[c], id)) added.push_back(image.points[c]);
-    // Only the depths are needed from now on, as evidence of free space.
-    image.points = {};
+      if (surfels_.add(image.points[c], image.normals[c], image.sigma[c], static_cast<int>(id)))
+        added.push_back(image.points[c]);
+    // The depths are needed from now on, as evidence of free space, and some points, to compare later views with.
+    std::vector<Eigen::Vector3f> some;
+    const std::size_t step = plan::compared_step(image);
+    for (std::size_t c = 0; c < image.points.size(); c += step) some.push_back(image.points[c]);
+    image.points = std::move(some);
     image.normals = {};
     image.sigma = {};
-    images_.push_back(std::move(image));
+    images_[id] = std::move(image);
   }
 
   void register_image(sensor::SurfaceImage& image) const {
@@ -243,11 +340,15 @@ class Pipeline {
     if (images_.empty() || out.cloud.empty()) return;
     Eigen::Vector3d center = Eigen::Vector3d::Zero(), shift = Eigen::Vector3d::Zero();
     for (const auto& p : out.cloud.points) center += p.cast<double>() / static_cast<double>(out.cloud.size());
+    std::size_t believed = 0;
     for (std::size_t v = 0; v < images_.size(); ++v) {
+      if (views_[v].discarded) continue;
       const Pose reported_T_registered =
           views_[v].world_T_optical * images_[v].world_T_optical.inverse(Eigen::Isometry);
-      shift += (reported_T_registered * center - center) / static_cast<double>(images_.size());
+      shift += reported_T_registered * center - center;
+      ++believed;
     }
+    shift /= static_cast<double>(std::max<std::size_t>(believed, 1));
     for (Cloud* cloud : {&out.cloud, &out.raw})
       for (auto& p : cloud->points) p += shift.cast<float>();
     for (Fruit& f : out.fruits) {
@@ -304,12 +405,15 @@ class Pipeline {
   plan::ReachApproach approach_;
   std::unique_ptr<plan::Planner> planner_;
   int threads_;
-  SurfelMap surfels_;                         // fused surfaces
-  std::vector<sensor::SurfaceImage> images_;  // what each view saw
-  SeparatedCloud points_;                     // or merged raw points
-  Cloud raw_;                                 // all of them, filtered away later or not
-  Cloud cloud_;                               // what is merged so far
+  SurfelMap surfels_;                                 // fused surfaces
+  std::vector<sensor::SurfaceImage> images_;          // what each view saw; of discarded ones the pose alone
+  std::map<std::size_t, sensor::SurfaceImage> held_;  // what views saw that are not believed
+  std::vector<float> last_frame_;                     // the last that showed anything
+  SeparatedCloud points_;                             // or merged raw points
+  Cloud raw_;                                         // all of them, filtered away later or not
+  Cloud cloud_;                                       // what is merged so far
   std::vector<View> views_;
+  int refusals_ = 0;  // since the last view
   StopReason stop_reason_ = StopReason::not_stopped;
   Timing seconds_;
   double plan_seconds_ = 0.0;

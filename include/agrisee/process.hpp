@@ -14,6 +14,7 @@ namespace agrisee {
 /// Adds the seconds of its own lifetime to a counter.
 class Stopwatch {
  public:
+  /// Starts; `seconds` has to outlive it.
   explicit Stopwatch(double& seconds) : seconds_(seconds), start_(std::chrono::steady_clock::now()) {}
   Stopwatch(const Stopwatch&) = delete;
   Stopwatch& operator=(const Stopwatch&) = delete;
@@ -74,22 +75,30 @@ inline std::vector<Eigen::Vector3f> estimated_normals(const Cloud& cloud, const 
   OrientationParameters orientation;
   bool all_known = true;
   for (std::size_t i = 0; i < cloud.size() && all_known; ++i) all_known = seen_from(cloud, i, origin).has_value();
-  std::optional<KdTree<float>> search;
-  if (parameters.adaptive_normals || !all_known) search.emplace(cloud);
-  const double spacing = parameters.adaptive_normals ? estimate_spacing(cloud, *search) : 0.0;
+  const double spacing = parameters.adaptive_normals ? estimate_spacing(cloud) : 0.0;
   noise = 0.0;
   if (spacing > 0.0) {
     const BodyParameters& bodies = parameters.split.bodies;
     normals.radius = parameters.normal_reach * spacing;
-    noise = estimate_noise(cloud, *search, normals.radius, std::sqrt(bodies.radius_min * bodies.radius_max));
+    noise = estimate_noise(cloud, Grid<float>(cloud, static_cast<float>(normals.radius)), normals.radius,
+                           std::sqrt(bodies.radius_min * bodies.radius_max));
     // Eight deviations across tell a slope; more than half a fruit's radius would round it off.
     normals.radius = std::max(normals.radius, std::min(8.0 * noise, 0.5 * bodies.radius_min));
     const double across = std::min(normals.radius / spacing, 20.0);
     normals.max_neighbors = std::max(normals.max_neighbors, static_cast<int>(kPi * across * across));
     orientation.max_distance = normals.radius;
   }
-  auto estimated = estimate_normals(cloud, normals, threads);
-  if (!all_known) estimated = orient_normals_consistently(std::move(estimated), cloud, orientation, *search, threads);
+  std::vector<Eigen::Vector3f> estimated;
+  if (all_known) {
+    estimated = estimate_normals(cloud, normals, threads);
+  } else if (normals.max_neighbors <= 64) {  // lists of neighbours serve twice, as long as they are short
+    const int k = std::max(normals.max_neighbors, orientation.neighbors + 1);
+    const NeighborLists lists = nearest_neighbors(cloud, static_cast<std::size_t>(k), threads);
+    estimated = orient_normals_consistently(estimate_normals(cloud, normals, lists, threads), cloud, orientation, lists,
+                                            threads);
+  } else {
+    estimated = orient_normals_consistently(estimate_normals(cloud, normals, threads), cloud, orientation, threads);
+  }
   for (std::size_t i = 0; i < cloud.size(); ++i)
     if (const auto eye = seen_from(cloud, i, origin))
       if (estimated[i].cast<double>().dot(*eye - cloud.points[i].cast<double>()) < 0.0) estimated[i] = -estimated[i];
@@ -178,28 +187,33 @@ inline ScanResult process_finite(Cloud raw, const Parameters& parameters, const 
 /// Points that are not finite are dropped. Normals that the cloud has are kept, unless `origin.check_normals` asks to
 /// turn those that face away from where their points were seen from; missing ones are estimated and turned to the
 /// views, to the one viewpoint, or, where neither is known, by consistency. Where normals had to be estimated, the fit
-/// of bodies
-/// (`split.bodies.fit.noise`) reckons with four times the noise that the cloud shows locally: a ready cloud's errors go
-/// on beyond the neighbourhood in which they can be told from the surface. Works for any number of points; too few to
-/// be anything give no fruit.
+/// of bodies (`split.bodies.fit.noise`) reckons with four times the noise that the cloud shows locally: a ready cloud's
+/// errors go on beyond the neighbourhood in which they can be told from the surface. Works for any number of points;
+/// too few to be anything give no fruit.
+/// @param cloud points (m), any frame; normals and views where it has them
+/// @param parameters see their struct
+/// @param origin where the points were seen from
 /// @param seen_through evidence of free space from the views, or empty
+/// @param threads the result does not depend on it
 /// @throws ParameterError
 inline ScanResult process(const Cloud& cloud, const Parameters& parameters = {}, const CloudOrigin& origin = {},
                           const SeenThrough& seen_through = {}, int threads = 1) {
   return detail::process_finite(select(cloud, finite_indices(cloud)), parameters, origin, seen_through, threads);
 }
 
-/// The same for the points of a cloud of any other type (core/traits.hpp), read where they lie.
-template <typename C, typename = std::enable_if_t<!std::is_convertible_v<const C&, const Cloud&>>>
-ScanResult process(const C& points, const Parameters& parameters = {}, const CloudOrigin& origin = {},
+/// The same on any other cloud that meets the contract of core/traits.hpp: vectors and maps of Eigen, or with a header
+/// of `interop/` clouds of PCL, Open3D and ROS. It is read where it lies, once, into the `raw` cloud of the result,
+/// which every result owns and which holds its finite points. Its views are unknown.
+/// @param cloud points (m), any frame
+/// @param parameters see their struct
+/// @param origin where the points were seen from
+/// @param seen_through evidence of free space from the views, or empty
+/// @param threads the result does not depend on it
+/// @throws ParameterError
+template <typename C, typename = scalar_t<C>>
+ScanResult process(const C& cloud, const Parameters& parameters = {}, const CloudOrigin& origin = {},
                    const SeenThrough& seen_through = {}, int threads = 1) {
-  Cloud raw;
-  raw.points.reserve(agrisee::size(points));
-  for (std::size_t i = 0; i < agrisee::size(points); ++i) {
-    const Eigen::Vector3f p = point(points, i).template cast<float>();
-    if (is_finite(p)) raw.points.push_back(p);
-  }
-  return detail::process_finite(std::move(raw), parameters, origin, seen_through, threads);
+  return detail::process_finite(finite_points(cloud), parameters, origin, seen_through, threads);
 }
 
 }  // namespace agrisee

@@ -23,6 +23,7 @@ enum class StopReason {
   nothing_seen        ///< the first views returned no point inside the scan volume
 };
 
+/// Its name, as in run.json.
 inline const char* to_string(StopReason reason) {
   switch (reason) {
     case StopReason::not_stopped:
@@ -49,6 +50,7 @@ struct View {
   std::size_t points_in = 0;                         ///< points returned inside the scan volume
   std::size_t points_new = 0;                        ///< points that the merged cloud kept
   double plan_seconds = 0.0;                         ///< time it took to choose this view
+  bool discarded = false;                            ///< what it saw was not believed: see Pipeline::observe
 };
 
 /// A body fitted to a fruit: an ellipsoid.
@@ -80,6 +82,7 @@ enum class PickingReason {
   arm_meets_fruit        ///< the arm would meet fruit that cannot be picked before
 };
 
+/// Its name, as in fruits.json.
 inline const char* to_string(PickingReason reason) {
   switch (reason) {
     case PickingReason::reachable:
@@ -107,8 +110,8 @@ inline const char* to_string(PickingReason reason) {
 /// How to pick a fruit: the tool moves straight from the pre-grasp pose along the direction towards the fruit's centre.
 struct Picking {
   int order = 0;  ///< from 1 over all fruit of a result; those that cannot be picked come last
-  bool reachable = false;
-  PickingReason reason = PickingReason::not_tested;
+  bool reachable = false;                               ///< it can be picked
+  PickingReason reason = PickingReason::not_tested;     ///< if not, why
   Eigen::Vector3d direction = Eigen::Vector3d::Zero();  ///< unit, from pre-grasp to the centre; zero without a body
   Pose world_T_pre_grasp =
       Pose::Identity();          ///< of the tool: z along the direction (REP-103's optical frame); with a body
@@ -156,7 +159,14 @@ struct Completeness {
 
 /// Seconds of computing per stage. `total` is all of it but the simulated sensor's `capture`.
 struct Timing {
-  double capture = 0.0, plan = 0.0, fuse = 0.0, filter = 0.0, normals = 0.0, segment = 0.0, locate = 0.0, total = 0.0;
+  double capture = 0.0;  ///< the simulated sensor's
+  double plan = 0.0;     ///< choosing views
+  double fuse = 0.0;     ///< merging them
+  double filter = 0.0;   ///< outlier removal
+  double normals = 0.0;  ///< where they had to be estimated
+  double segment = 0.0;  ///< splitting into fruit
+  double locate = 0.0;   ///< bodies, poses, picking
+  double total = 0.0;    ///< all but `capture`
 
   /// f(name, field) for every stage.
   template <typename P, typename F>
@@ -174,14 +184,14 @@ struct Timing {
 
 /// Everything that a scan, or the processing of a ready cloud, leaves behind.
 struct ScanResult {
-  std::vector<View> views;
-  StopReason stop_reason = StopReason::not_stopped;
+  std::vector<View> views;                           ///< in the order in which they were taken
+  StopReason stop_reason = StopReason::not_stopped;  ///< why there are no more
   Cloud raw;      ///< the merged cloud before any filtering; `views` filled
   Cloud cloud;    ///< the consolidated cloud: points, normals, views (world)
   Labels labels;  ///< one per point of `cloud`: the fruit's id, or 0
-  std::vector<Fruit> fruits;
+  std::vector<Fruit> fruits;                 ///< from the top of the truss down
   std::optional<Completeness> completeness;  ///< as the planner believes; absent where it does not reckon with surfaces
-  Timing seconds;
+  Timing seconds;                            ///< of computing
 };
 
 }  // namespace agrisee

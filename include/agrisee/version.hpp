@@ -3,4 +3,5 @@
 /// The version of the library, stated here once; CMake and the packages read it from this line.
 #pragma once
 
+/// The version, stated here alone.
 #define AGRISEE_VERSION "0.1.0"

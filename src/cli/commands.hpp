@@ -28,6 +28,8 @@ void add_evaluate(CLI::App& app, Run& run);
 void add_paper_scenes(CLI::App& app, Run& run);
 void add_experiment(CLI::App& app, Run& run);
 void add_limit(CLI::App& app, Run& run);
+void add_merge(CLI::App& app, Run& run);
+void add_faults(CLI::App& app, Run& run);
 
 /// Options that scan and process have in common.
 struct PipelineOptions {
@@ -38,7 +40,8 @@ struct PipelineOptions {
   int threads = 0;  ///< 0 = as many as the machine has
   bool force = false, json = false;
 };
-void add_pipeline_options(CLI::App& command, PipelineOptions& options);
+/// @return the option that names the output
+CLI::Option* add_pipeline_options(CLI::App& command, PipelineOptions& options);
 
 /// Preset, parameter file and expected radii combined. @throws FileError, UsageError
 Parameters parameters_of(const PipelineOptions& options);
@@ -47,8 +50,12 @@ int threads_of(int asked);
 /// @throws UsageError when it exists and is not a folder, FileError when it cannot be made
 void make_folder(const std::string& folder);
 
-/// Makes the folder ready for a result; with `force` an older one is removed. @throws UsageError when it holds a result
-/// already and `force` is off
+/// The files of a result, those that it may lack as well.
+constexpr const char* kResultFiles[] = {"run.json",    "views.csv",  "cloud.ply", "cloud_raw.ply",
+                                        "fruits.json", "fruits.csv", "truss.png", "report.html"};
+
+/// Makes the folder ready for a result; with `force` an older one is removed, finished or not. @throws UsageError when
+/// it holds one and `force` is off
 void prepare_output(const std::string& folder, bool force);
 
 /// The summary of a result on stdout: a table of fruit, or JSON.

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <agrisee/io/files.hpp>
 #include <agrisee/io/parameters.hpp>
+#include <agrisee/io/scan_record.hpp>
 #include <agrisee/version.hpp>
 
 #include <filesystem>
@@ -15,8 +17,8 @@ namespace agrisee::cli {
 
 namespace fs = std::filesystem;
 
-void add_pipeline_options(CLI::App& command, PipelineOptions& options) {
-  command.add_option("-o,--output", options.output, "folder for the result")->required();
+CLI::Option* add_pipeline_options(CLI::App& command, PipelineOptions& options) {
+  CLI::Option* output = command.add_option("-o,--output", options.output, "folder for the result");
   command.add_option("--preset", options.preset, "starting values: default, or paper")
       ->check(CLI::IsMember({"default", "paper"}))
       ->capture_default_str();
@@ -32,6 +34,7 @@ void add_pipeline_options(CLI::App& command, PipelineOptions& options) {
       ->capture_default_str();
   command.add_flag("--force", options.force, "overwrite an existing result");
   command.add_flag("--json", options.json, "print the summary as JSON");
+  return output;
 }
 
 Parameters parameters_of(const PipelineOptions& options) {
@@ -59,15 +62,22 @@ void make_folder(const std::string& folder) {
 }
 
 void prepare_output(const std::string& folder, bool force) {
-  constexpr const char* kResultFiles[] = {"run.json",    "views.csv",  "cloud.ply", "cloud_raw.ply",
-                                          "fruits.json", "fruits.csv", "truss.png", "report.html"};
   std::error_code error;
   for (const char* name : kResultFiles)
     if (!force && fs::exists(fs::path(folder) / name, error))
       throw UsageError(folder + ": holds a result already (" + name + "); use --force to overwrite it");
+  if (!force && fs::exists(fs::path(folder) / "scan.json", error))
+    throw UsageError(folder + ": holds a scan that was not finished; go on with `agrisee scan --resume " + folder +
+                     "`, or use --force to overwrite it");
   make_folder(folder);
-  if (force)  // nothing of an older result may be taken for part of the new one
-    for (const char* name : kResultFiles) fs::remove(fs::path(folder) / name, error);
+  io::remove_leftovers(folder);
+  if (!force) return;
+  for (const char* name : kResultFiles) {  // nothing of an older result may be taken for part of the new one
+    const fs::path path = fs::path(folder) / name;
+    fs::remove(path, error);
+    if (error) throw FileError(path.string() + ": cannot be removed: " + error.message());
+  }
+  io::remove_scan_records(folder);
 }
 
 void print_summary(const ScanResult& result, const std::string& folder, bool json) {

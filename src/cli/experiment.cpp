@@ -2,6 +2,7 @@
 // agrisee experiment: the paper's experiment, side by side with its tables.
 #include <agrisee/io/experiment.hpp>
 #include <agrisee/io/files.hpp>
+#include <agrisee/io/fingerprint.hpp>
 #include <agrisee/io/ground_truth.hpp>
 #include <agrisee/io/parameters.hpp>
 #include <agrisee/io/report.hpp>
@@ -36,24 +37,6 @@ struct ExperimentOptions {
   }
 };
 
-/// FNV-1a, 64 bits: tells whether a record belongs to what would be run now.
-class Fingerprint {
- public:
-  void add(const void* data, std::size_t size) {
-    const auto* bytes = static_cast<const unsigned char*>(data);
-    for (std::size_t i = 0; i < size; ++i) hash_ = (hash_ ^ bytes[i]) * 1099511628211ULL;
-  }
-  void add(std::string_view text) { add(text.data(), text.size()); }
-  std::string text() const {
-    std::ostringstream out;
-    out << std::hex << std::setw(16) << std::setfill('0') << hash_;
-    return out.str();
-  }
-
- private:
-  std::uint64_t hash_ = 14695981039346656037ULL;
-};
-
 /// A scene of the experiment; what is costly of it is made when its first cell runs.
 struct SceneJob {
   std::string name;
@@ -77,15 +60,12 @@ SceneJob open_scene(const fs::path& path) {
   job.path = path;
   job.file = io::read_scene(path);
   job.name = job.file.workcell.name;
-  Fingerprint print;
+  io::Fingerprint print;
   print.add(AGRISEE_VERSION);
   print.add(io::read_bytes(path).view());
   const fs::path truth = path.parent_path() / "ground_truth.json";
   if (fs::exists(truth)) print.add(io::read_bytes(truth).view());
-  for (const Object& object : job.file.scene.objects) {
-    print.add(object.mesh.vertices.data(), object.mesh.vertices.size() * sizeof(object.mesh.vertices[0]));
-    print.add(object.mesh.triangles.data(), object.mesh.triangles.size() * sizeof(object.mesh.triangles[0]));
-  }
+  print.add(job.file.scene);
   job.fingerprint = print.text();
   return job;
 }
@@ -135,7 +115,7 @@ std::vector<CellJob> list_cells(const ExperimentOptions& options, const std::vec
             if (!names.insert(job.cell.name()).second) continue;
             job.scene = s;
             job.parameters = parameters;
-            Fingerprint print;
+            io::Fingerprint print;
             print.add(scenes[s].fingerprint);
             print.add(io::parameters_to_json(parameters));
             job.fingerprint = print.text();
@@ -216,7 +196,7 @@ std::vector<study::SceneRecord> judge_scenes(const ExperimentOptions& options, s
   parallel_for(
       scenes.size(), threads,
       [&](std::size_t s) {
-        const fs::path path = fs::path(options.output) / "cells" / (scenes[s].name + ".json");
+        const fs::path path = fs::path(options.output) / "cells" / (study::file_name(scenes[s].name) + ".json");
         if (auto record = finished<study::SceneRecord>(path, scenes[s].fingerprint, io::read_scene_record)) {
           records[s] = *record;
           return;

@@ -246,7 +246,7 @@ int run_limit(const LimitOptions& options) {
   for (const char* name : {"limit.json", "observable.ply", "views.csv"})
     if (!options.force && fs::exists(folder / name))
       throw UsageError(options.output + ": holds a result already (" + name + "); use --force to overwrite it");
-  if (fs::exists(folder / "run.json"))
+  if (fs::exists(folder / "run.json") || fs::exists(folder / "scan.json"))
     throw UsageError(options.output + ": holds the result of a scan, whose views would be overwritten");
   try {
     options.base.check();

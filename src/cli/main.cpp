@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <agrisee/version.hpp>
 
+#include <csignal>
 #include <iostream>
 
 #include "commands.hpp"
 
 int main(int argc, char** argv) {
   using namespace agrisee;
+  std::signal(SIGXFSZ, SIG_IGN);  // a limit on the size of files is an error of the write, not the end
   CLI::App app{"AgriSEE: look around a truss, find every fruit, say where it is."};
   app.set_version_flag("--version", std::string("agrisee ") + AGRISEE_VERSION);
   app.require_subcommand(1);
@@ -26,6 +28,8 @@ int main(int argc, char** argv) {
   cli::add_paper_scenes(app, run);
   cli::add_experiment(app, run);
   cli::add_limit(app, run);
+  cli::add_faults(app, run);
+  cli::add_merge(app, run);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& e) {

@@ -12,12 +12,14 @@
 #include <memory>
 
 #include "commands.hpp"
+#include "many.hpp"
 
 namespace agrisee::cli {
 namespace {
 
 struct ProcessOptions : PipelineOptions {
-  std::string cloud, views;
+  std::vector<std::string> clouds;
+  std::string cloud, views, shard;
   std::vector<double> viewpoint;
 };
 
@@ -73,20 +75,35 @@ int run_process(const ProcessOptions& options) {
 void add_process(CLI::App& app, Run& run) {
   auto* command = app.add_subcommand("process", "locate the fruit in a cloud from elsewhere (PLY or PCD)");
   auto options = std::make_shared<ProcessOptions>();
-  command->add_option("cloud", options->cloud, "cloud file (PLY or PCD; metres)")->required();
-  add_pipeline_options(*command, *options);
+  command
+      ->add_option("cloud", options->clouds,
+                   "cloud file (PLY or PCD; metres); several, or a pattern, each get a folder of their own in DIR")
+      ->required();
+  add_pipeline_options(*command, *options)->required();
   command->add_option("--viewpoint", options->viewpoint, "position x,y,z (m) from which all points were seen")
       ->delimiter(',')
       ->expected(3);
   command->add_option("--views", options->views, "views.csv with the sensor of each point's property 'view'")
       ->excludes("--viewpoint");
+  add_shard_option(*command, options->shard);
   command->footer(
       "Normals that the file has are kept, but turned where they face away from the viewpoint or view; missing ones\n"
       "are estimated and, without viewpoint or views, made to agree with one another.\n"
       "Examples:\n"
       "  agrisee process cloud.ply -o result\n"
-      "  agrisee process frame.pcd -o result --viewpoint 0,0,0 --radius 0.025,0.06");
-  command->callback([options, &run] { run = [options] { return run_process(*options); }; });
+      "  agrisee process frame.pcd -o result --viewpoint 0,0,0 --radius 0.025,0.06\n"
+      "  agrisee process 'season/*.ply' -o results --shard 2/8");
+  command->callback([options, &run] {
+    run = [options] {
+      return run_inputs(options->clouds, options->shard, options->output,
+                        [&](const std::string& input, const std::string& folder) {
+                          ProcessOptions one = *options;
+                          one.cloud = input;
+                          one.output = folder;
+                          return run_process(one);
+                        });
+    };
+  });
 }
 
 }  // namespace agrisee::cli

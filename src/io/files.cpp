@@ -6,12 +6,27 @@
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
+#include <fcntl.h>
+#include <regex>
 #include <system_error>
 #include <unistd.h>
 
 namespace agrisee::io {
 
 namespace fs = std::filesystem;
+
+namespace {
+
+/// Bring a file, or a folder's list of names, to the disk. False when the disk refuses.
+bool sync(const fs::path& path) {
+  const int file = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
+  if (file < 0) return false;
+  const bool done = ::fsync(file) == 0 || errno == EINVAL || errno == EROFS;  // not every file system knows fsync
+  ::close(file);
+  return done;
+}
+
+}  // namespace
 
 void fail(const fs::path& path, const std::string& message) { throw FileError(path.string() + ": " + message); }
 
@@ -71,18 +86,37 @@ void AtomicFile::write(const void* data, std::size_t size) {
     fail(path_, std::string("cannot be written: ") + std::strerror(errno));
 }
 
-void AtomicFile::commit() {
+void AtomicFile::commit(Durability durability) {
+  const bool now = durability == Durability::now;
+  if (now && (std::fflush(file_.get()) != 0 || !sync(temporary_)))
+    fail(path_, std::string("cannot be written: ") + std::strerror(errno));
   if (std::fclose(file_.release()) != 0) fail(path_, std::string("cannot be written: ") + std::strerror(errno));
   std::error_code error;
   fs::rename(temporary_, path_, error);
   if (error) fail(path_, "cannot be written: " + error.message());
   temporary_.clear();
+  if (now && !sync(path_.has_parent_path() ? path_.parent_path() : fs::path(".")))
+    fail(path_, std::string("cannot be written: ") + std::strerror(errno));
 }
 
-void write_file(const fs::path& path, std::string_view bytes) {
+void write_file(const fs::path& path, std::string_view bytes, Durability durability) {
   AtomicFile file(path);
   file.write(bytes);
-  file.commit();
+  file.commit(durability);
+}
+
+void make_durable(const fs::path& folder) {
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder))
+    if (entry.is_regular_file() && !sync(entry.path()))
+      fail(entry.path(), std::string("cannot be written: ") + std::strerror(errno));
+  if (!sync(folder)) fail(folder, std::string("cannot be written: ") + std::strerror(errno));
+}
+
+void remove_leftovers(const fs::path& folder) {
+  static const std::regex temporary("\\..+\\.tmp[0-9]+-[0-9]+");
+  std::error_code ignored;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder, ignored))
+    if (std::regex_match(entry.path().filename().string(), temporary)) fs::remove(entry.path(), ignored);
 }
 
 }  // namespace agrisee::io

@@ -32,15 +32,26 @@ void dump(const Json& json, const std::string& indent, std::string& out) {
 
 }  // namespace
 
+Json parse_json(std::string_view text) {
+  constexpr int kDeepest = 64;
+  return Json::parse(text, [](int depth, Json::parse_event_t, Json&) {
+    // What is written or copied later recurses.
+    if (depth > kDeepest) throw InputError("nested deeper than " + std::to_string(kDeepest));
+    return true;
+  });
+}
+
 Json load_json(const std::filesystem::path& path) {
   const Bytes bytes = read_bytes(path);
   if (bytes.size == 0) fail(path, "is empty");
   try {
-    return Json::parse(bytes.view());
+    return parse_json(bytes.view());
   } catch (const nlohmann::json::parse_error& e) {
     fail(path, "not JSON, at byte " + std::to_string(e.byte));
   } catch (const nlohmann::json::exception& e) {
     fail(path, std::string("not JSON: ") + e.what());
+  } catch (const InputError& e) {
+    fail(path, e.what());
   }
 }
 

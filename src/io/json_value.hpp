@@ -12,10 +12,14 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <string_view>
 
 namespace agrisee::io {
 
 using Json = nlohmann::ordered_json;
+
+/// The JSON document of a text. @throws nlohmann::json::exception; InputError when it nests deeper than 64 levels
+Json parse_json(std::string_view text);
 
 /// The JSON document of a file. @throws FileError
 Json load_json(const std::filesystem::path& path);

@@ -101,10 +101,7 @@ struct YamlReader {
   }
 };
 
-}  // namespace
-
-Parameters read_parameters(const std::string& path, const Parameters& base) {
-  const YAML::Node root = load_yaml(path, true);
+Parameters parameters_of(const std::string& path, const YAML::Node& root, const Parameters& base) {
   Parameters parameters = base;
   if (root.IsNull()) return parameters;
   try {
@@ -116,6 +113,16 @@ Parameters read_parameters(const std::string& path, const Parameters& base) {
     throw FileError(path + ": " + e.what());
   }
   return parameters;
+}
+
+}  // namespace
+
+Parameters read_parameters(const std::string& path, const Parameters& base) {
+  return parameters_of(path, load_yaml(path, true), base);
+}
+
+Parameters parameters_from_json(const std::string& text, const std::string& path) {
+  return parameters_of(path, parse_yaml(path, text), {});  // JSON is YAML
 }
 
 std::string parameters_to_yaml(const Parameters& parameters) {

@@ -106,7 +106,10 @@ class MeshCache {
  public:
   explicit MeshCache(fs::path folder) : folder_(std::move(folder)) {}
   const Mesh& get(const YamlValue& value) {
-    const fs::path file = folder_ / value.text();
+    const fs::path named = value.text();
+    if (named.is_relative() && *named.lexically_normal().begin() == "..")
+      value.fail(excerpt(value.text()) + " leaves the scene's folder; a mesh elsewhere needs an absolute path");
+    const fs::path file = folder_ / named;
     const auto [entry, added] = meshes_.try_emplace(file.string());
     if (added) {
       try {
@@ -161,8 +164,15 @@ SceneFile read_scene(const fs::path& path) {
   const YamlValue objects = top.at("objects");
   MeshCache meshes(path.parent_path());
   std::set<int> ids;
-  for (std::size_t i = 0; i < objects.list_size(); ++i)
+  std::size_t size = 0;
+  for (std::size_t i = 0; i < objects.list_size(); ++i) {
     file.scene.objects.push_back(read_object(objects.at(i), meshes, ids));
+    // A line may repeat a mesh, so the files' sizes do not bound a scene's.
+    constexpr std::size_t kMost = 100000000;
+    const Mesh& mesh = file.scene.objects.back().mesh;
+    size += mesh.vertices.size() + mesh.triangles.size();
+    if (size > kMost) objects.at(i).fail("more than " + std::to_string(kMost) + " vertices and triangles in all");
+  }
   return file;
 }
 

@@ -35,6 +35,8 @@ std::string run_text(const ScanResult& result, const Workcell& workcell, const R
   j["planner"] = info.planner;
   j["parameters"] = parameters_of(info);
   j["views"] = result.views.size();
+  j["views_discarded"] =
+      std::count_if(result.views.begin(), result.views.end(), [](const View& v) { return v.discarded; });
   j["stop_reason"] = to_string(result.stop_reason);
   const auto labelled = std::count_if(result.labels.begin(), result.labels.end(), [](int label) { return label > 0; });
   j["points"]["merged"] = result.raw.size();
@@ -84,7 +86,8 @@ void write_result(const std::filesystem::path& folder, const ScanResult& result,
   write_file(folder / "fruits.csv", table);
   write_raw_ply(folder / "cloud_raw.ply", result.raw);
   write_ply(folder / "cloud.ply", result.cloud, result.labels);
-  write_file(folder / "run.json", run);
+  make_durable(folder);
+  write_file(folder / "run.json", run, Durability::now);
 }
 
 RunFile read_run(const std::filesystem::path& path) {

@@ -15,34 +15,51 @@ namespace agrisee::io {
 
 namespace {
 
-/// Takes no notice of anything.
-struct Silent final : YAML::EventHandler {
+/// Refuses what nests deeper than any file of ours, before anything recurses over it.
+class Structure final : public YAML::EventHandler {
+ public:
   void OnDocumentStart(const YAML::Mark&) override {}
   void OnDocumentEnd() override {}
   void OnNull(const YAML::Mark&, YAML::anchor_t) override {}
   void OnAlias(const YAML::Mark&, YAML::anchor_t) override {}
   void OnScalar(const YAML::Mark&, const std::string&, YAML::anchor_t, const std::string&) override {}
-  void OnSequenceStart(const YAML::Mark&, const std::string&, YAML::anchor_t, YAML::EmitterStyle::value) override {}
-  void OnSequenceEnd() override {}
-  void OnMapStart(const YAML::Mark&, const std::string&, YAML::anchor_t, YAML::EmitterStyle::value) override {}
-  void OnMapEnd() override {}
+  void OnSequenceStart(const YAML::Mark& mark, const std::string&, YAML::anchor_t,
+                       YAML::EmitterStyle::value) override {
+    enter(mark);
+  }
+  void OnSequenceEnd() override { --depth_; }
+  void OnMapStart(const YAML::Mark& mark, const std::string&, YAML::anchor_t, YAML::EmitterStyle::value) override {
+    enter(mark);
+  }
+  void OnMapEnd() override { --depth_; }
+
+ private:
+  void enter(const YAML::Mark& mark) {
+    constexpr int kDeepest = 32;
+    if (++depth_ > kDeepest) throw YAML::ParserException(mark, "nested deeper than " + std::to_string(kDeepest));
+  }
+  int depth_ = 0;
 };
 
 /// True when something follows the first document. (YAML::LoadAll never returns on some texts, such as ",".)
+/// @throws YAML::Exception for what is not YAML or nests too deeply
 bool has_second_document(const std::string& text) {
   std::istringstream stream(text);
   YAML::Parser parser(stream);
-  Silent silent;
-  return parser.HandleNextDocument(silent) && parser.HandleNextDocument(silent);
+  Structure structure;
+  return parser.HandleNextDocument(structure) && parser.HandleNextDocument(structure);
 }
 
 }  // namespace
 
 YAML::Node load_yaml(const std::filesystem::path& path, bool may_be_empty) {
-  const std::string text(read_bytes(path).view());
+  return parse_yaml(path, std::string(read_bytes(path).view()), may_be_empty);
+}
+
+YAML::Node parse_yaml(const std::filesystem::path& path, const std::string& text, bool may_be_empty) {
   try {
-    const YAML::Node document = YAML::Load(text);
     if (has_second_document(text)) io::fail(path, "holds more than one YAML document");
+    const YAML::Node document = YAML::Load(text);
     if (document.IsNull() && !may_be_empty) io::fail(path, "is empty");
     return document;
   } catch (const YAML::Exception& e) {

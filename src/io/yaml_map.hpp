@@ -15,6 +15,8 @@ namespace agrisee::io {
 /// The one document of a YAML file. @throws FileError when it cannot be read or parsed, holds more than one document,
 /// or is empty and must not be
 YAML::Node load_yaml(const std::filesystem::path& path, bool may_be_empty = false);
+/// The same of a text; `path` is what errors name.
+YAML::Node parse_yaml(const std::filesystem::path& path, const std::string& text, bool may_be_empty = false);
 
 /// A YAML value together with the file and key it came from.
 class YamlValue {

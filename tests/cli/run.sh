@@ -52,6 +52,39 @@ case $3 in
       grep -q '^0 fruit' out.txt || fail "found fruit in $n degenerate points"
     done
     ;;
+  many)
+    for n in 2 3; do
+      "$agrisee" make-truss --total $n --hidden 0 --seed $n -o "season/t$n" >/dev/null || fail make-truss
+      small_sensor "season/t$n/scene.yaml"
+    done
+    mkdir season/t9 && echo 'name: [' >season/t9/scene.yaml
+    # One that fails does not stop the rest.
+    expect 2 'failed: season/t0/scene.yaml: .*no such file' scan season/t2/scene.yaml season/t0/scene.yaml season/t3/scene.yaml -o one --max-views 2
+    grep -q '^3 inputs, 1 failed' out.txt || fail "the end of a list does not say what failed"
+    [ "$(cut -d, -f2,3,5 one/summary.csv | tr '\n' ' ')" = 'folder,status,views t2,ok,2 t0,failed, t3,ok,2 ' ] || fail "summary: $(cat one/summary.csv)"
+    [ -f one/t2/fruits.json ] && [ -f one/t3/report.html ] && [ ! -e one/t0 ] || fail "a folder a scene"
+    # Shards share the list; merged they tell what one call tells.
+    expect 2 'failed: season/t9' scan 'season/*/scene.yaml' -o two --max-views 2 --shard 1/2
+    expect 2 'summary-2-of-2.csv: is missing' merge two
+    expect 0 '' scan 'season/*/scene.yaml' -o two --max-views 2 --shard 2/2
+    expect 0 '' merge two
+    [ "$(cut -d, -f1-6 two/summary.csv)" = "$(printf '%s\n' input,folder,status,fruits,views,stop_reason \
+      "season/t2/scene.yaml,t2,ok,$(sed -n 2p one/summary.csv | cut -d, -f4),2,max_views" \
+      "season/t3/scene.yaml,t3,ok,$(sed -n 4p one/summary.csv | cut -d, -f4),2,max_views" \
+      season/t9/scene.yaml,t9,failed,,,)" ] || fail "merged: $(cat two/summary.csv)"
+    cmp one/t3/fruits.json two/t3/fruits.json || fail "a scan in a list is another"
+    # Clouds that are called alike are told apart by their folders.
+    expect 0 '' process 'one/*/cloud.ply' -o three
+    [ -f three/t2_cloud/fruits.json ] && [ -f three/t3_cloud/fruits.json ] || fail "names of clouds: $(ls three)"
+    expect 1 'matches no file' process 'no/*.ply' -o four
+    expect 1 'I/N' process one/t2/cloud.ply -o four --shard 3/2
+    # As spread by others.
+    if command -v parallel >/dev/null 2>&1; then
+      parallel -j 2 "$agrisee" scan "'season/*/scene.yaml'" -o five --max-views 2 --shard {}/3 ::: 1 2 3 >/dev/null 2>&1
+      expect 0 '' merge five
+      [ "$(cut -d, -f1-6 five/summary.csv)" = "$(cut -d, -f1-6 two/summary.csv)" ] || fail "parallel: $(cat five/summary.csv)"
+    fi
+    ;;
   scan)
     "$agrisee" make-truss --total 4 --hidden 1 --seed 3 -o t >/dev/null || fail make-truss
     small_sensor t/scene.yaml

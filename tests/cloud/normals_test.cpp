@@ -66,6 +66,10 @@ void check_reference(const std::string& kind) {
       CHECK(normals[i].template cast<double>().cross(r.normal).norm() < tolerance / r.gap);
       CHECK(by_tree[i].template cast<double>().cross(r.normal).norm() < tolerance / r.gap);
     }
+    std::vector<S> from_lists;  // that reach farther
+    const auto lists = nearest_neighbors(cloud, static_cast<std::size_t>(params.max_neighbors) + 5, 2);
+    CHECK(estimate_normals(cloud, params, lists, 2, &from_lists) == normals);
+    CHECK(from_lists == curvatures);
   }
 }
 

@@ -82,6 +82,9 @@ void check_brute(const std::string& kind) {
     const Labels expected = brute<S>(cloud, normals, params, curvatures);
     CHECK(grow_regions(cloud, normals, params, curvatures) == expected);
     CHECK(grow_regions(cloud, normals, params, KdTree<S>(cloud), curvatures) == expected);
+    if (params.neighbors == 0) continue;
+    const auto lists = nearest_neighbors(cloud, static_cast<std::size_t>(params.neighbors), 2);
+    CHECK(grow_regions(cloud, normals, params, lists, curvatures) == expected);
   }
 }
 

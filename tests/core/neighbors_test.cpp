@@ -18,7 +18,8 @@ template <typename S, typename Search>
 void check_search(const Points<S>& cloud, const Search& search, S r) {
   Rng rng(11);
   Points<S> queries;
-  for (std::size_t i = 0; i < cloud.size(); i += std::max<std::size_t>(1, cloud.size() / 40)) queries.push_back(cloud[i]);
+  for (std::size_t i = 0; i < cloud.size(); i += std::max<std::size_t>(1, cloud.size() / 40))
+    queries.push_back(cloud[i]);
   for (int i = 0; i < 20; ++i)
     queries.push_back(Vector3<S>(Eigen::Vector3d(rng.uniform(-0.1, 0.4), rng.uniform(), rng.uniform()).cast<S>()));
   queries.push_back(Vector3<S>::Constant(S(50)));

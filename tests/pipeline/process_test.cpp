@@ -3,6 +3,7 @@
 #include <agrisee/process.hpp>
 
 #include "catch.hpp"
+#include "interop/same_result.hpp"
 
 using namespace agrisee;
 
@@ -125,4 +126,31 @@ TEST_CASE("points that nearly coincide derive no absurd parameters") {
     cloud.points.emplace_back(1.0f, 1.0f, 1.0f);
     CHECK(process(cloud).fruits.empty());
   }
+}
+
+TEST_CASE("vectors and maps of any stride are processed where they lie") {
+  Cloud own = test::two_fruit();
+  const ScanResult with_normals = process(own, {}, test::from_origin());
+  PointCloud<double> twice;
+  for (const auto& n : own.normals) twice.normals.push_back(n.cast<double>());
+  own.normals.clear();
+  const ScanResult expected = process(own, {}, test::from_origin());
+  for (const auto& p : own.points) twice.points.push_back(p.cast<double>());
+  test::check_same(process(own.points, {}, test::from_origin()), expected);
+  test::check_same(process(twice.points, {}, test::from_origin()), expected);
+  test::check_same(process(twice, {}, test::from_origin()), with_normals);
+
+  // x y z and two numbers more a point, as many sensors send them; then all x, all y, all z.
+  using Eigen::Dynamic;
+  const auto n = static_cast<Eigen::Index>(own.size());
+  Eigen::Matrix<float, 5, Dynamic> records = Eigen::Matrix<float, 5, Dynamic>::Constant(5, n, 7.0f);
+  for (Eigen::Index i = 0; i < n; ++i) records.col(i).head<3>() = own.points[static_cast<std::size_t>(i)];
+  const Eigen::Map<const Eigen::Matrix3Xf, 0, Eigen::OuterStride<>> strided(records.data(), 3, n,
+                                                                            Eigen::OuterStride<>(5));
+  test::check_same(process(strided, {}, test::from_origin()), expected);
+  const Eigen::Matrix<double, Dynamic, 3> planes = strided.transpose().cast<double>();
+  const Eigen::Map<const Eigen::Matrix3Xd, 0, Eigen::Stride<Dynamic, Dynamic>> by_plane(
+      planes.data(), 3, n, Eigen::Stride<Dynamic, Dynamic>(1, n));
+  test::check_same(process(planes, {}, test::from_origin()), expected);
+  test::check_same(process(by_plane, {}, test::from_origin()), expected);
 }

@@ -155,7 +155,8 @@ for (const size of [wide, narrow])
     await page.click('#layers summary');
     await page.click('[data-layer=fruit]');
     await page.click('[data-layer=bodies]');
-    assert.ok((await pixels(page, hues)).counts[0] < 0.2 * all.counts[0], 'the layer is still there');
+    // Not fruit 1: its red is that of the frames' axes, of which more remains the smaller the picture.
+    assert.ok((await pixels(page, hues)).counts[2] < 0.2 * all.counts[2], 'the layer is still there');
     await page.click('[data-layer=fruit]');
     await page.click('[data-layer=bodies]');
     for (const name of ['merged', 'keep_out', 'approaches']) await page.click(`[data-layer=${name}]`);
@@ -165,7 +166,7 @@ for (const size of [wide, narrow])
       assert.ok((await pixels(page, [])).drawn > 500, `camera ${camera} shows nothing`);
     }
     await page.click('#play');
-    await page.waitForFunction(() => document.body.dataset.view === '2');
+    await page.waitForFunction(() => Number(document.body.dataset.view) > 1);  // a slow machine may not show every view
     await page.click('#play');
     await slide(views.length);
     assert.ok((await page.locator('#curves path').count()) >= 2, 'no curves');

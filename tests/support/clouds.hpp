@@ -11,8 +11,8 @@
 namespace agrisee::shapes {
 
 inline std::vector<std::string> cloud_kinds() {
-  return {"random", "gridded",   "duplicated", "clustered", "equal", "line",
-          "outliers", "nan", "subnormal",  "offset",    "one",   "empty"};
+  return {"random",   "gridded", "duplicated", "clustered", "equal", "line",
+          "outliers", "nan",     "subnormal",  "offset",    "one",   "empty"};
 }
 
 template <typename S>
@@ -35,8 +35,7 @@ Points<S> cloud_of(const std::string& kind, std::size_t n) {
   if (kind == "duplicated")
     for (std::size_t i = 0; i < n; ++i) p.push_back(i % 3 ? p[i - 1] : random(0.3));
   if (kind == "clustered")
-    for (std::size_t i = 0; i < n; ++i)
-      p.push_back(Vector3<S>(random(0.001) + Vector3<S>::Constant(S(i % 4) * S(10))));
+    for (std::size_t i = 0; i < n; ++i) p.push_back(Vector3<S>(random(0.001) + Vector3<S>::Constant(S(i % 4) * S(10))));
   if (kind == "equal") p.assign(n, Vector3<S>(S(0.1), S(0.2), S(0.3)));
   if (kind == "line")
     for (std::size_t i = 0; i < n; ++i) p.push_back(Vector3<S>(S(i) * S(0.001), 0, 0));

@@ -5,7 +5,6 @@
 #include <agrisee/geometry/mesh.hpp>
 
 #include <embree3/rtcore.h>
-
 #include <string>
 
 namespace agrisee::shapes {

@@ -28,6 +28,7 @@ namespace agrisee::arm {
 /// The bodies that may collide. The six links are in the order of LinkFrames.
 enum class Part { shoulder, upper_arm, forearm, wrist_1, wrist_2, wrist_3, base, sensor };
 
+/// Its name.
 inline std::string_view to_string(Part part) {
   constexpr std::array<std::string_view, 8> names{"shoulder", "upper_arm", "forearm", "wrist_1",
                                                   "wrist_2",  "wrist_3",   "base",    "sensor"};
@@ -36,9 +37,9 @@ inline std::string_view to_string(Part part) {
 
 /// A piece of a part, in the part's own frame: the flat-ended cylinder and the capsule about it.
 struct Piece {
-  Part part = Part::shoulder;
-  OrientedCylinder cylinder;
-  Capsule capsule;
+  Part part = Part::shoulder;  ///< whose piece it is
+  OrientedCylinder cylinder;   ///< in the part's frame
+  Capsule capsule;             ///< about the cylinder
 };
 
 /// The piece that is the cylinder of this radius (m) from a to b.
@@ -72,7 +73,7 @@ inline const std::array<Piece, 15>& ur3_pieces() {
 
 /// Two things that overlap.
 struct Contact {
-  Part part = Part::shoulder;
+  Part part = Part::shoulder;  ///< the one that touches
   std::string_view with;  ///< a part or the name of a space, valid as long as the Mount
 };
 

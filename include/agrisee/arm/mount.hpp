@@ -23,8 +23,8 @@ struct Mount {
   Pose world_T_base = Pose::Identity();                                                 ///< base_link in world
   Pose tool0_T_optical = pose_from_xyz_rpy({0.0, 0.0, 0.03}, Eigen::Vector3d::Zero());  ///< hand-eye transform
   std::vector<KeepOut> keep_out;                                                        ///< solids in world
-  JointLimits limits;
-  SensorBody sensor;
+  JointLimits limits;                                                                   ///< positions and speeds
+  SensorBody sensor;                                                                    ///< its housing
 
   /// @throws ParameterError naming the field that is out of range
   void check() const {

@@ -24,7 +24,12 @@ namespace agrisee::arm {
 
 /// Denavit-Hartenberg lengths of the UR3 (m), as published by its maker.
 namespace ur3 {
-constexpr double d1 = 0.1519, a2 = -0.24365, a3 = -0.21325, d4 = 0.11235, d5 = 0.08535, d6 = 0.0819;
+constexpr double d1 = 0.1519;    ///< base to shoulder, along the joint's axis
+constexpr double a2 = -0.24365;  ///< upper arm
+constexpr double a3 = -0.21325;  ///< forearm
+constexpr double d4 = 0.11235;   ///< wrist 1, along the joint's axis
+constexpr double d5 = 0.08535;   ///< wrist 2
+constexpr double d6 = 0.0819;    ///< wrist 3 to tool0
 }
 
 /// Below this |sin q5| joints 4 and 6 turn about one line: a wrist singularity.
@@ -179,6 +184,8 @@ void for_each_solution(const Pose& base_link_T_tool0, double q6_desired, Body&& 
 /// Solutions that coincide (at the singularities of shoulder, elbow and wrist) are listed once. At a wrist singularity
 /// (|sin q5| < kWristSingularity) joints 2, 3, 4 and 6 move together without moving the tool; joint 6 is then
 /// `q6_desired`, or the angle nearest to it that the links can reach.
+/// @param base_link_T_tool0 where tool0 shall be
+/// @param limits of the joints
 /// @param q6_desired joint 6 at wrist singularities (rad); usually its present angle
 /// @throws InputError when the pose is not finite or its rotation is no rotation (to 1e-6)
 inline std::vector<Joints> inverse(const Pose& base_link_T_tool0, const JointLimits& limits = {},

@@ -29,7 +29,7 @@ struct BodyParameters {
   double min_coverage = 0.08;   ///< share of the surface that must be covered, contradictions taken off
   double min_roundness = 0.35;  ///< smaller over larger principal curvature of the support
   double max_overlap = 0.30;    ///< deepest interpenetration of two bodies, as a share of the smaller radius
-  FitParameters fit;
+  FitParameters fit;            ///< of the ellipsoids
 
   /// Whether a body of mean radius r (m) could be a fruit: within the expected range or hardly out of it.
   bool plausible(double r) const { return r >= 0.85 * radius_min && r <= 1.15 * radius_max; }
@@ -46,6 +46,7 @@ struct BodyParameters {
     check_parameter(max_overlap >= 0, "bodies.max_overlap", ">= 0", max_overlap);
     fit.check();
   }
+  /// f(name, field) for every field.
   template <typename P, typename F>
   static void fields(P& p, F&& f) {
     f("radius_min", p.radius_min);
@@ -61,14 +62,14 @@ struct BodyParameters {
 
 /// A proposal of a body and what proposed it.
 struct BodyCandidate {
-  Ellipsoid body;
-  std::string found_by;
+  Ellipsoid body;        ///< to begin with
+  std::string found_by;  ///< what proposes it
 };
 
 /// A body that won.
 struct FoundBody {
-  EllipsoidFit fit;
-  std::string found_by;
+  EllipsoidFit fit;       ///< the body, and how well it is known
+  std::string found_by;   ///< the stage that found it; see Fruit::found_by
   double coverage = 0.0;  ///< share of its surface covered by its points
   double score = 0.0;     ///< coverage less contradictions
 };
@@ -155,7 +156,9 @@ inline double overlap(const Ellipsoid& a, const Ellipsoid& b) {
 
 /// Let candidates compete for the points of a cloud with outward normals.
 ///
+/// @param cloud points (m) with normals
 /// @param candidates in the order that decides ties
+/// @param parameters see their struct
 /// @param seen_through evidence of free space, or empty
 /// @return the bodies that won, best first; their points are those that `assign_to_bodies` gives them
 /// @throws ParameterError; InputError when the cloud has no normals

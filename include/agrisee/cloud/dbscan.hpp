@@ -57,7 +57,10 @@ inline Labels number_clusters(const std::vector<char>& core, const std::vector<I
 
 /// One label per point: clusters from 1 in the order of their first core points, 0 = noise. A border point belongs to
 /// the first cluster that has a core point within eps of it. Points that are not finite are noise.
+/// @param cloud points (m), any cloud type
+/// @param params see their struct
 /// @param search a KdTree or Grid over `cloud`
+/// @param threads the result does not depend on it
 /// @throws ParameterError for a bad parameter, InputError when the search is over a cloud of another size
 template <typename C, typename Search>
 Labels dbscan(const C& cloud, const DbscanParameters& params, const Search& search, int threads = 1) {

@@ -22,16 +22,17 @@ namespace agrisee {
 
 /// A sphere (m).
 struct Sphere {
-  Eigen::Vector3d center = Eigen::Vector3d::Zero();
-  double radius = 0.0;
+  Eigen::Vector3d center = Eigen::Vector3d::Zero();  ///< m
+  double radius = 0.0;                               ///< m
 };
 
 /// An ellipsoid in the form that the fit works with.
 struct Ellipsoid {
-  Eigen::Vector3d center = Eigen::Vector3d::Zero();
+  Eigen::Vector3d center = Eigen::Vector3d::Zero();  ///< m
   Eigen::Matrix3d A = Eigen::Matrix3d::Identity();  ///< symmetric; its eigenvalues are the inverse semi-axes (1/m)
 
   Ellipsoid() = default;
+  /// A sphere as an ellipsoid.
   explicit Ellipsoid(const Sphere& s) : center(s.center), A(Eigen::Matrix3d::Identity() / s.radius) {}
   /// A v, written out: general products are not inlined.
   Eigen::Vector3d times(const Eigen::Vector3d& v) const {
@@ -43,13 +44,16 @@ struct Ellipsoid {
     double distance;         ///< signed (m), to first order, negative inside
     Eigen::Vector3d normal;  ///< unit, outward, at the point's foot
   };
+  /// The foot of p (m).
   Foot foot(const Eigen::Vector3d& p) const {
     const Eigen::Vector3d a = times(p - center), n = times(a);
     const double g = a.norm(), slope = n.norm();
     if (!(slope > 0.0)) return {-mean_radius(), Eigen::Vector3d::UnitZ()};
     return {(g - 1.0) * g / slope, n / slope};
   }
+  /// Signed distance of p to the surface (m), as of foot().
   double distance(const Eigen::Vector3d& p) const { return foot(p).distance; }
+  /// Unit normal at the foot of p, outward.
   Eigen::Vector3d normal(const Eigen::Vector3d& p) const { return foot(p).normal; }
   /// Radius of the sphere whose inverse is the mean of the inverse semi-axes (m).
   double mean_radius() const { return 3.0 / A.trace(); }
@@ -88,6 +92,7 @@ struct FitParameters {
     check_parameter(iterations >= 1, "fit.iterations", ">= 1", iterations);
     check_parameter(max_points >= 1, "fit.max_points", ">= 1", max_points);
   }
+  /// f(name, field) for every field.
   template <typename P, typename F>
   static void fields(P& p, F&& f) {
     f("noise", p.noise);
@@ -101,7 +106,7 @@ struct FitParameters {
 
 /// What a fit found.
 struct EllipsoidFit {
-  Ellipsoid body;
+  Ellipsoid body;                                               ///< as fitted
   Eigen::Matrix3d center_covariance = Eigen::Matrix3d::Zero();  ///< m2
   double rms = 0.0;                                             ///< of the inliers (m)
   std::size_t inliers = 0;                                      ///< points within three noises whose normals agree

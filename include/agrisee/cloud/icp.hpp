@@ -28,11 +28,14 @@ struct IcpResult {
   bool accepted = false;                    ///< the correction lowers the residual and is within its limits
   /// Residuals (m) at the initial pose and at the end of the search, over the points matched at both:
   /// sqrt(mean(2 rho(r))), the root mean square where the kernel is `none`. 0 without matches.
-  double rms_before = 0.0, rms_after = 0.0;
-  std::size_t matches_before = 0, matches = 0;  ///< matched points at the initial pose and at the end
+  double rms_before = 0.0;
+  double rms_after = 0.0;                       ///< the same at the end
+  std::size_t matches_before = 0;               ///< matched points at the initial pose
+  std::size_t matches = 0;                      ///< and at the end
   int iterations = 0;                           ///< steps taken
   int constrained = 0;                          ///< of six directions, those that the surface determines, last step
-  double translation = 0.0, rotation = 0.0;     ///< size (m at the source's centroid, rad) of the motion found
+  double translation = 0.0;                     ///< size of the motion found (m, at the source's centroid)
+  double rotation = 0.0;                        ///< and its turn (rad)
 };
 
 namespace detail {
@@ -181,10 +184,14 @@ class IcpProblem {
 /// normal (zero), where one is needed, are not matched. The motion found is dropped (`accepted` false, the initial pose
 /// returned) when it does not lower the residual, is larger than the limits, loses half of the matches, or there are
 /// fewer than `min_matches`.
+/// @param source points (m) that are laid on the target
 /// @param source_normals one unit normal a source point, or empty: the angle between normals is not tested then
+/// @param target points (m) that stay
 /// @param target_normals one unit normal a target point; may be empty for point to point
+/// @param params see their struct
 /// @param search a KdTree or Grid over `target`; a grid with cells of about `max_distance` / 2 is fastest
 /// @param initial pose of the source frame in the target frame to start from and to measure the correction against
+/// @param threads the result does not depend on it
 /// @throws ParameterError for a bad parameter; InputError when sizes disagree, target normals are missing or `initial`
 /// is
 ///         not rigid

@@ -16,6 +16,7 @@ namespace agrisee {
 /// How far residuals count: `none` squares; `huber` linear beyond 1.345 scales; `tukey` not at all beyond 4.685 scales.
 enum class RobustKernel { none, huber, tukey };
 
+/// Its name.
 inline const char* to_string(RobustKernel kernel) {
   return kernel == RobustKernel::huber ? "huber" : kernel == RobustKernel::tukey ? "tukey" : "none";
 }
@@ -32,8 +33,8 @@ struct IcpParameters {
   bool point_to_point = false;          ///< minimise distances between points instead of to the target's planes
   double max_distance = 0.005;          ///< matches are at most this far apart (m)
   double max_normal_angle = deg(30.0);  ///< and their normals differ by at most this (rad); pi = no test
-  RobustKernel kernel = RobustKernel::tukey;
-  int max_iterations = 30;
+  RobustKernel kernel = RobustKernel::tukey;  ///< how far residuals count
+  int max_iterations = 30;                    ///< at most so many steps
   double translation_tolerance = 1e-6;  ///< it has converged when a step moves the centroid by less than this (m)
   double rotation_tolerance = 1e-5;     ///< and turns by less than this (rad)
   double degeneracy = 0.01;             ///< eigenvalues below this share of the largest leave their direction free

@@ -33,6 +33,7 @@ struct MeasuredVolumeParameters {
     check_parameter(reach > 0 && std::isfinite(reach), "measured_volume.reach", "positive", reach);
     check_parameter(noise > 0 && std::isfinite(noise), "measured_volume.noise", "positive", noise);
   }
+  /// f(name, field) for every field.
   template <typename P, typename F>
   static void fields(P& p, F&& f) {
     f("spread", p.spread);

@@ -15,6 +15,7 @@ class SeparatedCloud {
   /// @throws ParameterError
   explicit SeparatedCloud(double separation) : separation_(static_cast<float>(separation)), grid_(2.0f * separation_) {}
 
+  /// The points kept so far, with their views.
   const Cloud& cloud() const { return cloud_; }
 
   /// Offer a point of view `view`; true when it was kept. Points that are not finite are not.

@@ -51,7 +51,10 @@ Vector3<S> normal_of(const Moments& moments, S* curvature) {
 
 /// One unit normal a point, its sign arbitrary; zero where the normal is unknown: fewer than three neighbours, all of
 /// them on a line or at one place (within the rounding of the coordinates), or a point that is not finite.
+/// @param cloud points (m), any cloud type
+/// @param params see their struct
 /// @param search a KdTree or Grid over `cloud`
+/// @param threads the result does not depend on it
 /// @param curvatures if given, receives one surface variation (0 to 1/3; 0 where the normal is unknown) a point
 /// @throws ParameterError for a bad parameter, InputError when the search is over a cloud of another size
 template <typename C, typename Search>
@@ -77,6 +80,34 @@ std::vector<Vector3<scalar_t<C>>> estimate_normals(const C& cloud, const NormalP
       for (const auto& neighbor : near) moments.add(at(neighbor));
       normals[i] = detail::normal_of<S>(moments, curvatures ? &(*curvatures)[i] : nullptr);
     }
+  });
+  return normals;
+}
+
+/// The same from neighbour lists that are there already, as far as they reach: `max_neighbors` of them within `radius`.
+template <typename C>
+std::vector<Vector3<scalar_t<C>>> estimate_normals(const C& cloud, const NormalParameters& params,
+                                                   const NeighborLists& lists, int threads = 1,
+                                                   std::vector<scalar_t<C>>* curvatures = nullptr) {
+  using S = scalar_t<C>;
+  params.check();
+  const std::size_t n = agrisee::size(cloud), most = std::min(lists.k, static_cast<std::size_t>(params.max_neighbors));
+  check_input(lists.size() == n, "the neighbour lists and the cloud differ in size");
+  std::vector<Vector3<S>> normals(n, Vector3<S>::Zero());
+  if (curvatures) curvatures->assign(n, S(0));
+  const S reach_sq = static_cast<S>(params.radius) * static_cast<S>(params.radius);
+  parallel_for(n, threads, [&](std::size_t i) {
+    const Vector3<S> q = point(cloud, i);
+    Moments moments;
+    moments.reset(q.template cast<double>());
+    std::size_t used = 0;
+    const Index* ids = lists.ids.data() + i * lists.k;
+    for (; used < most && ids[used] >= 0; ++used) {
+      const Vector3<S> p = point(cloud, static_cast<std::size_t>(ids[used]));
+      if (distance_sq<S>(p, q) > reach_sq) break;
+      moments.add(p.template cast<double>());
+    }
+    if (used >= 3) normals[i] = detail::normal_of<S>(moments, curvatures ? &(*curvatures)[i] : nullptr);
   });
   return normals;
 }
@@ -118,6 +149,8 @@ std::vector<Vector3<scalar_t<C>>> orient_normals_to_viewpoint(std::vector<Vector
 
 /// The normals, each turned so that it faces the sensor that saw its point; those of points without a view (-1) are
 /// zero, since nothing is known of their side.
+/// @param normals one per point
+/// @param cloud points (m)
 /// @param views one index into `sensors` a point, or -1
 /// @param sensors sensor positions (m, the cloud's frame), one a view
 /// @throws InputError when sizes disagree or a view has no sensor position

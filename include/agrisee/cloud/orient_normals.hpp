@@ -7,12 +7,11 @@
 /// not join two patches of which both know their outside (normals face away from a curved patch's centroid) and
 /// disagree.
 ///
-/// Any frame, metres, radians. Cost: k nearest neighbours of every point and a sort of the O(k n) edges.
+/// Any frame, metres, radians. Cost: k nearest neighbours of every point and a sort of the O(k n) edges; 4 k + 12 k
+/// bytes a point.
 #pragma once
 
-#include <agrisee/core/cloud.hpp>
-#include <agrisee/core/kdtree.hpp>
-#include <agrisee/core/parallel.hpp>
+#include <agrisee/core/all_neighbors.hpp>
 
 #include <cmath>
 
@@ -121,16 +120,22 @@ class Patches {
 /// The normals, turned so that neighbours agree and that each connected patch faces away from its own centroid:
 /// outwards for whole bodies and for the convex caps that are seen of them. A patch that has no such side (a plane)
 /// keeps the sign of its first point. Normals that are zero stay so.
-/// @param search a KdTree or Grid over `cloud`
+/// @param normals one per point, unit; zero where unknown
+/// @param cloud points (m)
+/// @param params see their struct
+/// @param lists neighbour lists of `cloud` of more than `params.neighbors` points (the point itself is one of them);
+///   shorter ones are used as far as they reach
+/// @param threads the result does not depend on it
 /// @throws ParameterError for a bad parameter, InputError when sizes disagree
-template <typename C, typename Search>
+template <typename C>
 std::vector<Vector3<scalar_t<C>>> orient_normals_consistently(std::vector<Vector3<scalar_t<C>>> normals, const C& cloud,
-                                                              const OrientationParameters& params, const Search& search,
-                                                              int threads = 1) {
+                                                              const OrientationParameters& params,
+                                                              const NeighborLists& lists, int threads = 1) {
   using S = scalar_t<C>;
   params.check();
   const std::size_t n = agrisee::size(cloud);
-  check_input(normals.size() == n && search.size() == n, "orienting normals needs one a point, and the cloud's search");
+  check_input(normals.size() == n && lists.size() == n,
+              "orienting normals needs one a point, and the cloud's neighbours");
   const auto known = [&](std::size_t i) { return is_finite(point(cloud, i)) && normals[i].squaredNorm() > 0; };
   const S cos_min = static_cast<S>(std::cos(params.max_angle));
 
@@ -139,22 +144,29 @@ std::vector<Vector3<scalar_t<C>>> orient_normals_consistently(std::vector<Vector
     Index a, b;
     bool operator<(const Edge& e) const { return cost != e.cost ? cost < e.cost : a != e.a ? a < e.a : b < e.b; }
   };
-  const auto k = static_cast<std::size_t>(params.neighbors);
+  const auto k = std::min(static_cast<std::size_t>(params.neighbors), lists.k);
+  const double reach_sq = params.max_distance * params.max_distance;
+  // f(j) for the k nearest others of i.
+  const auto others = [&](std::size_t i, auto&& f) {
+    std::size_t left = k;
+    lists.visit(i, [&](Index index) {
+      const auto j = static_cast<std::size_t>(index);
+      if (j != i && left > 0) --left, f(j);
+    });
+  };
   std::vector<Edge> edges(n * k, Edge{S(2), 0, 0});  // a cost of 2 marks no edge
-  parallel_chunks(n, threads, 512, [&](std::size_t begin, std::size_t end) {
-    Neighbors<S> found;
-    for (std::size_t i = begin; i < end; ++i) {
-      if (!known(i)) continue;
-      search.knn(point(cloud, i), k + 1, found);
-      std::size_t next = i * k;
-      for (const auto& neighbor : found) {
-        const auto j = static_cast<std::size_t>(neighbor.index);
-        if (j == i || next == (i + 1) * k || !known(j)) continue;
-        const S cosine = std::abs(normals[i].dot(normals[j]));
-        if (static_cast<double>(neighbor.distance) > params.max_distance || cosine < cos_min) continue;
+  parallel_for(n, threads, [&](std::size_t i) {
+    if (!known(i)) return;
+    std::size_t next = i * k;
+    others(i, [&](std::size_t j) {
+      if (!known(j)) return;
+      const S cosine = std::abs(normals[i].dot(normals[j]));
+      if (double(distance_sq<S>(point(cloud, i), point(cloud, j))) > reach_sq || cosine < cos_min) return;
+      bool twice = false;  // what both list is the smaller index's edge
+      if (j < i) others(j, [&](std::size_t l) { twice = twice || l == i; });
+      if (!twice)
         edges[next++] = {S(1) - cosine, static_cast<Index>(std::min(i, j)), static_cast<Index>(std::max(i, j))};
-      }
-    }
+    });
   });
   edges.erase(std::remove_if(edges.begin(), edges.end(), [](const Edge& e) { return e.cost == S(2); }), edges.end());
   std::sort(edges.begin(), edges.end());
@@ -182,13 +194,14 @@ std::vector<Vector3<scalar_t<C>>> orient_normals_consistently(std::vector<Vector
   return normals;
 }
 
-/// The same with a search built for the call.
+/// The same with lists made for the call.
 template <typename C>
 std::vector<Vector3<scalar_t<C>>> orient_normals_consistently(std::vector<Vector3<scalar_t<C>>> normals, const C& cloud,
                                                               const OrientationParameters& params = {},
                                                               int threads = 1) {
   params.check();
-  return orient_normals_consistently(std::move(normals), cloud, params, KdTree<scalar_t<C>>(cloud), threads);
+  const NeighborLists lists = nearest_neighbors(cloud, static_cast<std::size_t>(params.neighbors) + 1, threads);
+  return orient_normals_consistently(std::move(normals), cloud, params, lists, threads);
 }
 
 }  // namespace agrisee

@@ -12,7 +12,7 @@ namespace agrisee {
 
 /// Mean and standard deviation per axis of some points (m).
 struct Centroid {
-  Eigen::Vector3d mean = Eigen::Vector3d::Zero();
+  Eigen::Vector3d mean = Eigen::Vector3d::Zero();   ///< m
   Eigen::Vector3d sigma = Eigen::Vector3d::Zero();  ///< divided by n
 };
 
@@ -105,6 +105,7 @@ struct GrowthAxisParameters {
     check_parameter(shell > 0, "axis.shell", "positive", shell);
     check_parameter(up_weight >= 0, "axis.up_weight", ">= 0", up_weight);
   }
+  /// f(name, field) for every field.
   template <typename P, typename F>
   static void fields(P& p, F&& f) {
     f("shell", p.shell);

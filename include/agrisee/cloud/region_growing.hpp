@@ -191,7 +191,9 @@ Labels connected_regions(const C& cloud, const std::vector<Vector3<scalar_t<C>>>
 /// One label per point: regions from 1 in order of creation, 0 = residual. The cloud is not changed.
 ///
 /// Points that are not finite, or whose normal is zero or not finite, never join.
+/// @param cloud points (m), any cloud type
 /// @param normals one unit normal a point, all turned to the same side unless `unsigned_normals`
+/// @param params see their struct
 /// @param search a KdTree or Grid over `cloud`
 /// @param curvatures one finite surface variation a point where the parameters ask for it (estimate_normals gives them)
 /// @throws ParameterError for a bad parameter, InputError when sizes disagree or curvatures are missing
@@ -218,20 +220,28 @@ Labels grow_regions(const C& cloud, const std::vector<Vector3<scalar_t<C>>>& nor
   });
 }
 
-/// The same without a search; several times as fast. Memory for k nearest neighbours is 4 k bytes a point.
+/// The same with neighbour lists that are there already; their k stands for `params.neighbors`.
+template <typename C>
+Labels grow_regions(const C& cloud, const std::vector<Vector3<scalar_t<C>>>& normals,
+                    const RegionGrowingParameters& params, const NeighborLists& lists,
+                    const std::vector<scalar_t<C>>& curvatures = {}) {
+  params.check();
+  check_input(lists.size() == agrisee::size(cloud), "the neighbour lists and the cloud differ in size");
+  detail::check_growing(cloud, normals, params, curvatures);
+  return detail::grow_from_seeds(cloud, normals, params, curvatures,
+                                 [&](std::size_t i, auto&& offer) { lists.visit(i, offer); });
+}
+
+/// The same without a search; several times as fast.
 template <typename C>
 Labels grow_regions(const C& cloud, const std::vector<Vector3<scalar_t<C>>>& normals,
                     const RegionGrowingParameters& params = {}, const std::vector<scalar_t<C>>& curvatures = {},
                     int threads = 1) {
   params.check();
   detail::check_growing(cloud, normals, params, curvatures);
-  if (params.neighbors > 0) {
-    const auto k = static_cast<std::size_t>(params.neighbors);
-    const Indices nearest = nearest_neighbors(cloud, k, threads);
-    return detail::grow_from_seeds(cloud, normals, params, curvatures, [&](std::size_t i, auto&& offer) {
-      for (std::size_t j = i * k; j < (i + 1) * k && nearest[j] >= 0; ++j) offer(nearest[j]);
-    });
-  }
+  if (params.neighbors > 0)
+    return grow_regions(cloud, normals, params,
+                        nearest_neighbors(cloud, static_cast<std::size_t>(params.neighbors), threads), curvatures);
   if (params.max_curvature < 1.0 / 3.0)  // not all grow: the order matters
     return grow_regions(cloud, normals, params, Grid<scalar_t<C>>(cloud, static_cast<scalar_t<C>>(params.radius)),
                         curvatures);

@@ -42,7 +42,10 @@ struct SorParameters {
 
 /// Mean distance (m) of every point to its `k` nearest others: the paper's d_i. Where there are fewer, the mean of
 /// those there are; 0 for a point alone; NaN for a point that is not finite.
+/// @param cloud points (m), any cloud type
+/// @param k how many others
 /// @param search a KdTree or Grid over `cloud`
+/// @param threads the result does not depend on it
 /// @throws InputError when the search is over a cloud of another size
 template <typename C, typename Search>
 std::vector<double> mean_neighbor_distances(const C& cloud, int k, const Search& search, int threads = 1) {
@@ -106,7 +109,10 @@ std::vector<double> mean_neighbor_distances(const C& cloud, int k, int threads =
 /// Indices of the points that stay, ascending; the cloud is not changed. Points that are not finite go, and do not
 /// count in mean and deviation. A single point, or points that all coincide, stay; so does any cloud whose d_i are all
 /// equal.
+/// @param cloud points (m), any cloud type
+/// @param params see their struct
 /// @param search a KdTree or Grid over `cloud`
+/// @param threads the result does not depend on it
 /// @throws ParameterError for a bad parameter, InputError when the search is over a cloud of another size
 template <typename C, typename Search>
 Indices remove_statistical_outliers(const C& cloud, const SorParameters& params, const Search& search,

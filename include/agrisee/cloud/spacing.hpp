@@ -8,6 +8,7 @@
 #include <agrisee/geometry/pca.hpp>
 
 #include <algorithm>
+#include <cmath>
 
 namespace agrisee {
 
@@ -26,6 +27,7 @@ double estimate_spacing(const C& cloud, const Search& search, std::size_t sample
     const Vector3<S> p = point(cloud, i);
     if (!is_finite(p)) continue;
     search.knn(p, 9, found);
+    while (!found.empty() && !std::isfinite(found.back().distance)) found.pop_back();  // too far for S to tell how far
     if (found.size() < 2) continue;
     spacing.push_back(double(found.back().distance) * std::sqrt(kPi / double(found.size())));
   }

@@ -30,7 +30,7 @@ struct SplitParameters {
   double min_region = 0.03;         ///< adaptive: least region or cluster, as a share of the smallest fruit's surface
   int min_residual = 350;           ///< DBSCAN runs when the residual holds more points than this (not adaptive)
   bool fit_bodies = true;           ///< let bodies compete; off: the paper's two stages alone
-  BodyParameters bodies;
+  BodyParameters bodies;            ///< what may be a fruit
 
   /// The paper's values and stages.
   static SplitParameters paper() {
@@ -51,6 +51,7 @@ struct SplitParameters {
     check_parameter(min_region > 0 && min_region < 1, "split.min_region", "in (0, 1)", min_region);
     check_parameter(min_residual >= 0, "split.min_residual", ">= 0", min_residual);
   }
+  /// f(name, field) for every field.
   template <typename P, typename F>
   static void fields(P& p, F&& f) {
     f("adaptive", p.adaptive);
@@ -71,13 +72,14 @@ struct Split {
   std::vector<FoundBody> found;               ///< one per fruit; without bodies only `found_by` is set
   Labels regions;                             ///< what region growing alone found
   std::size_t residual = 0;                   ///< points that region growing left to DBSCAN
-  int regions_found = 0, clusters_found = 0;  ///< instances from either of the paper's stages
+  int regions_found = 0;                      ///< instances from region growing
+  int clusters_found = 0;                     ///< and from DBSCAN on its residual
 };
 
 /// What the paper's two stages run with on a certain cloud.
 struct StageParameters {
-  RegionGrowingParameters growing;
-  DbscanParameters clustering;
+  RegionGrowingParameters growing;  ///< first stage
+  DbscanParameters clustering;      ///< second stage
   std::size_t min_residual = 0;  ///< DBSCAN runs when the residual holds more points than this
   int min_cluster = 1;           ///< smaller clusters are noise
 };
@@ -220,6 +222,8 @@ void extend_labels(Labels& labels, const PointCloud<S>& cloud, const std::vector
 }  // namespace detail
 
 /// Split a cloud with normals (facing outwards) into fruit.
+/// @param cloud points (m) with normals
+/// @param parameters see their struct
 /// @param seen_through evidence of free space for the competition, or empty
 /// @throws ParameterError; InputError when the cloud has no normals
 template <typename S>
@@ -296,6 +300,9 @@ Split split(const PointCloud<S>& cloud, const SplitParameters& parameters = {}, 
 /// The bodies of a cloud that has grown, or changed a little, since `known` were found: those and what the points off
 /// them vote for compete anew. Far quicker than `split`, and as good while the cloud grows view by view; who found a
 /// body is kept. Points are labelled by the body on which they lie; regions are not grown.
+/// @param cloud points (m) with normals
+/// @param known bodies found before
+/// @param parameters see their struct
 /// @param seen_through evidence of free space for the competition, or empty
 /// @throws ParameterError; InputError when the cloud has no normals
 template <typename S>

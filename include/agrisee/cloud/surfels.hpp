@@ -27,6 +27,7 @@ struct SurfelParameters {
     check_parameter(max_angle > 0 && max_angle < kPi, "surfels.max_angle", "in (0, pi)", max_angle);
     check_parameter(agreement >= 0, "surfels.agreement", ">= 0", agreement);
   }
+  /// f(name, field) for every field.
   template <typename P, typename F>
   static void fields(P& p, F&& f) {
     f("separation", p.separation);
@@ -58,7 +59,9 @@ class SurfelMap {
     inverse_cell_ = 1.0 / parameters_.separation;
   }
 
+  /// All surfels, in the order in which they were founded.
   const std::vector<Surfel>& surfels() const { return surfels_; }
+  /// Number of surfels.
   std::size_t size() const { return surfels_.size(); }
 
   /// Take in a sample of view `view`: position (m, world), unit normal, standard deviation along it (m, > 0).

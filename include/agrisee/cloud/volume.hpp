@@ -19,6 +19,7 @@ struct MassParameters {
     check_parameter(density_error >= 0 && std::isfinite(density_error), "mass.density_error", ">= 0", density_error);
     check_parameter(shape_error >= 0 && std::isfinite(shape_error), "mass.shape_error", ">= 0", shape_error);
   }
+  /// f(name, field) for every field.
   template <typename P, typename F>
   static void fields(P& p, F&& f) {
     f("density", p.density);
@@ -29,8 +30,8 @@ struct MassParameters {
 
 /// A value with its standard error.
 struct Estimate {
-  double value = 0.0;
-  double error = 0.0;
+  double value = 0.0;  ///< in its own unit
+  double error = 0.0;  ///< standard error, in the same unit
 };
 
 /// Volume (m3) of an ellipsoid.
@@ -77,7 +78,9 @@ double relative_volume_error(const PointCloud<S>& cloud, const Indices& indices,
 }
 
 /// Volume (m3) of a fitted body, with its standard error: that of the fit and that of the shape.
+/// @param body as fitted
 /// @param relative_fit_error see relative_volume_error
+/// @param parameters see their struct
 inline Estimate volume_of(const Ellipsoid& body, double relative_fit_error, const MassParameters& parameters = {}) {
   const double v = volume(body);
   return {v, v * std::hypot(relative_fit_error, parameters.shape_error)};

@@ -4,8 +4,8 @@
 /// cell of a grid; the few whose neighbours are farther than the next cells look further by a kd-tree of the cells, and
 /// those in crowds by a kd-tree of the points. Answers are those of neighbors.hpp, whatever the number of threads.
 ///
-/// Any frame, metres. Cost O(n k) for evenly dense clouds, O(n k log n) for others; memory about 20 bytes a point and no
-/// lists but those returned.
+/// Any frame, metres. Cost O(n k) for evenly dense clouds, O(n k log n) for others; memory about 20 bytes a point and
+/// no lists but those returned.
 #pragma once
 
 #include <agrisee/core/kdtree.hpp>
@@ -19,12 +19,15 @@ namespace agrisee {
 /// The neighbours of one point, nearest first, ties by index; itself included.
 template <typename S>
 struct Neighborhood {
-  std::size_t size = 0;
+  std::size_t size = 0;          ///< number of neighbours
   const S* distance = nullptr;   ///< m
   const Index* ids = nullptr;    ///< in the cloud
-  const S *x = nullptr, *y = nullptr, *z = nullptr;  ///< coordinates of the point number at[i] (m) ...
-  const std::uint32_t* at = nullptr;                 ///< ... of neighbour i
+  const S* x = nullptr;          ///< x of neighbour i is x[at[i]] (m)
+  const S* y = nullptr;          ///< y likewise
+  const S* z = nullptr;          ///< and z
+  const std::uint32_t* at = nullptr;  ///< where neighbour i is among them
 
+  /// Neighbour number i (m).
   Vector3<S> point(std::size_t i) const { return {x[at[i]], y[at[i]], z[at[i]]}; }
 };
 
@@ -218,7 +221,8 @@ template <typename S>
 class SearchNearest {
  public:
   template <typename C, typename Search>
-  const Neighborhood<S>& operator()(const C& cloud, const Search& search, const Vector3<S>& q, std::size_t k, S radius) {
+  const Neighborhood<S>& operator()(const C& cloud, const Search& search, const Vector3<S>& q, std::size_t k,
+                                    S radius) {
     search.knn(q, k, found_);
     while (!found_.empty() && !(found_.back().distance <= radius)) found_.pop_back();
     distance_.clear(), x_.clear(), y_.clear(), z_.clear(), ids_.clear(), at_.clear();
@@ -241,8 +245,9 @@ class SearchNearest {
   Neighborhood<S> near_;
 };
 
-/// body(i, neighbourhood) for those of the stored points [begin, end) of a cell that coincide with k - 1 others or more:
-/// all that lie at one place have the same neighbours. Sensors that write missing points as zeros make many of them.
+/// body(i, neighbourhood) for those of the stored points [begin, end) of a cell that coincide with k - 1 others or
+/// more: all that lie at one place have the same neighbours. Sensors that write missing points as zeros make many of
+/// them.
 template <typename S, typename Body>
 void coinciding_neighborhoods(const Grid<S>& grid, std::size_t begin, std::size_t end, std::size_t k,
                               std::vector<char>& done, const Body& body) {
@@ -256,7 +261,8 @@ void coinciding_neighborhoods(const Grid<S>& grid, std::size_t begin, std::size_
     const auto next = std::upper_bound(group, order.end(), *group, [&](auto a, auto b) { return place(a) < place(b); });
     if (static_cast<std::size_t>(next - group) >= k) {
       for (std::size_t i = 0; i < k; ++i) ids[i] = grid.ids()[group[static_cast<std::ptrdiff_t>(i)]];
-      const Neighborhood<S> near{k, zeros.data(), ids.data(), grid.x().data(), grid.y().data(), grid.z().data(), &*group};
+      const Neighborhood<S> near{k,      zeros.data(), ids.data(), grid.x().data(), grid.y().data(), grid.z().data(),
+                                 &*group};
       for (; group != next; ++group) {
         body(grid.ids()[*group], near);
         done[*group] = 1;
@@ -280,8 +286,8 @@ Left near_neighborhoods(const Grid<S>& grid, std::size_t k, S radius, S typical,
   const std::size_t crowd = 32 * k + 1024;
   std::vector<char> state(grid.stored(), kFar);
   for_cells(grid, threads, [&] {
-    return [&, tile = Tile<S>(), nearest = TileNearest<S>(grid, k, typical)](const typename Grid<S>::Cell& cell,
-                                                                             std::size_t begin, std::size_t end) mutable {
+    return [&, tile = Tile<S>(), nearest = TileNearest<S>(grid, k, typical)](
+               const typename Grid<S>::Cell& cell, std::size_t begin, std::size_t end) mutable {
       std::size_t left = end - begin;
       for (int r = 1; r <= 2 && left > 0; ++r) {
         tile.gather(grid, cell, rings[r - 1]);
@@ -312,8 +318,9 @@ Left near_neighborhoods(const Grid<S>& grid, std::size_t k, S radius, S typical,
 
 }  // namespace detail
 
-/// body(i, neighbourhood) for every finite point i of a cloud, in no particular order: its k >= 1 nearest points (itself
-/// included) that are at most `radius` >= 0 away (m; infinite for all). A body writes only what belongs to point i.
+/// body(i, neighbourhood) for every finite point i of a cloud, in no particular order: its k >= 1 nearest points
+/// (itself included) that are at most `radius` >= 0 away (m; infinite for all). A body writes only what belongs to
+/// point i.
 template <typename C, typename Body>
 void for_each_neighborhood(const C& cloud, std::size_t k, scalar_t<C> radius, int threads, const Body& body) {
   using S = scalar_t<C>;
@@ -347,15 +354,30 @@ void for_each_neighborhood(const C& cloud, std::size_t k, scalar_t<C> radius, in
   }
 }
 
-/// The k nearest points of every point, itself included, k a point and nearest first; -1 where there are fewer and for
-/// points that are not finite.
+/// The k nearest points of every point of a cloud, computed once for several stages.
+struct NeighborLists {
+  std::size_t k = 0;  ///< neighbours a point
+  Indices ids;  ///< k a point, nearest first, itself included; -1 where there are fewer and for points not finite
+
+  /// Number of points.
+  std::size_t size() const { return k == 0 ? 0 : ids.size() / k; }
+  /// f(j) for the neighbours j of point i, nearest first.
+  template <typename F>
+  void visit(std::size_t i, F&& f) const {
+    for (std::size_t j = i * k; j < (i + 1) * k && ids[j] >= 0; ++j) f(ids[j]);
+  }
+};
+
+/// The neighbour lists of a cloud, for k >= 1. 4 k bytes a point.
 template <typename C>
-Indices nearest_neighbors(const C& cloud, std::size_t k, int threads = 1) {
+NeighborLists nearest_neighbors(const C& cloud, std::size_t k, int threads = 1) {
   using S = scalar_t<C>;
-  Indices out(agrisee::size(cloud) * k, -1);
-  for_each_neighborhood(cloud, k, std::numeric_limits<S>::infinity(), threads, [&](Index i, const Neighborhood<S>& near) {
-    std::copy_n(near.ids, near.size, out.begin() + static_cast<std::ptrdiff_t>(static_cast<std::size_t>(i) * k));
-  });
+  NeighborLists out{k, Indices(agrisee::size(cloud) * k, -1)};
+  for_each_neighborhood(cloud, k, std::numeric_limits<S>::infinity(), threads,
+                        [&](Index i, const Neighborhood<S>& near) {
+                          std::copy_n(near.ids, near.size,
+                                      out.ids.begin() + static_cast<std::ptrdiff_t>(static_cast<std::size_t>(i) * k));
+                        });
   return out;
 }
 

@@ -13,9 +13,11 @@ namespace agrisee {
 /// Disjoint sets of indices; the smallest index of a set is its root. Any number of threads may call at once.
 class DisjointSets {
  public:
+  /// n sets of one each.
   explicit DisjointSets(std::size_t n) : parent_(n) {
     for (std::size_t i = 0; i < n; ++i) parent_[i].store(static_cast<Index>(i), std::memory_order_relaxed);
   }
+  /// The one that stands for the set of i.
   Index root(Index i) {
     for (Index up = parent(i); up != i;) {  // each step lets i point at its grandparent
       const Index above = parent(up);
@@ -32,7 +34,8 @@ class DisjointSets {
       if (a == b) return a;
       if (a < b) std::swap(a, b);
       Index expected = a;  // still a root?
-      if (parent_[static_cast<std::size_t>(a)].compare_exchange_strong(expected, b, std::memory_order_relaxed)) return b;
+      if (parent_[static_cast<std::size_t>(a)].compare_exchange_strong(expected, b, std::memory_order_relaxed))
+        return b;
     }
   }
 
@@ -42,7 +45,10 @@ class DisjointSets {
 };
 
 /// Join in `sets` all members among the stored points of a grid that are neighbours.
+/// @param grid of the points
 /// @param stencil cells about a cell in which neighbours may be; all members in cells that lie inside are neighbours
+/// @param threads the result does not depend on it
+/// @param sets receives who belongs together
 /// @param member whether the stored point j may have neighbours
 /// @param test test(j, begin, end, is) sets is[i - begin] to 1 for the members i of [begin, end) that are neighbours of
 ///   the member j and to 0 for others; it must be symmetric

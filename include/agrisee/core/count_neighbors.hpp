@@ -50,15 +50,16 @@ std::size_t count_within(const Tile<S>& tile, const Vector3<S>& q, S r_sq) {
 /// A grid that serves for counting within `r` (m), and the cells about a cell that matter.
 template <typename S>
 struct CountingGrid {
+  /// Of a cloud, to count within r (m).
   template <typename C>
   CountingGrid(const C& cloud, S r)
       : radius(r),
         grid(cloud, S(1.00001) * std::max(r, std::numeric_limits<S>::min()) / static_cast<S>(detail::cells_a_radius(cloud, r))),
         stencil(ball_stencil(double(r) / grid.cell())) {}
 
-  S radius;
-  Grid<S> grid;
-  Stencil stencil;
+  S radius;         ///< m
+  Grid<S> grid;     ///< of the cloud
+  Stencil stencil;  ///< the cells within reach
 
   /// f(j, count) for every stored point j: the points at most `radius` from it, itself included.
   template <typename F>

@@ -19,6 +19,7 @@ namespace agrisee {
 template <typename S>
 class Grid {
  public:
+  /// @param cloud points (m), any cloud type
   /// @param cell edge length of a cell (m), > 0; half to one times the usual query radius serves best
   /// @throws ParameterError when `cell` is not positive and finite
   template <typename C>
@@ -48,8 +49,10 @@ class Grid {
     dense_ ? build_dense(cloud, n, static_cast<std::size_t>(cells)) : build_sparse(cloud, n);
   }
 
+  /// Number of points of the cloud.
   std::size_t size() const { return size_; }
 
+  /// All points within r; see neighbors.hpp.
   void radius(const Vector3<S>& q, S r, Neighbors<S>& out) const {
     out.clear();
     visit(q, r, [&](Index i, S d_sq) { out.push_back({i, d_sq}); });
@@ -57,6 +60,7 @@ class Grid {
     for (Neighbor<S>& n : out) n.distance = std::sqrt(n.distance);
   }
 
+  /// How many points are within r; see neighbors.hpp.
   std::size_t count(const Vector3<S>& q, S r, std::size_t cap = kNoCap) const {
     if (!(r >= 0) || cap == 0) return 0;
     std::size_t found = 0;
@@ -70,6 +74,7 @@ class Grid {
     return std::min(found, cap);
   }
 
+  /// Calls f for all points within r; see neighbors.hpp.
   template <typename F>
   void visit(const Vector3<S>& q, S r, F&& f) const {
     if (!(r >= 0)) return;
@@ -83,6 +88,7 @@ class Grid {
     });
   }
 
+  /// The k nearest points; see neighbors.hpp.
   void knn(const Vector3<S>& q, std::size_t k, Neighbors<S>& out) const {
     k = std::min(k, ids_.size());
     detail::Nearest<S> nearest(out, k);
@@ -112,9 +118,13 @@ class Grid {
   std::size_t stored() const { return ids_.size(); }
   /// Their index in the cloud and their coordinates.
   const std::vector<Index>& ids() const { return ids_; }
+  /// Coordinates of the stored points (m).
   const std::vector<S>& x() const { return x_; }
+  /// Coordinates of the stored points (m).
   const std::vector<S>& y() const { return y_; }
+  /// Coordinates of the stored points (m).
   const std::vector<S>& z() const { return z_; }
+  /// Stored point j (m).
   Vector3<S> stored_point(std::size_t j) const { return {x_[j], y_[j], z_[j]}; }
   /// Edge length of a cell (m); longer than asked for where the cloud is wider than 2^30 cells.
   double cell() const { return cell_; }
@@ -284,6 +294,7 @@ class Grid {
   bool dense_ = true;
 };
 
+/// The scalar of a grid is that of its cloud.
 template <typename C, typename T>
 Grid(const C&, T) -> Grid<scalar_t<C>>;
 

@@ -25,10 +25,14 @@ class CellTable {
 
   /// The coordinate of the cell that holds x, given 1 / edge length; everything beyond the limit shares the last cell.
   static std::int32_t coordinate(double x, double inverse_edge) {
-    const double c = std::floor(x * inverse_edge);
-    return c <= -double(kLimit) ? -kLimit : c >= double(kLimit) ? kLimit : static_cast<std::int32_t>(c);
+    const double c = x * inverse_edge;
+    if (c < -double(kLimit)) return -kLimit;
+    if (c >= double(kLimit)) return kLimit;
+    const auto whole = static_cast<std::int32_t>(c);  // towards zero; a call of floor would cost more than all the rest
+    return whole - (c < double(whole) ? 1 : 0);
   }
 
+  /// Number of cells that hold something.
   std::size_t size() const { return used_; }
 
   /// The value of a cell, or -1.
@@ -92,6 +96,7 @@ class HashGrid {
                     cell);
   }
 
+  /// Number of points.
   std::size_t size() const { return points_.size(); }
 
   /// Point i, as inserted.
@@ -112,12 +117,14 @@ class HashGrid {
     return found;
   }
 
+  /// How many points are within r; see neighbors.hpp.
   std::size_t count(const Vector3<S>& q, S r, std::size_t cap = kNoCap) const {
     std::size_t found = 0;
     if (cap > 0) scan(q, r, [&](Index, S d_sq) { return !(d_sq <= r * r && ++found == cap); });
     return found;
   }
 
+  /// Calls f for all points within r; see neighbors.hpp.
   template <typename F>
   void visit(const Vector3<S>& q, S r, F&& f) const {
     scan(q, r, [&](Index i, S d_sq) {
@@ -126,6 +133,7 @@ class HashGrid {
     });
   }
 
+  /// All points within r; see neighbors.hpp.
   void radius(const Vector3<S>& q, S r, Neighbors<S>& out) const {
     out.clear();
     visit(q, r, [&](Index i, S d_sq) { out.push_back({i, d_sq}); });

@@ -17,6 +17,7 @@ namespace agrisee {
 template <typename S>
 class KdTree {
  public:
+  /// Copies the finite points of any cloud.
   template <typename C>
   explicit KdTree(const C& cloud) : data_(std::make_unique<Data>()), size_(agrisee::size(cloud)) {
     data_->points.reserve(size_);
@@ -37,14 +38,17 @@ class KdTree {
 #endif
   }
 
+  /// Number of points of the cloud.
   std::size_t size() const { return size_; }
 
+  /// The k nearest points; see neighbors.hpp.
   void knn(const Vector3<S>& q, std::size_t k, Neighbors<S>& out) const {
     KnnResult result{detail::Nearest<S>(out, std::min(k, data_->points.size())), data_->ids};
     if (k > 0 && searchable(q)) search(result, q);
     result.nearest.finish();
   }
 
+  /// All points within r; see neighbors.hpp.
   void radius(const Vector3<S>& q, S r, Neighbors<S>& out) const {
     out.clear();
     visit(q, r, [&](Index i, S d_sq) { out.push_back({i, d_sq}); });
@@ -52,6 +56,7 @@ class KdTree {
     for (Neighbor<S>& n : out) n.distance = std::sqrt(n.distance);
   }
 
+  /// How many points are within r; see neighbors.hpp.
   std::size_t count(const Vector3<S>& q, S r, std::size_t cap = kNoCap) const {
     if (!(r >= 0) || cap == 0 || !searchable(q)) return 0;
     CountResult result{r * r, 0, cap};
@@ -59,6 +64,7 @@ class KdTree {
     return result.found;
   }
 
+  /// Calls f for all points within r; see neighbors.hpp.
   template <typename F>
   void visit(const Vector3<S>& q, S r, F&& f) const {
     if (!(r >= 0) || !searchable(q)) return;
@@ -82,7 +88,11 @@ class KdTree {
   // nanoflann prunes with bounds that carry rounding errors; a slightly larger "worst" keeps exact ties in.
   static S padded(S d_sq) { return d_sq * (S(1) + S(64) * std::numeric_limits<S>::epsilon()) + std::numeric_limits<S>::min(); }
 
+  // What nanoflann calls result sets; from 1.6 on it asks each for its two types.
+  using TreeIndex = std::uint32_t;
   struct KnnResult {
+    using DistanceType = S;
+    using IndexType = TreeIndex;
     detail::Nearest<S> nearest;
     const std::vector<Index>& ids;
     bool full() const { return nearest.full(); }
@@ -97,6 +107,8 @@ class KdTree {
     }
   };
   struct CountResult {
+    using DistanceType = S;
+    using IndexType = TreeIndex;
     S r_sq;
     std::size_t found, cap;
     bool full() const { return true; }
@@ -112,6 +124,8 @@ class KdTree {
   };
   template <typename F>
   struct VisitResult {
+    using DistanceType = S;
+    using IndexType = TreeIndex;
     S r_sq;
     F& f;
     const std::vector<Index>& ids;
@@ -147,6 +161,7 @@ class KdTree {
   std::size_t size_;
 };
 
+/// The scalar of a tree is that of its cloud.
 template <typename C>
 KdTree(const C&) -> KdTree<scalar_t<C>>;
 

@@ -24,18 +24,21 @@ namespace agrisee {
 /// A found point and its distance (m) from the query.
 template <typename S>
 struct Neighbor {
-  Index index;
-  S distance;
+  Index index;  ///< in the cloud
+  S distance;   ///< m
 };
 
+/// Equal in both.
 template <typename S>
 bool operator==(const Neighbor<S>& a, const Neighbor<S>& b) {
   return a.index == b.index && a.distance == b.distance;
 }
 
+/// What a search finds.
 template <typename S>
 using Neighbors = std::vector<Neighbor<S>>;
 
+/// Count them all.
 constexpr std::size_t kNoCap = std::numeric_limits<std::size_t>::max();
 
 /// Squared distance, summed in the one order that all searches use, so that ties are ties everywhere.

@@ -17,7 +17,10 @@ namespace agrisee {
 ///
 /// Chunks are handed out as threads become free; `body` must write only what belongs to its own indices, so the result
 /// does not depend on the order. The first exception thrown by `body` is rethrown here after all threads have ended.
+/// @param n how many items
+/// @param threads at most so many
 /// @param chunk indices a chunk (at least 1); small loops (n <= chunk) never start a thread
+/// @param body called as body(begin, end)
 template <typename Body>
 void parallel_chunks(std::size_t n, int threads, std::size_t chunk, Body&& body) {
   chunk = std::max<std::size_t>(chunk, 1);

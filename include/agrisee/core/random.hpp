@@ -21,6 +21,7 @@ constexpr std::uint64_t mix(std::uint64_t x) {
 /// draws from its own stream, so the noise does not depend on which thread computes it.
 class Rng {
  public:
+  /// The numbers that a seed, a stream and a substream name; others are independent of them.
   explicit Rng(std::uint64_t seed, std::uint64_t stream = 0, std::uint64_t substream = 0)
       : state_(mix(mix(mix(seed) ^ stream) ^ substream)) {}
 

@@ -13,9 +13,13 @@ namespace agrisee {
 /// One row of cells about a cell: the cells x - outer .. x + outer at y + dy, z + dz; of these x - inner .. x + inner lie
 /// wholly within reach, none where `inner` is negative.
 struct StencilRow {
-  int dy, dz, outer, inner;
+  int dy;     ///< cells along y
+  int dz;     ///< cells along z
+  int outer;  ///< cells along x, either way
+  int inner;  ///< of which so many lie wholly within reach; negative: none
 };
 
+/// The cells about a cell, row by row.
 using Stencil = std::vector<StencilRow>;
 
 /// All cells at most `rings` away on every axis, none taken to be inside. 2 rings: 25 rows.

@@ -14,7 +14,9 @@ namespace agrisee {
 /// Candidates as a structure of arrays; not to be shared between threads.
 template <typename S>
 struct Tile {
-  std::vector<S> x, y, z;       ///< at least `size` long
+  std::vector<S> x;               ///< coordinates (m), at least `size` long
+  std::vector<S> y;               ///< likewise
+  std::vector<S> z;               ///< likewise
   std::vector<std::uint32_t> at;  ///< position among the grid's stored points
   std::size_t size = 0;         ///< candidates
   std::size_t inside = 0;       ///< points that are not listed because they lie within reach of the whole cell
@@ -47,6 +49,7 @@ struct Tile {
     }
   }
 
+  /// Empty it; its memory stays.
   void clear() { size = inside = 0; }
 
   /// Add stored points [begin, end).

@@ -12,8 +12,10 @@
 
 namespace agrisee {
 
+/// A point or direction.
 template <typename S>
 using Vector3 = Eigen::Matrix<S, 3, 1>;
+/// A 3 x 3 matrix.
 template <typename S>
 using Matrix3 = Eigen::Matrix<S, 3, 3>;
 
@@ -27,8 +29,8 @@ using Labels = std::vector<int>;
 /// Joint angles (rad) of a six-axis arm in the controller's convention, shoulder pan to wrist 3.
 using Joints = Eigen::Matrix<double, 6, 1>;
 
-constexpr double kPi = 3.14159265358979323846;
-constexpr double kTwoPi = 2.0 * kPi;
+constexpr double kPi = 3.14159265358979323846;  ///< pi
+constexpr double kTwoPi = 2.0 * kPi;            ///< a whole turn (rad)
 
 /// Degrees to radians.
 constexpr double deg(double degrees) { return degrees * (kPi / 180.0); }

@@ -11,11 +11,14 @@ namespace agrisee {
 
 /// An axis-aligned box [min, max] (m); empty when default-made.
 struct Aabb {
-  Eigen::Vector3d min = Eigen::Vector3d::Constant(std::numeric_limits<double>::infinity());
-  Eigen::Vector3d max = Eigen::Vector3d::Constant(-std::numeric_limits<double>::infinity());
+  Eigen::Vector3d min = Eigen::Vector3d::Constant(std::numeric_limits<double>::infinity());   ///< m
+  Eigen::Vector3d max = Eigen::Vector3d::Constant(-std::numeric_limits<double>::infinity());  ///< m
 
+  /// Whether it holds no point.
   bool empty() const { return (min.array() > max.array()).any(); }
+  /// Its middle (m).
   Eigen::Vector3d center() const { return 0.5 * (min + max); }
+  /// Its edges (m).
   Eigen::Vector3d size() const { return max - min; }
   /// True for points inside or on the border; false for points that are not finite.
   template <typename V>
@@ -24,6 +27,7 @@ struct Aabb {
       if (!(double(p[a]) >= min[a] && double(p[a]) <= max[a])) return false;
     return true;
   }
+  /// Make it hold p (m), too.
   void extend(const Eigen::Vector3d& p) {
     min = min.cwiseMin(p);
     max = max.cwiseMax(p);

@@ -27,7 +27,8 @@ class Bvh {
   struct Hit {
     float t;                 ///< distance in units of the direction's length
     std::uint32_t triangle;  ///< index in the mesh
-    float u, v;              ///< barycentric coordinates: (1 - u - v) a + u b + v c
+    float u;                 ///< barycentric coordinates: (1 - u - v) a + u b + v c
+    float v;                 ///< the other of them
   };
   /// A point of the surface.
   struct SurfacePoint {
@@ -52,6 +53,8 @@ class Bvh {
   /// The first triangle that the ray meets at t in [max(t_min, 0), t_max], seen from either side.
   ///
   /// @param origin, direction any length but zero; a ray that is not finite meets nothing
+  /// @param t_min nearest distance along the ray that counts
+  /// @param t_max farthest
   std::optional<Hit> closest(const Eigen::Vector3f& origin, const Eigen::Vector3f& direction, float t_min = 0.0f,
                              float t_max = std::numeric_limits<float>::infinity()) const;
 

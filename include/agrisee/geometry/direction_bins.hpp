@@ -13,7 +13,9 @@ namespace agrisee {
 
 /// 6 x 6 bins on each face of a cube, spaced by equal angles.
 struct DirectionBins {
+  /// Bins along an edge of the cube.
   static constexpr int kSide = 6;
+  /// Bins in all.
   static constexpr int kCount = 6 * kSide * kSide;
 
   /// Bin of a direction (need not be unit length; not zero).

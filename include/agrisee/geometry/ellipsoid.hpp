@@ -10,7 +10,7 @@ namespace agrisee {
 
 /// A solid ellipsoid (m).
 struct OrientedEllipsoid {
-  Eigen::Vector3d center = Eigen::Vector3d::Zero();
+  Eigen::Vector3d center = Eigen::Vector3d::Zero();    ///< m
   Eigen::Vector3d radii = Eigen::Vector3d::Zero();     ///< semi-axes, all positive
   Eigen::Matrix3d axes = Eigen::Matrix3d::Identity();  ///< columns: their directions
 };

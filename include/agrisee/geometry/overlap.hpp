@@ -16,9 +16,9 @@ constexpr double kTouch = 1e-6;
 
 /// A flat-ended solid cylinder (m) whose axis points anywhere.
 struct OrientedCylinder {
-  Eigen::Vector3d center = Eigen::Vector3d::Zero();
+  Eigen::Vector3d center = Eigen::Vector3d::Zero();  ///< m
   Eigen::Vector3d axis = Eigen::Vector3d::UnitZ();  ///< unit
-  double radius = 0.0;
+  double radius = 0.0;                              ///< m
   double height = 0.0;  ///< full height, half of it on either side of the centre
 };
 
@@ -34,6 +34,7 @@ inline Capsule enclosing_capsule(const OrientedCylinder& c) {
 inline Eigen::Vector3d nearest_point(const Box& box, const Eigen::Vector3d& p) {
   return p.cwiseMax(box.center - 0.5 * box.size).cwiseMin(box.center + 0.5 * box.size);
 }
+/// The point of a cylinder that is nearest to p (m).
 inline Eigen::Vector3d nearest_point(const OrientedCylinder& c, const Eigen::Vector3d& p) {
   const Eigen::Vector3d d = p - c.center;
   const double along = d.dot(c.axis);
@@ -42,6 +43,7 @@ inline Eigen::Vector3d nearest_point(const OrientedCylinder& c, const Eigen::Vec
   if (rho > c.radius) across *= c.radius / rho;
   return c.center + std::clamp(along, -0.5 * c.height, 0.5 * c.height) * c.axis + across;
 }
+/// The point of a cylinder that is nearest to p (m).
 inline Eigen::Vector3d nearest_point(const Cylinder& c, const Eigen::Vector3d& p) {
   return nearest_point(OrientedCylinder{c.center, Eigen::Vector3d::UnitZ(), c.radius, c.height}, p);
 }
@@ -50,10 +52,12 @@ inline Eigen::Vector3d nearest_point(const Cylinder& c, const Eigen::Vector3d& p
 inline double support(const Box& box, const Eigen::Vector3d& v) {
   return v.dot(box.center) + 0.5 * v.cwiseAbs().dot(box.size);
 }
+/// How far a cylinder reaches along v (m times the length of v).
 inline double support(const Cylinder& c, const Eigen::Vector3d& v) {
   return v.dot(c.center) + c.radius * std::hypot(v.x(), v.y()) + 0.5 * c.height * std::abs(v.z());
 }
 
+/// How far a cylinder reaches along v (m times the length of v).
 inline double support(const OrientedCylinder& c, const Eigen::Vector3d& v) {
   const double along = v.dot(c.axis);
   return v.dot(c.center) + 0.5 * c.height * std::abs(along) + c.radius * (v - along * c.axis).norm();
@@ -101,6 +105,7 @@ bool overlap(OrientedCylinder body, const Solid& solid) {
   }
   return true;
 }
+/// Whether a cylinder reaches into a space to keep out of.
 inline bool overlap(const OrientedCylinder& body, const KeepOut& space) {
   return std::visit([&](const auto& shape) { return overlap(body, shape); }, space.shape);
 }

@@ -12,7 +12,7 @@ namespace agrisee {
 /// Mean and principal axes of a set of points.
 template <typename S>
 struct PrincipalAxes {
-  Vector3<S> mean = Vector3<S>::Zero();
+  Vector3<S> mean = Vector3<S>::Zero();         ///< m
   Vector3<S> variance = Vector3<S>::Zero();     ///< along the axes (divided by n), ascending, never negative
   Matrix3<S> axes = Matrix3<S>::Identity();     ///< columns, unit, by ascending variance; signs are arbitrary
   /// Surface variation lambda0 / (lambda0 + lambda1 + lambda2) (Pauly et al., 2002); 0 where all points coincide.
@@ -46,16 +46,19 @@ PrincipalAxes<S> principal_axes(const Vector3<S>& mean, const Matrix3<S>& covari
 class Moments {
  public:
   Moments() { reset(Eigen::Vector3d::Zero()); }
+  /// Begin anew; sums are taken about `origin` (m), which spares them rounding.
   void reset(const Eigen::Vector3d& origin) {
     origin_ = origin;
     n_ = x_ = y_ = z_ = xx_ = xy_ = xz_ = yy_ = yz_ = zz_ = 0.0;
   }
+  /// Take in a point (m).
   void add(const Eigen::Vector3d& p) {
     const double x = p.x() - origin_.x(), y = p.y() - origin_.y(), z = p.z() - origin_.z();
     n_ += 1.0;
     x_ += x, y_ += y, z_ += z;
     xx_ += x * x, xy_ += x * y, xz_ += x * z, yy_ += y * y, yz_ += y * z, zz_ += z * z;
   }
+  /// Number of points.
   double count() const { return n_; }
   /// The origin without points.
   Eigen::Vector3d mean() const { return n_ > 0.0 ? Eigen::Vector3d(origin_ + offset()) : origin_; }

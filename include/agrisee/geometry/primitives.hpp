@@ -17,21 +17,21 @@ namespace agrisee {
 
 /// An axis-aligned solid box (m).
 struct Box {
-  Eigen::Vector3d center = Eigen::Vector3d::Zero();
+  Eigen::Vector3d center = Eigen::Vector3d::Zero();  ///< m
   Eigen::Vector3d size = Eigen::Vector3d::Zero();  ///< full edge lengths
 };
 
 /// A solid cylinder (m) whose axis is parallel to world's z.
 struct Cylinder {
-  Eigen::Vector3d center = Eigen::Vector3d::Zero();
-  double radius = 0.0;
+  Eigen::Vector3d center = Eigen::Vector3d::Zero();  ///< m
+  double radius = 0.0;                               ///< m
   double height = 0.0;  ///< full height, half of it on either side of the centre
 };
 
 /// A space that neither arm nor sensor may enter; it does not hide anything from the sensor.
 struct KeepOut {
-  std::string name;
-  std::variant<Box, Cylinder> shape;
+  std::string name;                   ///< as messages call it
+  std::variant<Box, Cylinder> shape;  ///< world
 
   /// @throws ParameterError naming the space and its size, when it has none or is not finite
   void check() const {
@@ -51,20 +51,22 @@ struct KeepOut {
 
 /// All points within `radius` (m) of the segment from a to b.
 struct Capsule {
-  Eigen::Vector3d a = Eigen::Vector3d::Zero();
-  Eigen::Vector3d b = Eigen::Vector3d::Zero();
-  double radius = 0.0;
+  Eigen::Vector3d a = Eigen::Vector3d::Zero();  ///< one end of its axis (m)
+  Eigen::Vector3d b = Eigen::Vector3d::Zero();  ///< the other (m)
+  double radius = 0.0;                          ///< m
 };
 
 /// Distance (m) from a point to a solid, 0 inside.
 inline double distance(const Box& box, const Eigen::Vector3d& p) {
   return ((p - box.center).cwiseAbs() - 0.5 * box.size).cwiseMax(0.0).norm();
 }
+/// Distance (m) of a point to a cylinder; 0 inside.
 inline double distance(const Cylinder& c, const Eigen::Vector3d& p) {
   const Eigen::Vector3d d = p - c.center;
   return std::hypot(std::max(std::hypot(d.x(), d.y()) - c.radius, 0.0),
                     std::max(std::abs(d.z()) - 0.5 * c.height, 0.0));
 }
+/// Distance (m) of a point to a space to keep out of; 0 inside.
 inline double distance(const KeepOut& k, const Eigen::Vector3d& p) {
   return std::visit([&](const auto& shape) { return distance(shape, p); }, k.shape);
 }
@@ -136,6 +138,7 @@ inline double distance(const Cylinder& c, const Eigen::Vector3d& a, const Eigen:
   }
   return distance(c, Eigen::Vector3d(a + t * d));
 }
+/// Distance (m) of the segment from a to b to a space to keep out of; 0 where it enters.
 inline double distance(const KeepOut& k, const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
   return std::visit([&](const auto& shape) { return distance(shape, a, b); }, k.shape);
 }

@@ -15,13 +15,13 @@ enum class ObjectClass { fruit, stem, leaf, other };
 /// One object of a scene; its mesh is in world coordinates.
 struct Object {
   int id = 0;  ///< unique and positive for fruit, 0 for everything else
-  ObjectClass cls = ObjectClass::other;
-  Mesh mesh;
+  ObjectClass cls = ObjectClass::other;  ///< what it is
+  Mesh mesh;                             ///< world
 };
 
 /// Everything that the sensor sees and that hides other things from it.
 struct Scene {
-  std::vector<Object> objects;
+  std::vector<Object> objects;  ///< all that the sensor sees
 };
 
 }  // namespace agrisee

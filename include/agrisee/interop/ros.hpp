@@ -102,6 +102,7 @@ class PointCloud2View {
   }
   explicit PointCloud2View(const Message&&) = delete;
 
+  /// Number of points, those that are not finite included.
   std::size_t size() const { return size_; }
   /// Point i < size() (m, in the frame that the message's header names).
   Vector3<S> point(std::size_t i) const {
@@ -159,6 +160,7 @@ sensor::Intrinsics intrinsics_of(const Info& info, bool rectified = false) {
 }
 
 /// A depth image, `16UC1` (mm, 0 = no return) or `32FC1` (m; 0, NaN and infinities = no return), as a frame in metres.
+/// @param image sensor_msgs/Image  @param info the CameraInfo that came with it
 /// @param rectified whether the image was rectified, see intrinsics_of
 /// @throws InputError for another encoding, data shorter than the rows, a size that differs from the camera's, or an
 /// unusable camera
@@ -193,10 +195,14 @@ sensor::DepthFrame depth_frame(const Image& image, const Info& info, bool rectif
 
 namespace agrisee {
 
+/// Clouds in messages.
 template <typename Message, typename S>
 struct CloudTraits<interop::PointCloud2View<Message, S>> {
+  /// Of coordinates.
   using Scalar = S;
+  /// Number of points.
   static std::size_t size(const interop::PointCloud2View<Message, S>& c) { return c.size(); }
+  /// Point i (m).
   static Vector3<S> point(const interop::PointCloud2View<Message, S>& c, std::size_t i) { return c.point(i); }
 };
 

@@ -17,15 +17,23 @@ namespace agrisee::io {
 
 /// The bytes of a file.
 struct Bytes {
-  std::unique_ptr<char[]> data;
-  std::size_t size = 0;
+  std::unique_ptr<char[]> data;  ///< the bytes
+  std::size_t size = 0;          ///< how many
 
+  /// Them as text.
   std::string_view view() const { return {data.get(), size}; }
 };
 
 /// All bytes of a regular file (or pipe), read at once.
 /// @throws FileError when it is missing, a directory, a device, or cannot be read
 Bytes read_bytes(const std::filesystem::path& path);
+
+/// What of a file is left after a power cut. Either way it is complete or absent for whoever looks while the machine
+/// runs, however the process that writes it ends.
+enum class Durability {
+  whenever,  ///< the operating system brings it to the disk in its own time
+  now        ///< it is on the disk when the call returns (fsync); some 30 ms
+};
 
 /// A file that appears under its name only when it is complete: it is written to a temporary beside `path`, then
 /// renamed. Without commit() nothing is left behind and an older file stays as it was.
@@ -39,9 +47,10 @@ class AtomicFile {
 
   /// Append bytes. @throws FileError when they cannot be written
   void write(const void* data, std::size_t size);
+  /// Append text. @throws FileError when it cannot be written
   void write(std::string_view text) { write(text.data(), text.size()); }
   /// Put the file in its place. @throws FileError when that fails
-  void commit();
+  void commit(Durability durability = Durability::whenever);
 
  private:
   struct Closer {
@@ -52,7 +61,14 @@ class AtomicFile {
 };
 
 /// Write a whole file, atomically. @throws FileError
-void write_file(const std::filesystem::path& path, std::string_view bytes);
+void write_file(const std::filesystem::path& path, std::string_view bytes,
+                Durability durability = Durability::whenever);
+
+/// Bring what was written to a folder's own files to the disk. @throws FileError when the disk refuses
+void make_durable(const std::filesystem::path& folder);
+
+/// Remove the temporaries that killed writers left in a folder; other files are not touched.
+void remove_leftovers(const std::filesystem::path& folder);
 
 /// Throw FileError("<path>: <message>").
 [[noreturn]] void fail(const std::filesystem::path& path, const std::string& message);

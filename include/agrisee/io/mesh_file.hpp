@@ -27,7 +27,9 @@ Mesh read_mesh(const std::filesystem::path& path, StlCorners corners = StlCorner
 
 /// Read one format, whatever the file is called. @throws FileError as read_mesh
 Mesh read_stl(const std::filesystem::path& path, StlCorners corners = StlCorners::merge);
+/// Read an OBJ file, whatever it is called. @throws FileError as read_mesh
 Mesh read_obj(const std::filesystem::path& path);
+/// Read a PLY file, whatever it is called. @throws FileError as read_mesh
 Mesh read_ply_mesh(const std::filesystem::path& path);
 
 /// Write a binary STL file with facet normals, atomically.
@@ -36,6 +38,8 @@ Mesh read_ply_mesh(const std::filesystem::path& path);
 void write_stl(const std::filesystem::path& path, const Mesh& mesh);
 
 /// Write a binary little-endian PLY mesh, atomically.
+/// @param path of the file
+/// @param mesh to be written
 /// @param colors one per vertex, or none
 /// @throws InputError when an index is out of range, a vertex not finite, or the colours are not one per vertex
 /// @throws FileError when the file cannot be written

@@ -21,4 +21,10 @@ std::string parameters_to_yaml(const Parameters& parameters);
 /// The parameters as a JSON object.
 std::string parameters_to_json(const Parameters& parameters);
 
+/// Read them back: the same values.
+/// @param text as of parameters_to_json
+/// @param path the file that the text is from, for the message
+/// @throws FileError as read_parameters does
+Parameters parameters_from_json(const std::string& text, const std::string& path);
+
 }  // namespace agrisee::io

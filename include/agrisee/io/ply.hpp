@@ -13,6 +13,8 @@ CloudFile read_ply(const std::filesystem::path& path, NonFinite non_finite = Non
 
 /// Write a consolidated cloud, binary little-endian and atomically: `float x y z nx ny nz`, `uchar red green blue` (the
 /// colour of the fruit, see palette.hpp), `int instance`.
+/// @param path of the file
+/// @param cloud points (m, world)
 /// @param instance one label per point, 0 = no fruit; empty = 0 everywhere
 /// @throws InputError when `instance` or the normals are neither empty nor one per point
 /// @throws FileError when the file cannot be written

@@ -16,6 +16,7 @@ struct Image {
   int height = 0;           ///< pixels
   std::vector<Rgb> pixels;  ///< width * height of them
 
+  /// Pixel x of row y, counted from the upper left.
   const Rgb& at(int x, int y) const {
     return pixels[static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x)];
   }

@@ -18,6 +18,8 @@ namespace agrisee::io {
 /// to last (light). Without a scan volume the picture frames the cloud, seen from the side that most normals face.
 /// Twofold supersampling. Any result can be drawn, also an empty one; points that are not finite are left out. Cost:
 /// O(points + pixels), about 0.3 s.
+/// @param result what is drawn
+/// @param workcell scan volume and frames
 /// @param width, height pixels, at least 640 x 360
 /// @throws ParameterError for a smaller image  @throws InputError when the labels or normals are not one per point
 Image render(const ScanResult& result, const Workcell& workcell, int width = 1600, int height = 900);

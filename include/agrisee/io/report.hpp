@@ -24,8 +24,10 @@ struct ReportInfo {
 ///
 /// The same records give the same bytes, whatever their order. Values that are missing or not finite are `-` in the
 /// document and empty in the tables.
+/// @param path of the Markdown file
 /// @param cells  the records of the scans; those of one scene, preset, planner and noise are trials of each other
 /// @param scenes  what can be seen of the scenes; may be empty
+/// @param info what the text says besides
 /// @throws InputError without any cell, for two records of one cell or scene, for a record whose lists of fruit differ
 ///   in length, and for a path without an extension
 /// @throws FileError when a file cannot be written

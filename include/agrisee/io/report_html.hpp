@@ -18,7 +18,7 @@ struct ScanHistory {
     std::string name;            ///< as it is shown
     std::vector<double> values;  ///< 0..1, one a view; what is not finite is left out of the curve
   };
-  std::vector<Curve> curves;
+  std::vector<Curve> curves;              ///< in the order of the legend
   std::vector<Eigen::Vector3f> frontier;  ///< points where a planner would have looked on (m, world)
 };
 

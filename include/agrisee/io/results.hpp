@@ -16,23 +16,23 @@ namespace agrisee::io {
 struct RunInfo {
   std::string scene;    ///< name of the scene, or file of a ready cloud
   std::string version;  ///< of AgriSEE
-  std::uint64_t seed = 0;
-  int threads = 1;
+  std::uint64_t seed = 0;      ///< of everything random
+  int threads = 1;             ///< the result does not depend on it
   std::string noise = "none";  ///< model of the simulated sensor's noise
-  std::string preset = "default";
-  std::string planner;
+  std::string preset = "default";  ///< see Parameters::preset
+  std::string planner;             ///< see Parameters::planner
   std::string parameters_json;  ///< all parameters as a JSON value; empty = {}
 };
 
 /// What run.json says.
 struct RunFile {
-  RunInfo info;
+  RunInfo info;              ///< how it was made
   std::size_t views = 0;     ///< number of views taken
   std::string stop_reason;   ///< see StopReason
   std::size_t merged = 0;    ///< points of the merged cloud
   std::size_t filtered = 0;  ///< points of the consolidated cloud
   std::size_t labelled = 0;  ///< those of them that belong to a fruit
-  Timing seconds;
+  Timing seconds;            ///< per stage
 };
 
 /// Write views.csv; during a scan after every view, so that a scan that fails has left what it took. Row i is view i,
@@ -53,9 +53,10 @@ void write_fruits(const std::filesystem::path& path, const std::vector<Fruit>& f
 /// covariance the upper triangle is written, the ids of `picking_after` are separated by spaces.
 void write_fruits_csv(const std::filesystem::path& path, const std::vector<Fruit>& fruits);
 
-/// Write run.json. Beside the contract's keys `completeness` says which share of the fruit's surface the planner
-/// believes to have been seen (`seen`) and that the arm can see at all (`observable`), and `cluster_origin_world` says
-/// where the cluster frame {R} is, when the workcell has a scan volume.
+/// Write run.json. Beside the contract's keys `views_discarded` counts the views that were not believed, `completeness`
+/// says which share of the fruit's surface the planner believes to have been seen (`seen`) and that the arm can see at
+/// all (`observable`), and `cluster_origin_world` says where the cluster frame {R} is, when the workcell has a scan
+/// volume.
 /// @throws InputError when `parameters_json` is not JSON  @throws FileError when it cannot be written
 void write_run(const std::filesystem::path& path, const ScanResult& result, const Workcell& workcell,
                const RunInfo& info);

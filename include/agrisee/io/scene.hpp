@@ -13,16 +13,17 @@ namespace agrisee::io {
 
 /// A scene file in memory.
 struct SceneFile {
-  Workcell workcell;
+  Workcell workcell;  ///< all but the objects
   Scene scene;  ///< meshes in world coordinates; object i is the i-th of the file
 };
 
 /// Read a scene and its meshes (relative to the scene file; a mesh named several times is read once).
 ///
+/// A mesh's relative path must not leave the scene's folder by `..`; an absolute one may name any file.
 /// Optional keys have the defaults of Workcell. Sizes, ids and classes are checked as the scene format asks.
 /// @throws FileError "<path>:<line>: <key>: ..." for a missing or unknown key, a value out of range, two fruits with
 /// one id,
-///   or a mesh that cannot be read
+///   or a mesh that cannot be read or is named by a relative path out of the folder
 SceneFile read_scene(const std::filesystem::path& path);
 
 /// Write a scene; its meshes go beside it, `fruit_<id>.stl` for fruit and `<class>_<number>.stl` for the rest. Meshes

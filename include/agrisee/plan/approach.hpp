@@ -58,6 +58,7 @@ struct PickingParameters {
     check_parameter(std::isfinite(seen_weight), "picking.seen_weight", "finite", seen_weight);
     check_parameter(std::isfinite(away_weight), "picking.away_weight", "finite", away_weight);
   }
+  /// f(name, field) for every field.
   template <typename P, typename F>
   static void fields(P& p, F&& f) {
     f("enabled", p.enabled);
@@ -113,8 +114,8 @@ struct ReachableApproach {
 /// The answer to a wish: how, or why not. Of the reasons only `arm_meets_fruit` may go away when other fruit are
 /// picked.
 struct ApproachAnswer {
-  std::optional<ReachableApproach> reached;
-  PickingReason reason = PickingReason::out_of_reach;
+  std::optional<ReachableApproach> reached;            ///< how; empty when it cannot be followed
+  PickingReason reason = PickingReason::out_of_reach;  ///< why not
 };
 
 /// Answers a wish for an arm that comes from `current`. It has to give the same answer to the same question.

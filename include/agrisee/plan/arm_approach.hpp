@@ -74,7 +74,9 @@ struct ArmOnItsWay {
 }  // namespace detail
 
 /// Approaches of the UR3 of a mounting; its own spaces to keep out of are replaced by those of each wish.
+/// @param mount the arm and its cell
 /// @param tool0_T_tool the gripper: origin at its gripping point, z ahead
+/// @param parameters see their struct
 /// @throws ParameterError when mounting or parameters are not sound, InputError when tool0_T_tool is not rigid
 inline ReachApproach approach_of(arm::Mount mount, const Pose& tool0_T_tool, const PickingParameters& parameters = {}) {
   mount.check();

@@ -12,6 +12,7 @@ namespace agrisee::plan {
 /// with the one nearest to frontal (farthest-point sampling); taken in the order of the shortest next move.
 class FixedPlanner : public Planner {
  public:
+  /// `count` views of the middle of `volume`, about the line from `eye`; distances from `band`.
   FixedPlanner(const Aabb& volume, const Eigen::Vector3d& eye, int count, const ViewRequest& band)
       : volume_(volume), eye_(eye), count_(count), band_(band) {
     band_.target = volume.center();
@@ -86,6 +87,7 @@ class FixedPlanner : public Planner {
 /// Random reachable views of the volume's centre, from the front first.
 class RandomPlanner : public Planner {
  public:
+  /// Views of the middle of `volume` from the side of `eye`; distances from `band`.
   RandomPlanner(const Aabb& volume, const Eigen::Vector3d& eye, const ViewRequest& band, std::uint64_t seed)
       : volume_(volume), eye_(eye), band_(band), rng_(seed, 0x72616e64) {
     band_.target = volume.center();

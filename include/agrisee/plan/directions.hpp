@@ -31,6 +31,10 @@ inline Eigen::Vector3d frontal_direction(const Aabb& volume, const Eigen::Vector
 }
 
 /// The reachable view of the volume's centre nearest to frontal: directions in rising angle from it.
+/// @param volume to be scanned (world)
+/// @param eye where the robot stands (m, world)
+/// @param current joints (rad)
+/// @param reach answers for the arm
 /// @param band distance and its limits; target and direction are filled in
 /// @param skip how many of the reachable ones to pass over
 inline std::optional<ReachableView> first_view(const Aabb& volume, const Eigen::Vector3d& eye, const Joints& current,

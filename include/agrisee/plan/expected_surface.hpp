@@ -41,6 +41,7 @@ struct ExpectedSurfaceParameters {
     check_parameter(unknown_weight >= 0, "expected.unknown_weight", ">= 0", unknown_weight);
     check_parameter(disappointment >= 0 && disappointment <= 1, "expected.disappointment", "in [0, 1]", disappointment);
   }
+  /// f(name, field) for every field.
   template <typename P, typename F>
   static void fields(P& p, F&& f) {
     f("max_incidence", p.max_incidence);
@@ -56,6 +57,7 @@ struct ExpectedSurfaceParameters {
 /// The model of what has been seen and what has not.
 class ExpectedSurface {
  public:
+  /// Of a sensor and a volume to scan (world). @throws ParameterError
   ExpectedSurface(const sensor::L515& sensor, const Aabb& volume, const ExpectedSurfaceParameters& parameters)
       : sensor_(sensor), volume_(volume), parameters_(parameters) {
     parameters.check();
@@ -127,9 +129,11 @@ class ExpectedSurface {
     return out;
   }
 
+  /// The bodies that are known.
   const std::vector<FoundBody>& bodies() const { return bodies_; }
   /// Surface (m2) of all bodies found so far, and the part of it that points cover.
   double area() const { return area_; }
+  /// Their surface that points cover (m2).
   double covered_area() const { return covered_; }
   /// Centre of what is worth looking at: the mean of the bodies, else of the cloud's extent, else of the volume.
   const Eigen::Vector3d& center() const { return center_; }

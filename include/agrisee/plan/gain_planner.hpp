@@ -28,7 +28,7 @@ struct GainPlannerParameters {
   int lookahead = 6;           ///< views planned ahead, so that the nearest of them comes first; 1 = none
   double patience = 0.5;       ///< but only where it scores at least this share of the best
   double min_gain = 0.0015;    ///< stop when the best view promises less than this share of the known fruit surface
-  ExpectedSurfaceParameters expected;
+  ExpectedSurfaceParameters expected;  ///< what a view is expected to show
 
   /// @throws ParameterError
   void check() const {
@@ -43,6 +43,7 @@ struct GainPlannerParameters {
     check_parameter(min_gain >= 0, "planner.min_gain", ">= 0", min_gain);
     expected.check();
   }
+  /// f(name, field) for every field.
   template <typename P, typename F>
   static void fields(P& p, F&& f) {
     f("candidates", p.candidates);
@@ -61,7 +62,12 @@ struct GainPlannerParameters {
 /// See the file's head.
 class GainPlanner : public Planner {
  public:
+  /// @param sensor intrinsics and range
+  /// @param volume to be scanned (world)
   /// @param eye the arm's base in world, from which the truss is first looked at
+  /// @param split see its struct
+  /// @param free_space see its struct
+  /// @param parameters see its struct
   /// @throws ParameterError
   GainPlanner(const sensor::L515& sensor, const Aabb& volume, const Eigen::Vector3d& eye, const SplitParameters& split,
               const FreeSpaceParameters& free_space, const GainPlannerParameters& parameters = {})

@@ -185,7 +185,10 @@ inline bool plan_approach(PickingCandidate& c, const std::vector<OrientedEllipso
 }  // namespace detail
 
 /// Plan the picking of all fruit: an entry each, in their order.
+/// @param fruits as located
+/// @param scene what surrounds them
 /// @param reach answers for the arm; empty: directions and order without it, `not_tested`
+/// @param parameters see their struct
 /// @throws InputError for a fruit, an eye or joints that are not finite, or when `scene.seen` is neither empty nor one
 /// per
 ///   fruit; ParameterError

@@ -15,15 +15,16 @@ namespace agrisee::plan {
 /// A wish to look at a point: from `target - distance * direction` along `direction`, the sensor's roll free, the
 /// distance free within a band. World, metres.
 struct ViewRequest {
-  Eigen::Vector3d target = Eigen::Vector3d::Zero();
+  Eigen::Vector3d target = Eigen::Vector3d::Zero();      ///< m
   Eigen::Vector3d direction = Eigen::Vector3d::UnitY();  ///< unit, from the sensor to the target
   double distance = 0.38;                                ///< preferred
-  double distance_min = 0.28, distance_max = 0.55;
+  double distance_min = 0.28;                            ///< nearest
+  double distance_max = 0.55;                            ///< farthest
 };
 
 /// A view that the arm can take.
 struct ReachableView {
-  Pose world_T_optical = Pose::Identity();
+  Pose world_T_optical = Pose::Identity();           ///< of the sensor
   Eigen::Vector3d target = Eigen::Vector3d::Zero();  ///< the point looked at, on the optical axis
   std::optional<Joints> joints;                      ///< absent where the caller moves without telling
   double move_time = 0.0;                            ///< from the present joints (s)

@@ -12,6 +12,7 @@ namespace agrisee::plan {
 /// (within `kMaxTurn`); where there is none the controller's own fallbacks follow.
 class SeePlanner : public Planner {
  public:
+  /// Of a volume to scan, seen from the side of `eye`; distances from `band`.
   SeePlanner(const Aabb& volume, const Eigen::Vector3d& eye, const see::Parameters& parameters, const ViewRequest& band,
              int threads)
       : volume_(volume), eye_(eye), band_(band), planner_(parameters, threads) {}

@@ -20,6 +20,7 @@
 
 namespace agrisee::see {
 
+/// What a point is by its density.
 enum class PointClass : std::uint8_t { outlier, frontier, core };
 
 /// Density and class of every point of a cloud.
@@ -48,6 +49,7 @@ class DensityMap {
 
   /// Merge a view (any cloud, world). A point is kept if no kept point is nearer than the minimum separation, so the
   /// first wins; points that are not finite are dropped. Kept points are appended in order.
+  /// @param cloud points (m) to be merged
   /// @param view number of the view, remembered with the points
   /// @param threads the result does not depend on it
   /// @return indices of the kept points in `cloud`, ascending
@@ -76,12 +78,17 @@ class DensityMap {
     update(threads);
   }
 
+  /// Number of points.
   std::size_t size() const { return cloud_.size(); }
   /// The merged points and, for each, the view that saw it first.
   const PointCloud<S>& cloud() const { return cloud_; }
+  /// Neighbours within the radius, per point.
   const std::vector<int>& counts() const { return result_.counts; }
+  /// What each point is.
   const std::vector<PointClass>& classes() const { return result_.classes; }
+  /// Counts and classes.
   const Classification& classification() const { return result_; }
+  /// What point i is.
   PointClass class_of(Index i) const { return result_.classes[static_cast<std::size_t>(i)]; }
   /// A search over the merged points for radii about the minimum separation; indices are those of cloud().
   const HashGrid<S>& grid() const { return grid_; }

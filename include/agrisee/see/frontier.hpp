@@ -81,7 +81,9 @@ void k_nearest(const Search& search, const Vector3<S>& q, std::size_t k, S radiu
 /// @param cloud any cloud (m, world)
 /// @param search a KdTree or Grid over the cloud
 /// @param near a search with `count(q, r, cap)` for small radii over the same points (may be the same object)
+/// @param index of the frontier point
 /// @param seen_from position (m) of the sensor when it first saw the point
+/// @param params see their struct
 /// @return none where the point is not finite or the sensor stood on it
 template <typename C, typename Search, typename Near>
 std::optional<Frontier> frontier_frame(const C& cloud, const Search& search, const Near& near, Index index,

@@ -19,6 +19,10 @@ namespace agrisee::see {
 /// which no ball is empty is blocked. Where `bounds` is given, the part of the line outside it (plus upsilon) is known
 /// to be free. Cost: at most psi / upsilon ball queries.
 /// @param search a neighbour search with `count(q, r, cap)`, of scalar S
+/// @param p the point (m)
+/// @param sensor position of the sensor (m)
+/// @param params see their struct
+/// @param bounds box about the cloud; nothing beyond it occludes
 template <typename S, typename Search>
 bool is_visible(const Search& search, const Eigen::Vector3d& p, const Eigen::Vector3d& sensor, const Parameters& params,
                 const Aabb& bounds) {
@@ -53,8 +57,8 @@ std::vector<Eigen::Vector3f> occluder_directions(const C& cloud, const Eigen::Ve
 
 /// A direction and its angle (rad) to the nearest occluder, pi where there is none.
 struct FreeDirection {
-  Eigen::Vector3d direction = Eigen::Vector3d::UnitZ();
-  double clearance = kPi;
+  Eigen::Vector3d direction = Eigen::Vector3d::UnitZ();  ///< unit
+  double clearance = kPi;                                ///< angle to the nearest occluder (rad)
 };
 
 namespace detail {
@@ -162,6 +166,8 @@ inline FreeDirection freest_direction(const std::vector<Eigen::Vector3f>& occlud
 /// The proposal for a frontier: along its normal where that sight is free, else from the freest side within
 /// `max_incidence` of the normal (which may still be blocked).
 /// @param cloud any cloud (m, world); @param search a search over it with `count(q, r, cap)`
+/// @param f the frontier
+/// @param params see their struct
 /// @param bounds a box that holds the cloud
 template <typename C, typename Search>
 ViewProposal propose_visible(const C& cloud, const Search& search, const Frontier& f, const Parameters& params,

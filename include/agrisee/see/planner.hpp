@@ -26,13 +26,13 @@ namespace agrisee::see {
 /// Plans view by view.
 class Planner {
  public:
-  /// @param threads results do not depend on it
+  /// @param params see their struct  @param threads results do not depend on it
   /// @throws ParameterError as Parameters::check()
   explicit Planner(const Parameters& params, int threads = 1)
       : params_(params), threads_(threads), map_(params), near_(static_cast<float>(2.0 * params.upsilon)) {}
 
   /// Merge what a view saw (any cloud, world; none is allowed) and judge the view last taken by it.
-  /// @param sensor position of the sensor (m)
+  /// @param cloud points of the view (m, world)  @param sensor position of the sensor (m)
   /// @return indices of the points that were kept
   /// @throws InputError when `sensor` is not finite
   template <typename C>
@@ -125,7 +125,7 @@ class Planner {
   }
 
   /// The best view that can be reached, taken; none when there is none, see stop_reason().
-  /// @param reachable bool(const ViewProposal&), asked in order of preference
+  /// @param sensor its position (m)  @param reachable bool(const ViewProposal&), asked in order of preference
   template <typename Reachable>
   std::optional<ViewProposal> next_view(const Eigen::Vector3d& sensor, Reachable&& reachable) {
     while (true) {
@@ -147,8 +147,8 @@ class Planner {
   int views_taken() const { return static_cast<int>(sensors_.size()); }
   /// The merged points, their views, densities and classes.
   const DensityMap<float>& map() const { return map_; }
-  const Cloud& cloud() const { return map_.cloud(); }
-  const Parameters& parameters() const { return params_; }
+  const Cloud& cloud() const { return map_.cloud(); }        ///< the points merged so far
+  const Parameters& parameters() const { return params_; }  ///< as given
   /// Frontiers that have been given up: they count as outliers from then on. Ascending.
   Indices given_up() const {
     Indices out;

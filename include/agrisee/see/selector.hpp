@@ -14,6 +14,8 @@ namespace agrisee::see {
 /// First the neighbours in the graph of the view nearest to the sensor: those that see its frontier, or whose frontier
 /// it sees, and itself. Then all others. Both by falling number of frontiers seen per metre moved; ties by position.
 /// View i is the one proposed for frontier i.
+/// @param views proposals
+/// @param graph which proposals see which frontiers
 /// @param sensor its present position (m)
 /// @param least_move moves shorter than this (m, > 0) count as this long
 /// @throws InputError when the graph has not one node a view

@@ -11,7 +11,7 @@ namespace agrisee::see {
 
 /// `sees[i]`: the frontiers, by their position in the list given, that view i sees; ascending.
 struct VisibilityGraph {
-  std::vector<Indices> sees;
+  std::vector<Indices> sees;  ///< of each view, the frontiers that it sees
 
   /// True when view i sees the frontier j.
   bool edge(std::size_t i, std::size_t j) const {
@@ -34,6 +34,10 @@ bool sees(const Search& search, const ViewProposal& view, const Frontier& f, con
 /// Test every view against every frontier.
 /// @param search a search with `count(q, r, cap)` of scalar S over the merged cloud; @param bounds a box that holds the
 /// cloud
+/// @param views the proposals
+/// @param frontiers that are to be seen
+/// @param params see their struct
+/// @param threads the result does not depend on it
 template <typename S, typename Search>
 VisibilityGraph visibility_graph(const Search& search, const std::vector<ViewProposal>& views,
                                  const std::vector<Frontier>& frontiers, const Parameters& params, const Aabb& bounds,

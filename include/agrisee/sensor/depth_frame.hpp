@@ -9,9 +9,10 @@ namespace agrisee::sensor {
 
 /// A depth image in the optical frame (z forward, x right, y down).
 struct DepthFrame {
-  Intrinsics intrinsics;
+  Intrinsics intrinsics;     ///< of the image
   std::vector<float> depth;  ///< z (m) of each pixel, row by row; 0, negative or not finite = no return
 
+  /// Depth z (m) of column u of row v.
   float at(int u, int v) const {
     return depth[static_cast<std::size_t>(v) * static_cast<std::size_t>(intrinsics.width) + static_cast<std::size_t>(u)];
   }

@@ -18,13 +18,14 @@ namespace agrisee::sensor {
 
 /// Which noise a simulated sensor has.
 struct NoiseModel {
+  /// Its kind.
   enum class Kind {
     none,      ///< the truth
     gaussian,  ///< independent along the ray, standard deviation `sigma`
     l515,      ///< fits the sensor's published figures (2.5 mm at 1 m, 15.5 mm at 9 m)
     rough      ///< a harder sensor: correlated noise, range bias, many flying pixels, a wrong pose
   };
-  Kind kind = Kind::none;
+  Kind kind = Kind::none;  ///< which
   double sigma = 0.0;  ///< m; of `gaussian` alone
 
   /// @throws ParameterError
@@ -130,9 +131,14 @@ inline Pose reported_pose(const Pose& world_T_optical, const NoiseModel& model, 
 /// A pixel at a depth edge (its depth z differs by more than the limit from that of one of its four neighbours) flies
 /// with the share given: its range is then uniform between the two surfaces, and whether it returns does not depend on
 /// incidence, as its beam falls on both. All others are lost by their incidence. Noise and bias come on top.
+/// @param intrinsics of the camera
 /// @param range        true range of each pixel (m), row by row; 0 = nothing is met
 /// @param incidence    angle between ray and surface normal where something is met (rad)
 /// @param max_incidence returns beyond it are always lost (rad)
+/// @param model of the noise
+/// @param seed names the random draws, with `view`
+/// @param view number of the view
+/// @param threads the result does not depend on it
 /// @return as `range`; 0 = no return
 /// @throws InputError when an image is not as large as the intrinsics say
 inline std::vector<float> measured_ranges(const Intrinsics& intrinsics, const std::vector<float>& range,

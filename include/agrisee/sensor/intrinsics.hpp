@@ -14,9 +14,12 @@ namespace agrisee::sensor {
 struct Intrinsics {
   int width = 0;                     ///< pixels
   int height = 0;                    ///< pixels
-  double fx = 0.0, fy = 0.0;         ///< focal lengths, pixels
-  double cx = 0.0, cy = 0.0;         ///< principal point, pixels
+  double fx = 0.0;                   ///< focal length along u, pixels
+  double fy = 0.0;                   ///< along v
+  double cx = 0.0;                   ///< principal point, pixels
+  double cy = 0.0;                   ///< its row
 
+  /// Number of pixels.
   std::size_t size() const { return static_cast<std::size_t>(width) * static_cast<std::size_t>(height); }
   /// Point on the ray of a pixel at z = 1 in the optical frame (z forward, x right, y down).
   Eigen::Vector3d ray(double u, double v) const { return {(u - cx) / fx, (v - cy) / fy, 1.0}; }

@@ -13,7 +13,7 @@ namespace agrisee::sensor {
 /// An L515: 1024 x 768 pixels over 70 x 55 degrees, 0.25 to 9 m (published figures), surfaces seen below 80 degrees of
 /// incidence.
 struct L515 {
-  Intrinsics intrinsics = intrinsics_from_fov(1024, 768, deg(70), deg(55));
+  Intrinsics intrinsics = intrinsics_from_fov(1024, 768, deg(70), deg(55));  ///< of the depth image
   double range_min = 0.25;         ///< shortest distance along the ray (m)
   double range_max = 9.0;          ///< longest distance along the ray (m)
   double max_incidence = deg(80);  ///< largest angle between ray and surface normal that still returns (rad)
@@ -36,6 +36,10 @@ struct Capture {
 
 /// Look at a scene from `world_T_optical` (the true pose). A surface nearer than `range_min` hides what is behind it
 /// and returns nothing; a measured range outside of the limits is no return either.
+/// @param scene what is seen
+/// @param sensor camera and range
+/// @param world_T_optical true pose of the sensor
+/// @param noise model of the noise
 /// @param seed, view name the random draws: the same pair gives the same frame, other pairs give independent ones
 /// @param threads    the result does not depend on it
 /// @throws ParameterError for unusable limits or noise, InputError for an unusable camera

@@ -204,6 +204,8 @@ class TileTracer {
 ///
 /// Pixel (u, v) gets what `scene.bvh().closest(eye, ray_direction(...), 0, range_max)` finds, unless that is nearer
 /// than `range_min`: such a surface hides what is behind it without being seen.
+/// @param scene what is seen
+/// @param intrinsics of the camera
 /// @param world_T_optical pose of the optical frame (z forward, x right, y down); the eye is rounded to single
 /// precision
 /// @param range_min, range_max limits along the ray (m), 0 <= range_min <= range_max

@@ -38,6 +38,7 @@ struct SurfaceParameters {
     check_parameter(smallest_radius > 0, "surface.smallest_radius", "positive", smallest_radius);
     check_parameter(max_incidence > 0 && max_incidence < kPi / 2, "surface.max_incidence", "in (0, pi/2)", max_incidence);
   }
+  /// f(name, field) for every field.
   template <typename P, typename F>
   static void fields(P& p, F&& f) {
     f("spacing", p.spacing);
@@ -52,7 +53,7 @@ struct SurfaceParameters {
 /// The surface seen in one frame: samples of it, and an image of cells with their raw depths.
 struct SurfaceImage {
   Intrinsics intrinsics;                   ///< of the cells: pixel (u, v) is cell (u, v)
-  Pose world_T_optical = Pose::Identity();
+  Pose world_T_optical = Pose::Identity();  ///< of the sensor
   std::vector<float> depth;                ///< raw depth z of each cell (m), 0 = no return; inside the volume and out
   std::vector<Eigen::Vector3f> points;     ///< surface points (m, world), in the order of the cells
   std::vector<Eigen::Vector3f> normals;    ///< their unit normals, towards the sensor (world)
@@ -111,7 +112,11 @@ struct Patch {
 ///
 /// Pixels outside the volume, invalid ones, and cells without support are left out of `points`; `depth` keeps what lies
 /// outside too, as evidence of free space.
+/// @param frame as measured
 /// @param world_T_optical pose of the sensor when the frame was taken
+/// @param volume what lies outside is left out (world)
+/// @param parameters see their struct
+/// @param threads the result does not depend on it
 /// @throws InputError for a frame whose size disagrees with its intrinsics or a pose that is not rigid; ParameterError
 inline SurfaceImage reconstruct_surface(const DepthFrame& frame, const Pose& world_T_optical, const Aabb& volume,
                                         const SurfaceParameters& parameters = {}, int threads = 1) {

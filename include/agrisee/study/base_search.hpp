@@ -15,6 +15,7 @@ struct BaseSearchParameters {
   double share = 0.95;             ///< of what can be observed, for which the views are counted
   LimitParameters limit = {1000};  ///< how densely poses are tried at each place: less so than where there is one
 
+  /// The paper searches no place; the defaults.
   static BaseSearchParameters paper() { return {}; }
   /// @throws ParameterError naming the field
   void check() const {
@@ -24,6 +25,7 @@ struct BaseSearchParameters {
     check_parameter(share > 0.0 && share <= 1.0, "share", "in (0, 1]", share);
     limit.check();
   }
+  /// f(name, field) for every field.
   template <typename P, typename F>
   static void fields(P& p, F&& f) {
     f("range", p.range);
@@ -68,6 +70,7 @@ inline bool stands_on(const Workcell& cell, const KeepOut& space) {
 }
 
 /// A workcell whose arm is moved, with all that it stands on (see stands_on); everything else stays.
+/// @param cell as it is
 /// @param shift m, world
 inline Workcell with_base_moved(const Workcell& cell, const Eigen::Vector3d& shift) {
   Workcell out = cell;
@@ -80,6 +83,10 @@ inline Workcell with_base_moved(const Workcell& cell, const Eigen::Vector3d& shi
 /// What the arm could observe from places on a grid around the present one, along world's x and y; z and rotation stay,
 /// the scan volume too. A place is blocked when the base's origin would fall inside a solid that stays. The figures of
 /// the present place are those of `observable` with the same parameters.
+/// @param scene what is seen
+/// @param samples of the fruit's surface
+/// @param cell arm, sensor and spaces to keep out of
+/// @param params see their struct
 /// @param threads  places are shared among them; results do not depend on their number
 /// @return the best first: by observable share, least share of a fruit, nearness to the present place, then x and y;
 /// blocked ones last

@@ -167,8 +167,11 @@ inline void judge_location(const Fruit& found, const TrueFruit& real, const Samp
 
 /// Judge a result. Instances are the positive labels and the positive ids of `result.fruits`; other labels are none.
 /// Instance numbers carry no meaning beyond equality.
+/// @param truth of the scene
 /// @param result     its raw cloud, consolidated cloud, labels, fruit and views are read; any of them may be empty
 /// @param observable one flag a sample of `truth` (see limit.hpp); empty = all of the surface counts as observable
+/// @param params see their struct
+/// @param threads the result does not depend on it
 /// @throws InputError when labels and cloud, or flags and samples, differ in number
 inline Metrics evaluate(const Truth& truth, const ScanResult& result, const Flags& observable = {},
                         const MetricParameters& params = {}, int threads = 1) {

@@ -13,14 +13,22 @@
 
 namespace agrisee::study {
 
+/// A name as that of a file: it names no other folder.
+inline std::string file_name(std::string name) {
+  for (char& c : name)
+    if (c == ':' || c == '/' || c == '\\') c = '-';
+  return name;
+}
+
 /// Which scan. The seed of noise and planner is the trial, so that `agrisee scan --seed TRIAL` repeats it.
 struct Cell {
   std::string scene;  ///< name of the scene
-  std::string preset = "default";
+  std::string preset = "default";  ///< `default` or `paper`
   std::string planner = "gain";  ///< of the preset, or asked for
   std::string noise = "none";    ///< model of the simulated sensor's noise, as in scan --noise
   int trial = 1;                 ///< from 1
 
+  /// f(name, field) for every field.
   template <typename P, typename F>
   static void fields(P& p, F&& f) {
     f("scene", p.scene);
@@ -31,10 +39,7 @@ struct Cell {
   }
   /// Unlike that of any other cell, and fit for a file: scene, preset, planner, noise and trial.
   std::string name() const {
-    std::string text = scene + "__" + preset + "__" + planner + "__" + noise + "__" + std::to_string(trial);
-    for (char& c : text)
-      if (c == ':' || c == '/' || c == '\\') c = '-';
-    return text;
+    return file_name(scene + "__" + preset + "__" + planner + "__" + noise + "__" + std::to_string(trial));
   }
 };
 
@@ -45,6 +50,7 @@ struct StageAlone {
   double object_recall = 0.0;     ///< as in Metrics
   double miou = 0.0;              ///< by surface
 
+  /// f(name, field) for every field.
   template <typename P, typename F>
   static void fields(P& p, F&& f) {
     f("n_det", p.n_det);
@@ -63,6 +69,7 @@ struct LocatedFruit {
   Eigen::Vector3d centroid_cluster = Eigen::Vector3d::Zero();  ///< the same in the cluster frame {R} (m)
   Eigen::Vector3d sigma = Eigen::Vector3d::Zero();             ///< standard deviation of its points per world axis (m)
 
+  /// f(name, field) for every field.
   template <typename P, typename F>
   static void fields(P& p, F&& f) {
     f("id", p.id);
@@ -76,9 +83,10 @@ struct LocatedFruit {
 
 /// A cell and its figures.
 struct CellRecord {
-  Cell cell;
+  Cell cell;                          ///< what was run
   std::string fingerprint;            ///< of scene, parameters and version: a record with another one is out of date
-  int total = 0, hidden = 0;          ///< fruit of the scene, and how many of them are made to be behind others
+  int total = 0;                      ///< fruit of the scene
+  int hidden = 0;                     ///< how many of them are made to be behind others
   std::string stop_reason;            ///< see StopReason
   int views = 0;                      ///< taken
   std::size_t merged = 0;             ///< points of the merged cloud, before SOR
@@ -128,13 +136,17 @@ struct CellRecord {
 struct SceneRecord {
   std::string scene;               ///< name
   std::string fingerprint;         ///< of scene and version
-  int total = 0, hidden = 0;       ///< fruit
+  int total = 0;                   ///< fruit
+  int hidden = 0;                  ///< of them, made to be behind others
   double observable = 0.0;         ///< share of the fruit's surface that the arm can observe
   double observable_least = 0.0;   ///< the same of the fruit of which least can be observed
   double hidden_share_most = 0.0;  ///< largest share of a hidden fruit's surface that is seen from straight in front
-  int views_90 = 0, views_95 = 0, views_98 = 0,
-      views_99 = 0;  ///< of the greedy planner that knows the truth; 0 = never
+  int views_90 = 0;                ///< views of the greedy planner that knows the truth, for 90 %; 0 = never
+  int views_95 = 0;                ///< for 95 %
+  int views_98 = 0;                ///< for 98 %
+  int views_99 = 0;                ///< for 99 %
 
+  /// f(name, field) for every field.
   template <typename P, typename F>
   static void fields(P& p, F&& f) {
     f("scene", p.scene);

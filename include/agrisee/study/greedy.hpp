@@ -26,6 +26,7 @@ struct GreedyOrder {
 };
 
 /// The view that looks at `target` most nearly along `forward` (index in `observed.views`; the first of equals).
+/// @param observed what each view sees of the samples
 /// @param target   m, world
 /// @param forward  world, need not be unit length
 /// @param except   one flag a view: those to pass over; empty = none
@@ -51,6 +52,8 @@ inline std::size_t most_frontal(const Observability& observed, const Eigen::Vect
 /// observable samples near one that it sees. Copies are independent. Cost: some 50 ms to make, below 1 ms to ask.
 class GreedyCover {
  public:
+  /// @param observed what each view sees of the samples
+  /// @param samples of the fruit's surface
   /// @param radius  a sample is covered when an observable one within this distance (m) is seen
   /// @throws InputError when there are views and flags and samples differ in number; ParameterError for a radius that
   /// is not positive
@@ -134,6 +137,8 @@ class GreedyCover {
 };
 
 /// Greedy cover of the observable samples, until nothing is left; equal gains go to the first view.
+/// @param observed what each view sees of the samples
+/// @param samples of the fruit's surface
 /// @param first   the view to begin with, as a scan does (see most_frontal); none = the best
 /// @param radius  a sample is covered when an observable one within this distance (m) is seen
 /// @throws InputError when `first` is no view, or flags and samples differ in number; ParameterError for a radius that
@@ -152,6 +157,9 @@ inline GreedyOrder greedy_order(const Observability& observed, const Samples& sa
 }
 
 /// Greedy cover as a scan of a workcell begins: with the view that looks most frontally at the scan volume's centre.
+/// @param observed what each view sees of the samples
+/// @param samples of the fruit's surface
+/// @param cell arm, sensor and spaces to keep out of
 /// @param radius  see above
 /// @throws InputError as greedy_order() does, and when there are no views; ParameterError for a radius that is not
 /// positive

@@ -13,7 +13,7 @@ namespace agrisee::study {
 
 /// The truth of one fruit. What a mesh alone cannot tell is optional.
 struct TrueFruit {
-  int id = 0;
+  int id = 0;                                        ///< from 1
   Eigen::Vector3d center = Eigen::Vector3d::Zero();  ///< volume centroid (m, world)
   Eigen::Vector3d radii =
       Eigen::Vector3d::Zero();  ///< semi-axes of the ellipsoid of equal second moments, largest first
@@ -26,7 +26,7 @@ struct TrueFruit {
 
 /// The truth of a scene, one entry a fruit in the order of the scene's objects.
 struct GroundTruth {
-  std::vector<TrueFruit> fruits;
+  std::vector<TrueFruit> fruits;  ///< by object
 };
 
 /// The ground truth that the meshes of a scene's fruit tell: see mesh_moments().

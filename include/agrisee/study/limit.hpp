@@ -21,6 +21,7 @@ struct LimitParameters {
   double distance_max = 0.55;   ///< farthest distance from sensor to target (m); every candidate prefers another
   double cover_radius = 0.005;  ///< a sample counts as covered when one within this distance is seen (m)
 
+  /// The paper gives none; the defaults.
   static LimitParameters paper() { return {}; }
   /// @throws ParameterError naming the field
   void check() const {
@@ -32,6 +33,7 @@ struct LimitParameters {
     check_parameter(std::isfinite(cover_radius) && cover_radius > 0.0, "cover_radius", "positive and finite",
                     cover_radius);
   }
+  /// f(name, field) for every field.
   template <typename P, typename F>
   static void fields(P& p, F&& f) {
     f("candidates", p.candidates);
@@ -51,6 +53,7 @@ struct Observability {
   std::vector<Bits> seen;  ///< the samples that each of them sees
   Flags observable;        ///< one a sample: seen by any; empty when there are no views
 
+  /// Whether a view sees a sample.
   bool sees(std::size_t view, std::size_t sample) const { return (seen[view][sample / 64] >> (sample % 64)) & 1U; }
 };
 
@@ -60,6 +63,8 @@ struct Observability {
 /// @param reach    called from several threads at once when `threads` > 1
 /// @param current  joints that the arm comes from (rad)
 /// @param box      what to look at (m)
+/// @param params see their struct
+/// @param threads the result does not depend on it
 /// @throws InputError for an empty box; ParameterError for unusable parameters
 inline std::vector<plan::ReachableView> reachable_views(const plan::Reach& reach, const Joints& current,
                                                         const Aabb& box, const LimitParameters& params = {},

@@ -19,6 +19,7 @@ struct MetricParameters {
   double strict = 0.002;     ///< threshold of the second, stricter precision (m)
   double min_iou = 0.5;      ///< surface IoU from which a detection is true
 
+  /// The paper's values.
   static MetricParameters paper() { return {}; }
   /// @throws ParameterError naming the field
   void check() const {
@@ -26,6 +27,7 @@ struct MetricParameters {
     check_parameter(std::isfinite(strict) && strict > 0.0, "strict", "positive and finite", strict);
     check_parameter(min_iou > 0.0 && min_iou <= 1.0, "min_iou", "in (0, 1]", min_iou);
   }
+  /// f(name, field) for every field.
   template <typename P, typename F>
   static void fields(P& p, F&& f) {
     f("threshold", p.threshold);
@@ -44,7 +46,10 @@ struct Truth {
   sensor::L515 sensor;            ///< what views were taken with
 };
 
+/// @param scene what is seen
 /// @param known the ground truth where more is known than the meshes tell (growth axes, hidden fruit)
+/// @param sensor of the robot
+/// @param params see their struct
 /// @throws InputError when `known` does not list the scene's fruit in its order, and as ground_truth() does
 inline Truth make_truth(const Scene& scene, const std::optional<GroundTruth>& known = std::nullopt,
                         const sensor::L515& sensor = {}, const SampleParameters& params = {}) {
@@ -68,7 +73,7 @@ inline Truth make_truth(const Scene& scene, const std::optional<GroundTruth>& kn
 /// How well one fruit was found. Errors are present where the fruit has been matched to an instance that tells the
 /// quantity.
 struct FruitMetrics {
-  int id = 0;
+  int id = 0;                                 ///< of the scene's fruit
   int instance = 0;                           ///< the matched instance; 0 = none
   bool detected = false;                      ///< matched with a surface IoU of at least min_iou
   double surface_iou = 0.0;                   ///< with the matched instance
@@ -85,6 +90,7 @@ struct FruitMetrics {
   std::optional<double> axis_error;           ///< angle between the pose's z axis and the true growth axis (rad)
   std::optional<double> completeness_error;   ///< signed: the body's completeness minus `scanned`
 
+  /// f(name, field) for every field.
   template <typename P, typename F>
   static void fields(P& p, F&& f) {
     f("id", p.id);
@@ -158,6 +164,7 @@ struct ErrorSummary {
   double worst = 0.0;  ///< largest magnitude
   int count = 0;       ///< fruit that have it
 };
+/// Of one error over the fruit that have it.
 inline ErrorSummary summarize(const Metrics& metrics, std::optional<double> FruitMetrics::*error) {
   ErrorSummary s;
   for (const FruitMetrics& fruit : metrics.fruits) {

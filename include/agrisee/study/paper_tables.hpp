@@ -14,9 +14,11 @@ namespace agrisee::study {
 
 /// A row of the paper's table "Analysis of AgriSEE scanning and SOR filtering".
 struct PaperScanning {
-  int total, hidden;     ///< fruit, and how many of them are hidden
+  int total;             ///< fruit
+  int hidden;            ///< how many of them are hidden
   int views;             ///< taken
-  int merged, filtered;  ///< points before and after SOR
+  int merged;            ///< points before SOR
+  int filtered;          ///< and after
   double seconds;        ///< computation time
   double scanned;        ///< scanned percentage (%)
   double precision;      ///< %
@@ -26,7 +28,8 @@ struct PaperScanning {
 
 /// A row of the paper's table "RG and DBSCAN Evaluation".
 struct PaperSegmentation {
-  int total, hidden;        ///< fruit, and how many of them are hidden
+  int total;                ///< fruit
+  int hidden;               ///< how many of them are hidden
   int n_real;               ///< "real tomatoes"; the first row says 6 where it has 5
   int n_det;                ///< detected
   int counting_error;       ///< CE
@@ -72,7 +75,8 @@ constexpr std::array<PaperSegmentation, 11> kPaperSegmentation{{{5, 1, 6, 6, 0, 
                                                                 {9, 4, 9, 7, 2, 100.0, 77.8, 77.6}}};
 
 /// The truss that the localisation table shows, and that the text's example of the residual seems to be.
-constexpr int kPaperLocalizationTotal = 7, kPaperLocalizationHidden = 1;
+constexpr int kPaperLocalizationTotal = 7;
+constexpr int kPaperLocalizationHidden = 1;  ///< of these fruit, behind the others
 
 /// The localisation table.
 constexpr std::array<PaperLocalization, 7> kPaperLocalization{
@@ -97,6 +101,7 @@ struct PaperText {
   int residual_grown = 2632;           ///< text: of them in the seven clusters of region growing
   int residual_per_instance = 439;     ///< text: points an instance, "approximately"
 };
+/// What it says.
 constexpr PaperText kPaperText{};
 
 /// The row of a table for a truss of `total` fruit of which `hidden` are hidden; null where the paper has none.

@@ -14,14 +14,19 @@ namespace agrisee::study {
 
 /// A scene, ready for any number of cells: what it looks like, what is true of it, what can be seen of it.
 struct Subject {
-  std::string name;
+  std::string name;         ///< of the scene
   std::string fingerprint;  ///< of the scene and whatever else its records depend on
-  Workcell workcell;
-  std::shared_ptr<const Truth> truth;
-  std::shared_ptr<const Observability> observability;
+  Workcell workcell;        ///< of the scene
+  std::shared_ptr<const Truth> truth;                  ///< what evaluation reads
+  std::shared_ptr<const Observability> observability;  ///< what the arm can see
 };
 
+/// @param name of the scene
+/// @param fingerprint of whatever its records depend on
+/// @param scene its objects
+/// @param workcell of the scene
 /// @param known the ground truth where more is known than the meshes tell
+/// @param threads the result does not depend on it
 /// @throws InputError as make_truth() does
 inline Subject make_subject(std::string name, std::string fingerprint, const Scene& scene, const Workcell& workcell,
                             const std::optional<GroundTruth>& known, int threads = 1) {
@@ -102,7 +107,10 @@ inline std::unique_ptr<plan::Planner> study_planner(const Subject& subject, cons
 }
 
 /// Scan a subject and judge the scan.
+/// @param subject the scene
+/// @param cell what is run
 /// @param parameters of the cell's preset; the planner is the cell's
+/// @param threads the result does not depend on it
 /// @throws ParameterError for an unknown planner or noise; InputError as the scan does
 inline CellRecord run_cell(const Subject& subject, const Cell& cell, Parameters parameters, int threads = 1) {
   const Truth& truth = *subject.truth;

@@ -17,6 +17,7 @@ struct Samples {
   std::vector<Eigen::Vector3f> normals;  ///< unit, of the triangle, out of the fruit
   std::vector<int> fruit;                ///< id of the fruit that a sample lies on
 
+  /// Number of samples.
   std::size_t size() const { return points.size(); }
 };
 
@@ -25,9 +26,11 @@ struct SampleParameters {
   double area = 1e-5;      ///< surface that one sample stands for (m2)
   std::uint64_t seed = 1;  ///< each fruit draws from its own stream, by its id
 
+  /// The paper gives none; the defaults.
   static SampleParameters paper() { return {}; }
   /// @throws ParameterError naming the field
   void check() const { check_parameter(std::isfinite(area) && area > 0.0, "area", "positive and finite", area); }
+  /// f(name, field) for every field.
   template <typename P, typename F>
   static void fields(P& p, F&& f) {
     f("area", p.area);
@@ -38,7 +41,10 @@ struct SampleParameters {
 /// Append round(area / params.area) samples (at least one) of a mesh: its surface, laid out triangle after triangle, is
 /// cut into equal shares and each share gives one point, uniform within it (stratified sampling). Degenerate triangles
 /// get none.
+/// @param samples receives them
+/// @param mesh of the fruit (m)
 /// @param id names the samples' fruit and selects the random stream
+/// @param params see their struct
 /// @throws InputError as mesh_moments() does
 inline void append_samples(Samples& samples, const Mesh& mesh, int id, const SampleParameters& params = {}) {
   params.check();

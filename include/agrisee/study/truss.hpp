@@ -18,7 +18,8 @@ struct Truss {
 };
 
 /// What makes a fruit hidden or not, as a share of its surface seen from straight in front (any incidence).
-constexpr double kHiddenBelow = 0.15, kVisibleAbove = 0.27;
+constexpr double kHiddenBelow = 0.15;
+constexpr double kVisibleAbove = 0.27;  ///< what is not hidden shows at least this share
 
 /// The sensor position from which fruit count as hidden or not: 0.38 m straight in front of the middle of the truss,
 /// reachable or not (m, world).

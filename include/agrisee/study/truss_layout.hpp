@@ -21,6 +21,7 @@ struct TrussParameters {
   int leaflets = 0;                               ///< number of leaflets, 0 to 6
   Eigen::Vector3d center = {0.015, 0.545, 0.21};  ///< middle of the truss (m, world)
 
+  /// The paper's trusses; the defaults.
   static TrussParameters paper() { return {}; }
   /// @throws ParameterError naming the field
   void check() const {
@@ -33,6 +34,7 @@ struct TrussParameters {
     check_parameter(leaflets >= 0 && leaflets <= 6, "leaflets", "0 to 6", leaflets);
     check_parameter(center.allFinite(), "center", "finite", center.x());
   }
+  /// f(name, field) for every field.
   template <typename P, typename F>
   static void fields(P& p, F&& f) {
     f("total", p.total);
@@ -48,11 +50,12 @@ struct TrussParameters {
 
 /// A fruit in its place.
 struct PlacedFruit {
-  FruitShape shape;
+  FruitShape shape;                      ///< of its surface
   Pose world_T_body = Pose::Identity();  ///< z is the growth axis
-  bool hidden = false;
+  bool hidden = false;                   ///< hangs behind the others
   std::vector<Eigen::Vector3d> surface;  ///< points all over its surface (m, relative to its origin, world axes)
 
+  /// M, world.
   Eigen::Vector3d center() const { return world_T_body.translation(); }
   /// Depth (m) of a world point below the surface, along the radius; negative outside.
   double depth(const Eigen::Vector3d& p) const {
@@ -86,7 +89,7 @@ struct TrussLayout {
   std::vector<PlacedFruit> fruits;      ///< those in front from top to bottom, then the hidden ones
   std::vector<int> hosts;               ///< for each hidden fruit the one it hides behind
   std::vector<Eigen::Vector3d> rachis;  ///< polyline from top to bottom
-  double rachis_radius = 0.0025;
+  double rachis_radius = 0.0025;        ///< m
   Eigen::Vector3d eye = Eigen::Vector3d::Zero();  ///< where the hidden fruit must not be seen from (m)
 
   /// Largest interpenetration of any two fruit (m); negative when all are apart.

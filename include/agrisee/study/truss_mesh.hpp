@@ -38,6 +38,7 @@ struct FruitShape {
 };
 
 /// A closed mesh of a fruit in its body frame: 2 slices (stacks - 1) triangles, 2,976 of them by default.
+/// @param shape of the fruit
 /// @param slices meridians, >= 3  @param stacks parallels plus one, >= 2
 /// @throws ParameterError for fewer slices or stacks
 inline Mesh fruit_mesh(const FruitShape& shape, int slices = 48, int stacks = 32) {
@@ -76,6 +77,8 @@ inline Mesh fruit_mesh(const FruitShape& shape, int slices = 48, int stacks = 32
 /// A closed tube with flat ends around a polyline, its radius growing linearly from `radius_begin` to `radius_end` (m).
 /// The cross-section is carried along without twist. Repeated points of the polyline are dropped.
 /// @param path at least two different points (m)  @param sides corners of the cross-section, >= 3
+/// @param radius_begin at the first point (m)
+/// @param radius_end at the last (m)
 /// @throws InputError when fewer than two different points are left
 inline Mesh tube_mesh(const std::vector<Eigen::Vector3d>& path, double radius_begin, double radius_end,
                       int sides = 10) {

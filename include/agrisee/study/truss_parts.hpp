@@ -83,7 +83,9 @@ inline Mesh stem_mesh(const TrussLayout& layout, Rng& rng) {
 }
 
 /// A leaflet on its stalk, from anywhere along the upper part of the rachis, in any direction that is free.
+/// @param layout of the truss
 /// @param size a fruit's radius, which the leaflet is scaled by (m)
+/// @param rng shapes the leaflet
 inline Mesh leaflet_mesh(const TrussLayout& layout, double size, Rng& rng) {
   Mesh best;
   double least = std::numeric_limits<double>::infinity();

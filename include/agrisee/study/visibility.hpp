@@ -26,7 +26,11 @@ inline bool unobstructed(const Bvh& bvh, const Eigen::Vector3f& p, const Eigen::
 }
 
 /// Samples that are seen from `eye`, whatever the field of view.
+/// @param scene what is seen
+/// @param samples of the fruit's surface
+/// @param eye where from (m, world)
 /// @param max_incidence largest angle between the line of sight and the normal (rad)
+/// @param threads the result does not depend on it
 inline Flags visible_from(const TracedScene& scene, const Samples& samples, const Eigen::Vector3d& eye,
                           double max_incidence = 0.5 * kPi, int threads = 1) {
   Flags seen(samples.size(), 0);
@@ -89,7 +93,7 @@ inline double share(const Samples& samples, const Flags& flags) {
 
 /// What can be observed of one fruit.
 struct FruitShare {
-  int id = 0;
+  int id = 0;               ///< of the scene's fruit
   std::size_t samples = 0;  ///< of its surface
   double observable = 0.0;  ///< share of them
 };

@@ -33,7 +33,7 @@ const reachable = data.fruits.filter((f) => f.reachable).length;
 const facts = [[fixed(data.fruits.length), 'fruit'], [fixed(run.points.filtered), 'points'], [seconds(run.seconds.total), 'of computing']];
 if (n) facts.splice(1, 0, [fixed(n), n === 1 ? 'view' : 'views']);
 if (data.fruits.some((f) => f.picking_order !== undefined)) facts.splice(1, 0, [fixed(reachable), 'within reach']);
-if (run.stop_reason !== 'not_stopped') facts.push([words(run.stop_reason), 'ended the scan']);
+if (run.stop_reason !== 'not_stopped') facts.push([run.stop_reason === 'max_views' ? 'view budget' : words(run.stop_reason), 'ended the scan']);
 $('summary').append(...facts.map(([value, what]) => el('div', {}, el('dt', {}, what), el('dd', {}, value))));
 
 const table = makeFruitTable(data, { table: $('fruits'), none: $('no-fruit'), detail: $('detail') }, on);

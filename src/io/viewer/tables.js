@@ -54,12 +54,12 @@ export function makeFruitTable(data, nodes, on) {
       ['Found by', `${words(f.found_by)}, ${plural(f.points, 'point', 'points')}`],
       ['Centroid, world', list(f.centroid_world, (v) => mm(v)) + ' mm'],
       ['Centroid, cluster', list(f.centroid_cluster, (v) => mm(v)) + ' mm'],
-      ['Orientation', list(f.orientation_world, (v) => fixed(v, 4)) + ' (x y z w)'],
+      ['Orientation', list(f.orientation_world, (v) => fixed(v, 4)) + '\u2002(x\u00a0y\u00a0z\u00a0w)'],
     ];
     if (f.radii) {
       const sigma = f.center_covariance_world && [0, 1, 2].map((a) => Math.sqrt(Math.max(0, f.center_covariance_world[a][a])));
       entries.push(['Body centre', list(f.center_world, (v) => mm(v)) + ' mm'], ['Standard error', list(sigma, (v) => mm(v, 2)) + ' mm'],
-        ['Semi-axes', list(f.radii, (v) => mm(v)) + ' mm'], ['Body axes', list(f.body_orientation_world, (v) => fixed(v, 4)) + ' (x y z w)'],
+        ['Semi-axes', list(f.radii, (v) => mm(v)) + ' mm'], ['Body axes', list(f.body_orientation_world, (v) => fixed(v, 4)) + '\u2002(x\u00a0y\u00a0z\u00a0w)'],
         ['Fit', `${mm(f.rms, 2)} mm root mean square`], ['Volume', error(fixed(1e6 * f.volume, 1), 1e6 * f.volume_error, 'ml')],
         ['Mass', error(fixed(1000 * f.mass, 1), 1000 * f.mass_error, 'g')], ['Seen, confidence', `${percent(f.completeness)}, ${percent(f.confidence)}`]);
     }
@@ -68,7 +68,7 @@ export function makeFruitTable(data, nodes, on) {
       entries.push(['Picking', `number ${f.picking_order}${after}: ${picking(f)[1]}`]);
       if (f.pre_grasp_position_world)
         entries.push(['Approach', list(f.approach_direction_world, (v) => fixed(v, 3))], ['Pre-grasp position', list(f.pre_grasp_position_world, (v) => mm(v)) + ' mm'],
-          ['Pre-grasp rotation', list(f.pre_grasp_orientation_world, (v) => fixed(v, 4)) + ' (x y z w)']);
+          ['Pre-grasp rotation', list(f.pre_grasp_orientation_world, (v) => fixed(v, 4)) + '\u2002(x\u00a0y\u00a0z\u00a0w)']);
       if (f.pre_grasp_joints) entries.push(['Pre-grasp joints', list(f.pre_grasp_joints, (v) => fixed((v * 180) / Math.PI, 1)) + ' \u00b0']);
     }
     nodes.detail.style.setProperty('--c', data.colors[f.id]);

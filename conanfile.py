@@ -1,0 +1,68 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Conan 2 recipe: conan create . [-o "&:io=False"]"""
+import os
+import re
+
+from conan import ConanFile
+from conan.tools.cmake import CMake, CMakeDeps, CMakeToolchain, cmake_layout
+from conan.tools.files import copy, load
+
+
+class AgriseeConan(ConanFile):
+    name = "agrisee"
+    description = "Active perception for harvesting robots: look, clean, split, locate"
+    license = "BSD-3-Clause"
+    package_type = "static-library"
+    settings = "os", "arch", "compiler", "build_type"
+    options = {"io": [True, False]}
+    default_options = {"io": True}
+    exports = "include/agrisee/version.hpp"
+    exports_sources = "CMakeLists.txt", "LICENSE", "cmake/*", "include/*", "src/*", "!*/node_modules/*"
+
+    def set_version(self):
+        header = load(self, os.path.join(self.recipe_folder, "include/agrisee/version.hpp"))
+        self.version = re.search(r'AGRISEE_VERSION "([^"]+)"', header).group(1)
+
+    def requirements(self):
+        self.requires("eigen/3.4.0", transitive_headers=True)
+        self.requires("nanoflann/1.5.2", transitive_headers=True)
+        if self.options.io:
+            self.requires("yaml-cpp/0.8.0")
+            self.requires("nlohmann_json/3.11.3")
+            self.requires("stb/cci.20230920")
+
+    def layout(self):
+        cmake_layout(self)
+
+    def generate(self):
+        CMakeDeps(self).generate()
+        toolchain = CMakeToolchain(self)
+        toolchain.cache_variables["AGRISEE_BUILD_IO"] = bool(self.options.io)
+        for part in ("CLI", "TESTS", "EXAMPLES"):
+            toolchain.cache_variables["AGRISEE_BUILD_" + part] = False
+        toolchain.generate()
+
+    def build(self):
+        cmake = CMake(self)
+        cmake.configure()
+        cmake.build()
+
+    def package(self):
+        CMake(self).install()
+        copy(self, "LICENSE", self.source_folder, os.path.join(self.package_folder, "licenses"))
+
+    def package_info(self):
+        self.cpp_info.set_property("cmake_file_name", "agrisee")
+        core = self.cpp_info.components["core"]
+        core.set_property("cmake_target_name", "agrisee::agrisee")
+        core.set_property("pkg_config_name", "agrisee")
+        core.requires = ["eigen::eigen", "nanoflann::nanoflann"]
+        core.libs = []
+        if self.settings.os in ("Linux", "FreeBSD"):
+            core.system_libs = ["pthread"]
+        if self.options.io:
+            io = self.cpp_info.components["io"]
+            io.set_property("cmake_target_name", "agrisee::io")
+            io.set_property("pkg_config_name", "agrisee-io")
+            io.libs = ["agrisee_io"]
+            io.requires = ["core", "yaml-cpp::yaml-cpp", "nlohmann_json::nlohmann_json", "stb::stb"]

@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// @file
+/// Sorts points by cell in time linear in their number: least significant digits first, 11 bits a pass.
+#pragma once
+
+#include <agrisee/core/types.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <vector>
+
+namespace agrisee {
+
+/// An index and what it is sorted by.
+struct Keyed {
+  std::uint64_t key;  ///< what is sorted by
+  Index index;        ///< what is sorted
+};
+
+/// Sort by key; equal keys keep their order. Cost O(n) a pass, one pass for each 11 bits of the largest key.
+inline void radix_sort(std::vector<Keyed>& items) {
+  constexpr unsigned kBits = 11;
+  constexpr std::uint64_t kMask = (1u << kBits) - 1;
+  std::uint64_t largest = 0;
+  for (const Keyed& item : items) largest = std::max(largest, item.key);
+  std::vector<Keyed> sorted(items.size());
+  std::array<std::size_t, kMask + 1> starts;
+  for (unsigned shift = 0; shift < 64 && largest >> shift != 0; shift += kBits) {
+    starts.fill(0);
+    for (const Keyed& item : items) ++starts[item.key >> shift & kMask];
+    std::size_t sum = 0;
+    for (std::size_t& start : starts) {
+      const std::size_t n = start;
+      start = sum;
+      sum += n;
+    }
+    for (const Keyed& item : items) sorted[starts[item.key >> shift & kMask]++] = item;
+    items.swap(sorted);
+  }
+}
+
+}  // namespace agrisee

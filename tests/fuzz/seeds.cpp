@@ -1,0 +1,172 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "seeds.hpp"
+
+#include <agrisee/io/files.hpp>
+#include <agrisee/io/mesh_file.hpp>
+#include <agrisee/io/parameters.hpp>
+#include <agrisee/io/ply.hpp>
+#include <agrisee/io/results.hpp>
+#include <agrisee/io/scan_record.hpp>
+#include <agrisee/io/scene.hpp>
+
+#include <cstring>
+
+#include "targets.hpp"
+
+namespace agrisee::fuzz {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string bytes_of(const fs::path& path) { return std::string(io::read_bytes(path).view()); }
+
+template <typename T>
+void put(std::string& out, std::initializer_list<T> values) {
+  for (const T value : values) out.append(reinterpret_cast<const char*>(&value), sizeof value);
+}
+
+Cloud seed_cloud() {
+  Cloud cloud;
+  for (int i = 0; i < 3; ++i) {
+    cloud.points.emplace_back(0.1f * float(i), 0.5f, -0.25f);
+    cloud.normals.emplace_back(0.0f, 0.0f, 1.0f);
+    cloud.views.push_back(i);
+  }
+  return cloud;
+}
+
+std::string pcd_header(const char* data) {
+  return std::string("# .PCD v0.7\nVERSION 0.7\nFIELDS x y z label\nSIZE 4 4 4 4\nTYPE F F F U\nCOUNT 1 1 1 1\nWIDTH 2\n"
+                     "HEIGHT 1\nVIEWPOINT 0 0 0 1 0 0 0\nPOINTS 2\nDATA ") +
+         data + "\n";
+}
+
+std::vector<View> seed_views() {
+  View view;
+  view.target = {0.0, 0.0, 0.4};
+  view.joints = Joints::Zero();
+  view.points_in = 7;
+  return {view, View{}};
+}
+
+Fruit seed_fruit() {
+  Fruit fruit;
+  fruit.id = 1;
+  fruit.points = 100;
+  fruit.found_by = "dbscan";
+  fruit.body = Body{};
+  fruit.body->radii = {0.03, 0.03, 0.02};
+  fruit.picking = Picking{};
+  fruit.picking->order = 1;
+  return fruit;
+}
+
+void add_clouds(std::vector<Seed>& seeds, const fs::path& folder) {
+  const Cloud cloud = seed_cloud();
+  io::write_ply(folder / "cloud", cloud, {0, 1, 2});
+  io::write_raw_ply(folder / "raw", cloud);
+  io::write_ply_mesh(folder / "mesh", seed_mesh());
+  for (const char* name : {"cloud", "raw", "mesh"}) seeds.push_back({"ply", name, bytes_of(folder / name)});
+  std::string big = "ply\nformat binary_big_endian 1.0\nelement vertex 1\nproperty double x\nproperty short y\n"
+                    "property uchar z\nproperty list uchar int more\nend_header\n";
+  big += std::string("\x3f\xf0\0\0\0\0\0\0", 8) + std::string("\1\2\7\1\0\0\0\5", 8);
+  seeds.push_back({"ply", "big_endian", big});
+  seeds.push_back({"ply", "ascii",
+                   "ply\nformat ascii 1.0\ncomment c\nobj_info o\nelement vertex 3\nproperty float x\nproperty float y\n"
+                   "property float z\nproperty int label\nelement face 1\nproperty list uchar int vertex_indices\n"
+                   "end_header\n0 0 0 1\n1 nan 0 2\n0 1e-3 0 -1\n3 0 1 2\n"});
+
+  seeds.push_back({"pcd", "ascii", pcd_header("ascii") + "1 2 3 4\nnan 1e5 -0.5 0\n"});
+  std::string binary;
+  put<float>(binary, {1.0f, 2.0f, 3.0f});
+  put<std::uint32_t>(binary, {4});
+  put<float>(binary, {5.0f, 6.0f, 7.0f});
+  put<std::uint32_t>(binary, {8});
+  seeds.push_back({"pcd", "binary", pcd_header("binary") + binary});
+  std::string compressed;  // one literal run of 32 bytes
+  put<std::uint32_t>(compressed, {33, 32});
+  compressed += '\x1f' + binary;
+  seeds.push_back({"pcd", "compressed", pcd_header("binary_compressed") + compressed});
+  std::string repeated;  // 1 literal byte, then copies of it: 2 + 7 + 2, and 22 - 9 + 2 more
+  put<std::uint32_t>(repeated, {7, 32});
+  repeated += std::string("\0\0\xe0\x0d\0\x80\0", 7);
+  seeds.push_back({"pcd", "copies", pcd_header("binary_compressed") + repeated});
+}
+
+void add_meshes(std::vector<Seed>& seeds, const fs::path& folder) {
+  io::write_stl(folder / "stl", seed_mesh());
+  seeds.push_back({"stl", "binary", bytes_of(folder / "stl")});
+  seeds.push_back({"stl", "ascii",
+                   "solid s\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1e-2 0\nendloop\n"
+                   "endfacet\nendsolid s\n"});
+  seeds.push_back({"obj", "plain",
+                   "# c\nmtllib m\no t\nv 0 0 0\nv 1 0 0 1\nv 0 1 0\nv 0 0 -1e-2\nvt 0 0\nvn 0 0 1\ns off\nf 1 2 3\n"
+                   "f 1/1 2/1 -1/1\nf 1//1 3//1 4//1 2//1\nf 1/1/1 2/1/1 3/1/1\n"});
+}
+
+void add_texts(std::vector<Seed>& seeds, const fs::path& folder) {
+  io::SceneFile scene;
+  scene.workcell.name = "seed";
+  scene.workcell.scan_volume.extend(Eigen::Vector3d(-0.1, 0.4, 0.0));
+  scene.workcell.scan_volume.extend(Eigen::Vector3d(0.1, 0.6, 0.3));
+  scene.workcell.keep_out.push_back({"box", Box{{0, 0, -1}, {1, 1, 1}}});
+  scene.workcell.keep_out.push_back({"post", Cylinder{{0, 1, 0}, 0.1, 1.0}});
+  scene.scene.objects.push_back({1, ObjectClass::fruit, seed_mesh()});
+  io::write_scene(folder / "scene.yaml", scene);
+  seeds.push_back({"scene", "written", bytes_of(folder / "scene.yaml")});
+  seeds.push_back({"scene", "moved",
+                   "name: a\nrobot:\n  base: {xyz: [0, 0, 0], rpy: [0, 0, 0.5]}\nscan_volume: {min: [0, 0, 0], max: [1, 1, 1]}\n"
+                   "objects:\n  - &o {id: 1, class: fruit, mesh: fruit_1.stl, xyz: [1, 2, 3], rpy: [0, 0, 0.4], scale: 2}\n"
+                   "  - {id: 0, class: leaf, mesh: ./fruit_1.stl}\n"});
+
+  for (const char* preset : {"default", "paper"})
+    seeds.push_back({"parameters", preset, io::parameters_to_yaml(Parameters::named(preset))});
+  seeds.push_back({"parameters", "few", "preset: paper\nmax_views: 3\nsor: {mean_k: 12, std_ratio: 1.5}\nicp:\n  kernel: huber\n"});
+
+  io::ScanTask task;
+  task.scene = "/s.yaml";
+  task.content = "0";
+  task.version = "1";
+  task.planner = "gain";
+  io::write_scan_task(folder / "scan.json", task);
+  seeds.push_back({"records", "task", "t" + bytes_of(folder / "scan.json")});
+  io::ViewRecord record;
+  record.frame.intrinsics = {8, 6, 10.0, 10.0, 3.5, 2.5};
+  record.frame.depth.assign(48, 0.0f);
+  for (std::size_t i = 10; i < 20; ++i) record.frame.depth[i] = 0.1f * float(i);
+  record.joints = Joints::Zero();
+  io::write_view_record(folder, 2, record, "scan");
+  seeds.push_back({"records", "view", "v" + bytes_of(io::view_record_path(folder, 2))});
+  ScanResult result;
+  result.views = seed_views();
+  result.fruits = {seed_fruit()};
+  io::RunInfo info;
+  info.scene = "seed";
+  io::write_run(folder / "run.json", result, scene.workcell, info);
+  io::write_fruits(folder / "fruits.json", result.fruits);
+  io::write_views(folder / "views.csv", result.views);
+  seeds.push_back({"records", "run", "r" + bytes_of(folder / "run.json")});
+  seeds.push_back({"records", "fruits", "f" + bytes_of(folder / "fruits.json")});
+  seeds.push_back({"records", "views", "c" + bytes_of(folder / "views.csv")});
+}
+
+}  // namespace
+
+Mesh seed_mesh() {
+  Mesh mesh;
+  mesh.vertices = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+  mesh.triangles = {{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}};
+  return mesh;
+}
+
+std::vector<Seed> make_seeds() {
+  std::vector<Seed> seeds;
+  const fs::path folder = scratch() / "seeds";
+  fs::create_directories(folder);
+  add_clouds(seeds, folder);
+  add_meshes(seeds, folder);
+  add_texts(seeds, folder);
+  return seeds;
+}
+
+}  // namespace agrisee::fuzz

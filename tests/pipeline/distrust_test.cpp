@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Views whose pose or frame is wrong are not believed.
+#include <agrisee/pipeline.hpp>
+
+#include <set>
+
+#include "catch.hpp"
+#include "spheres.hpp"
+
+using namespace agrisee;
+
+namespace {
+
+const std::vector<Sphere> kFruit = {
+    {{-0.03, 0.53, 0.2}, 0.035}, {{0.045, 0.54, 0.21}, 0.033}, {{0.01, 0.60, 0.20}, 0.034}};
+
+Workcell cell() {
+  Workcell w;
+  w.scan_volume.extend({-0.17, 0.40, -0.02});
+  w.scan_volume.extend({0.17, 0.72, 0.42});
+  w.sensor.intrinsics = sensor::intrinsics_from_fov(400, 300, deg(70), deg(55));
+  return w;
+}
+
+/// Views around the fruit; `wrong` are reported this far off. Returns what the pipeline makes of them.
+ScanResult look_around(int views, const std::set<int>& wrong, const Eigen::Vector3d& off, int frozen = -1) {
+  const Workcell w = cell();
+  Pipeline pipeline(w);
+  sensor::DepthFrame last;
+  for (int v = 0; v < views; ++v) {
+    const double angle = deg(-70.0 + 140.0 * v / (views - 1));
+    const Eigen::Vector3d target(0.01, 0.55, 0.2);
+    const Eigen::Vector3d direction(std::sin(angle), std::cos(angle), 0.1 * (v % 3 - 1));
+    Pose pose = Pose::Identity();
+    const Eigen::Vector3d z = direction.normalized(), x = z.cross(Eigen::Vector3d::UnitZ()).normalized();
+    pose.linear() << x, z.cross(x), z;
+    pose.translation() = target - 0.38 * z;
+    sensor::DepthFrame frame =
+        test::render(kFruit, w.sensor.intrinsics, pose, 0.001, static_cast<std::uint64_t>(v + 1));
+    if (v == frozen) frame = last;
+    last = frame;
+    if (wrong.count(v)) pose.translation() += off;
+    pipeline.observe(frame, pose);
+  }
+  return pipeline.result();
+}
+
+std::set<int> discarded(const ScanResult& result) {
+  std::set<int> out;
+  for (std::size_t v = 0; v < result.views.size(); ++v)
+    if (result.views[v].discarded) out.insert(static_cast<int>(v));
+  return out;
+}
+
+void check_found(const ScanResult& result) {
+  REQUIRE(result.fruits.size() == kFruit.size());
+  for (const Sphere& s : kFruit) {
+    double best = 1.0;
+    for (const Fruit& f : result.fruits)
+      if (f.body) best = std::min(best, (f.body->center - s.center).norm());
+    CHECK(best < 0.002);
+  }
+}
+
+}  // namespace
+
+TEST_CASE("views that are right are believed") { CHECK(discarded(look_around(8, {}, {})).empty()); }
+
+TEST_CASE("a view whose reported pose is 50 mm off is discarded, in whatever direction") {
+  for (const Eigen::Vector3d& direction : {Eigen::Vector3d(1, 0, 0), Eigen::Vector3d(0, 1, 0), Eigen::Vector3d(0, -1, 0),
+                                           Eigen::Vector3d(0, 0, 1), Eigen::Vector3d(-0.6, 0.0, -0.8)}) {
+    INFO(direction.transpose());
+    const ScanResult result = look_around(8, {3, 6}, 0.05 * direction);
+    CHECK(discarded(result) == std::set<int>{3, 6});
+    for (const int v : result.raw.views) CHECK((v != 3 && v != 6));
+    check_found(result);
+  }
+}
+
+TEST_CASE("of views that contradict one another the more are believed, even when the first is wrong") {
+  const ScanResult result = look_around(8, {0}, {0.04, 0.0, 0.03});
+  CHECK(discarded(result) == std::set<int>{0});
+  check_found(result);
+}
+
+TEST_CASE("a frame that comes again is discarded") {
+  const ScanResult result = look_around(8, {}, {}, 4);
+  CHECK(discarded(result) == std::set<int>{4});
+  check_found(result);
+}
+
+TEST_CASE("an arm that refuses everything ends the scan") {
+  for (const char* planner : {"gain", "see", "fixed", "random"}) {
+    Parameters parameters;
+    parameters.planner = planner;
+    Pipeline pipeline(cell(), parameters);
+    int asked = 0;
+    while (pipeline.next_view(pipeline.workcell().start)) {
+      pipeline.refused();
+      REQUIRE(++asked <= Pipeline::kMostRefusals);
+    }
+    CHECK(pipeline.stop_reason() != StopReason::not_stopped);
+    CHECK(pipeline.result().fruits.empty());
+  }
+}
