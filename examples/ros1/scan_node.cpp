@@ -136,7 +136,7 @@ class ScanNode {
   void take_joints(const sensor_msgs::JointStateConstPtr& message) {
     const auto joints = joints_of(*message);
     if (!joints) return;
-    guarded([&] { session_.set_joints(*joints); });
+    guarded([&] { session_.set_joints(*joints, message->header.stamp.toSec()); });
     joints_heard_ = true;
   }
 

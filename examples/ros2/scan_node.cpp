@@ -75,7 +75,7 @@ class ScanNode : public rclcpp::Node {
         create_subscription<JointState>("joint_states", 1, [this](JointState::ConstSharedPtr m) {
           const auto joints = joints_of(*m);
           if (!joints) return;
-          guarded([&] { session_->set_joints(*joints); });
+          guarded([&] { session_->set_joints(*joints, rclcpp::Time(m->header.stamp).seconds()); });
           joints_heard_ = true;
         })};
     services_ = {serve("~/start", "a scan is going on", [this] { return session_->start(seconds()); }),

@@ -107,17 +107,20 @@ class ScanSession {
     return state_ == SessionState::moving && now - asked_at_ > session_.move_timeout && refuse(now);
   }
 
-  /// Where the arm stands (rad); without it the planner reckons from the last goal.
-  void set_joints(const Joints& joints) {
+  /// Where the arm stood at `stamp` (rad); without it the planner reckons from the last goal.
+  void set_joints(const Joints& joints, double stamp) {
     check_input(joints.allFinite(), "a joint angle is not finite");
     joints_ = joints;
-    joints_known_ = true;
+    joints_stamp_ = stamp;
   }
 
   /// Whether a frame stamped `stamp`, when the sensor was at `world_T_optical`, and at `before` `settle` seconds
-  /// earlier, is the one awaited.
+  /// earlier, is the one awaited. Where joints are told, those of before the standstill do not do: the next view is
+  /// planned from them.
   bool arrived(double stamp, const Pose& world_T_optical, const Pose& before) const {
-    return state_ == SessionState::moving && stamp - session_.settle >= asked_at_ &&
+    const double standing_since = stamp - session_.settle;
+    return state_ == SessionState::moving && standing_since >= asked_at_ &&
+           (!joints_stamp_ || *joints_stamp_ >= standing_since) &&
            near(world_T_optical, goal_->world_T_optical, session_.position_tolerance, session_.angle_tolerance) &&
            near(world_T_optical, before, session_.still_distance, session_.still_angle);
   }
@@ -126,7 +129,7 @@ class ScanSession {
   /// @throws InputError for an unusable frame or pose; the session stays where it is then, and another may follow
   void observe(const sensor::DepthFrame& frame, const Pose& world_T_optical, double now) {
     check_input(state_ == SessionState::moving, "a frame that nobody asked for");
-    if (!joints_known_ && goal_->joints) joints_ = *goal_->joints;
+    if (!joints_stamp_ && goal_->joints) joints_ = *goal_->joints;
     pipeline_->observe(frame, world_T_optical, joints_);
     choose(now);
   }
@@ -159,7 +162,7 @@ class ScanSession {
 
   void begin() {
     pipeline_ = std::make_unique<Pipeline>(workcell_, parameters_, plan::Reach{}, nullptr, seed_, threads_);
-    if (!joints_known_) joints_ = workcell_.start;
+    if (!joints_stamp_) joints_ = workcell_.start;
     goal_.reset();
     refused_ = 0;
     state_ = SessionState::idle;
@@ -183,7 +186,7 @@ class ScanSession {
   std::size_t goals_ = 0;
   double asked_at_ = 0.0;
   Joints joints_ = Joints::Zero();
-  bool joints_known_ = false;
+  std::optional<double> joints_stamp_;
   int refused_ = 0;
 };
 

@@ -54,6 +54,10 @@ TEST_CASE("a frame is taken once the sensor has arrived and stands still") {
   CHECK_FALSE(session.arrived(12.0, goal, moved(0.001, 0.0)));                // moving
   CHECK_FALSE(session.arrived(12.0, goal, moved(0.0, 0.005)));                // turning
   CHECK(session.arrived(12.0, moved(0.01, 0.03), moved(0.01, 0.03)));         // near enough
+  session.set_joints(cell().start, 11.6);  // where the arm was before it stood
+  CHECK_FALSE(session.arrived(12.0, goal, goal));
+  session.set_joints(*session.goal()->joints, 11.8);
+  CHECK(session.arrived(12.0, goal, goal));
 }
 
 TEST_CASE("a session leads a scan to its end, and another after it") {
@@ -65,7 +69,7 @@ TEST_CASE("a session leads a scan to its end, and another after it") {
       t += 1.0;
       const Pose pose = session.goal()->world_T_optical;
       REQUIRE(session.arrived(t, pose, pose));
-      session.set_joints(*session.goal()->joints);
+      session.set_joints(*session.goal()->joints, t);
       session.observe(look(pose), pose, t);
     }
     CHECK(session.state() == SessionState::done);
@@ -105,7 +109,7 @@ TEST_CASE("a bad frame leaves a session where it was") {
   CHECK(session.pipeline().views().size() == 1);
   Joints bad = Joints::Zero();
   bad[2] = std::nan("");
-  CHECK_THROWS_AS(session.set_joints(bad), InputError);
+  CHECK_THROWS_AS(session.set_joints(bad, 0.0), InputError);
 }
 
 TEST_CASE("a view that is refused or not reached in time is followed by another") {
