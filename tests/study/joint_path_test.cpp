@@ -82,9 +82,9 @@ TEST_CASE("the shortest path is that of all permutations") {
       CHECK(path.length == Approx(joint_path_length(start, ordered(configurations, path.order))));
       CHECK(path.length == Approx(by_brute_force(start, configurations)));
       // What the bound of many configurations is made by is a path, too, and never shorter.
-      const Eigen::MatrixXd d = detail::joint_distances(start, configurations);
-      detail::Nodes nodes = detail::nearest_neighbour_path(d);
-      detail::improve_path(d, nodes);
+      const Eigen::MatrixXd d = study::detail::joint_distances(start, configurations);
+      study::detail::Nodes nodes = study::detail::nearest_neighbour_path(d);
+      study::detail::improve_path(d, nodes);
       std::vector<std::size_t> order;
       for (const Eigen::Index node : nodes) order.push_back(static_cast<std::size_t>(node - 1));
       REQUIRE(is_permutation_of(order, n));
@@ -115,9 +115,9 @@ TEST_CASE("of up to thirteen configurations the path is exact, of more it is a g
   }
   // Thirteen exact, compared with the bound of the same.
   const std::vector<Joints> scattered = random_joints(kExactPath, 3);
-  const Eigen::MatrixXd d = detail::joint_distances(Joints::Zero(), scattered);
-  detail::Nodes nodes = detail::nearest_neighbour_path(d);
-  detail::improve_path(d, nodes);
+  const Eigen::MatrixXd d = study::detail::joint_distances(Joints::Zero(), scattered);
+  study::detail::Nodes nodes = study::detail::nearest_neighbour_path(d);
+  study::detail::improve_path(d, nodes);
   std::vector<std::size_t> order;
   for (const Eigen::Index node : nodes) order.push_back(static_cast<std::size_t>(node - 1));
   CHECK(shortest_joint_path(Joints::Zero(), scattered).length <=
