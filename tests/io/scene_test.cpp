@@ -222,7 +222,7 @@ TEST_CASE("a relative mesh path stays in the scene's folder, an absolute one may
   const SceneFolder folder;
   for (const char* path : {"../fruit.stl", "a/../../fruit.stl", "./../fruit.stl", ".."})
     folder.refuse(replaced(kScene, "mesh: fruit.stl", std::string("mesh: ") + path), "leaves the scene's folder");
-  for (const std::string path : {std::string("./fruit.stl"), std::string("a/../fruit.stl"), (folder / "fruit.stl").string()}) {
+  for (const std::string& path : {std::string("./fruit.stl"), std::string("a/../fruit.stl"), (folder / "fruit.stl").string()}) {
     std::filesystem::create_directory(folder / "a");
     CHECK(folder.read(replaced(kScene, "mesh: fruit.stl", "mesh: " + path)).scene.objects.size() == 1);
   }
