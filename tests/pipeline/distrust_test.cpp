@@ -64,7 +64,7 @@ void check_found(const ScanResult& result) {
 
 }  // namespace
 
-TEST_CASE("views that are right are believed") { CHECK(discarded(look_around(8, {}, {})).empty()); }
+TEST_CASE("views that are right are believed") { CHECK(discarded(look_around(8, {}, Eigen::Vector3d::Zero())).empty()); }
 
 TEST_CASE("a view whose reported pose is 50 mm off is discarded, in whatever direction") {
   for (const Eigen::Vector3d& direction : {Eigen::Vector3d(1, 0, 0), Eigen::Vector3d(0, 1, 0), Eigen::Vector3d(0, -1, 0),
@@ -84,7 +84,7 @@ TEST_CASE("of views that contradict one another the more are believed, even when
 }
 
 TEST_CASE("a frame that comes again is discarded") {
-  const ScanResult result = look_around(8, {}, {}, 4);
+  const ScanResult result = look_around(8, {}, Eigen::Vector3d::Zero(), 4);
   CHECK(discarded(result) == std::set<int>{4});
   check_found(result);
 }
