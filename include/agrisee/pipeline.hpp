@@ -258,6 +258,13 @@ class Pipeline {
       fuse(std::move(image), id, added);
       return std::nullopt;
     }
+    // A pose that errs by millimetres contradicts at borders and thin parts, until the view is laid on the others.
+    sensor::SurfaceImage laid = image;
+    register_image(laid);
+    if (!contradicted(laid)) {
+      fuse(std::move(laid), id, added);
+      return std::nullopt;
+    }
     // Those of the views that were not believed which tell the same as this one; more of them than of the others?
     std::vector<std::size_t> group;
     for (const auto& [other, held] : held_)
@@ -301,7 +308,7 @@ class Pipeline {
 
   /// Lay an image on what is fused so far and add it.
   void fuse(sensor::SurfaceImage image, std::size_t id, std::vector<Eigen::Vector3f>& added) {
-    if (parameters_.register_views && surfels_.size() > 0) register_image(image);
+    if (parameters_.register_views) register_image(image);
     for (std::size_t c = 0; c < image.points.size(); ++c)
       if (surfels_.add(image.points[c], image.normals[c], image.sigma[c], static_cast<int>(id)))
         added.push_back(image.points[c]);
@@ -316,6 +323,7 @@ class Pipeline {
   }
 
   void register_image(sensor::SurfaceImage& image) const {
+    if (surfels_.size() == 0) return;
     Cloud source;
     const std::size_t step = std::max<std::size_t>(1, image.points.size() / 2500);
     for (std::size_t c = 0; c < image.points.size(); c += step) {
