@@ -10,7 +10,8 @@
 #include <agrisee/cloud/surfels.hpp>
 #include <agrisee/cloud/volume.hpp>
 #include <agrisee/plan/approach.hpp>
-#include <agrisee/plan/gain_planner.hpp>
+#include <agrisee/plan/free_space.hpp>
+#include <agrisee/plan/gain_parameters.hpp>
 #include <agrisee/see/params.hpp>
 #include <agrisee/sensor/surface_image.hpp>
 

@@ -15,6 +15,7 @@
 #include <agrisee/planners.hpp>
 #include <agrisee/process.hpp>
 #include <agrisee/sensor/points_to_frame.hpp>
+#include <agrisee/sensor/reconstruct_surface.hpp>
 #include <agrisee/workcell.hpp>
 
 #include <map>

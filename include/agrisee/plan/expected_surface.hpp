@@ -14,45 +14,12 @@
 #include <agrisee/cloud/split.hpp>
 #include <agrisee/cloud/voxel.hpp>
 #include <agrisee/plan/directions.hpp>
+#include <agrisee/plan/gain_parameters.hpp>
 #include <agrisee/sensor/l515.hpp>
 
 #include <array>
 
 namespace agrisee::plan {
-
-/// Parameters of ExpectedSurface.
-struct ExpectedSurfaceParameters {
-  double max_incidence = deg(75);  ///< a surface seen at less than this is expected to be measured (rad)
-  int samples = 320;               ///< samples of a body's surface
-  double cover_radius = 0.005;     ///< a sample with a point this near is covered (m)
-  double voxel = 0.015;            ///< edge of the voxels of unknown space (m)
-  double neighborhood = 0.06;      ///< unknown space counts within this distance of a body's surface (m)
-  double unknown_weight = 0.08;  ///< fruit surface expected behind the face of an unknown voxel, as a share of the face
-  double disappointment = 0.35;  ///< factor on samples for every view that should have shown them and did not
-
-  /// @throws ParameterError
-  void check() const {
-    check_parameter(max_incidence > 0 && max_incidence < kPi / 2, "expected.max_incidence", "in (0, pi/2)",
-                    max_incidence);
-    check_parameter(samples >= 1 && samples <= 100000, "expected.samples", "in [1, 100000]", samples);
-    check_parameter(cover_radius > 0, "expected.cover_radius", "positive", cover_radius);
-    check_parameter(voxel > 0, "expected.voxel", "positive", voxel);
-    check_parameter(neighborhood >= 0, "expected.neighborhood", ">= 0", neighborhood);
-    check_parameter(unknown_weight >= 0, "expected.unknown_weight", ">= 0", unknown_weight);
-    check_parameter(disappointment >= 0 && disappointment <= 1, "expected.disappointment", "in [0, 1]", disappointment);
-  }
-  /// f(name, field) for every field.
-  template <typename P, typename F>
-  static void fields(P& p, F&& f) {
-    f("max_incidence", p.max_incidence);
-    f("samples", p.samples);
-    f("cover_radius", p.cover_radius);
-    f("voxel", p.voxel);
-    f("neighborhood", p.neighborhood);
-    f("unknown_weight", p.unknown_weight);
-    f("disappointment", p.disappointment);
-  }
-};
 
 /// The model of what has been seen and what has not.
 class ExpectedSurface {

@@ -17,48 +17,6 @@
 
 namespace agrisee::plan {
 
-/// Parameters of GainPlanner.
-struct GainPlannerParameters {
-  int candidates = 4000;       ///< views tried, their directions spread over the whole sphere; a tenth may be in reach
-  double spread = 0.6;         ///< how far from the middle of the bodies they look, as a share of the way to the border
-  double distance = 0.38;      ///< of the first view from its target (m)
-  double distance_min = 0.27;  ///< nearest (m)
-  double distance_max = 0.55;  ///< farthest (m)
-  double dwell = 1.5;          ///< time that a view costs beside the move (s): settling, exposure, computing
-  int lookahead = 6;           ///< views planned ahead, so that the nearest of them comes first; 1 = none
-  double patience = 0.5;       ///< but only where it scores at least this share of the best
-  double min_gain = 0.0015;    ///< stop when the best view promises less than this share of the known fruit surface
-  ExpectedSurfaceParameters expected;  ///< what a view is expected to show
-
-  /// @throws ParameterError
-  void check() const {
-    check_parameter(candidates >= 1 && candidates <= 1000000, "planner.candidates", "in [1, 1000000]", candidates);
-    check_parameter(spread >= 0 && spread <= 1, "planner.spread", "in [0, 1]", spread);
-    check_parameter(distance_min > 0, "planner.distance_min", "positive", distance_min);
-    check_parameter(distance >= distance_min, "planner.distance", ">= distance_min", distance);
-    check_parameter(distance_max >= distance, "planner.distance_max", ">= distance", distance_max);
-    check_parameter(dwell > 0, "planner.dwell", "positive", dwell);
-    check_parameter(lookahead >= 1 && lookahead <= 10, "planner.lookahead", "in [1, 10]", lookahead);
-    check_parameter(patience >= 0 && patience <= 1, "planner.patience", "in [0, 1]", patience);
-    check_parameter(min_gain >= 0, "planner.min_gain", ">= 0", min_gain);
-    expected.check();
-  }
-  /// f(name, field) for every field.
-  template <typename P, typename F>
-  static void fields(P& p, F&& f) {
-    f("candidates", p.candidates);
-    f("spread", p.spread);
-    f("distance", p.distance);
-    f("distance_min", p.distance_min);
-    f("distance_max", p.distance_max);
-    f("dwell", p.dwell);
-    f("lookahead", p.lookahead);
-    f("patience", p.patience);
-    f("min_gain", p.min_gain);
-    f("expected", p.expected);
-  }
-};
-
 /// See the file's head.
 class GainPlanner : public Planner {
  public:

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <agrisee/sensor/points_to_frame.hpp>
-#include <agrisee/sensor/surface_image.hpp>
+#include <agrisee/sensor/reconstruct_surface.hpp>
 
 #include "catch.hpp"
 #include "spheres.hpp"
