@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 # RViz, on a screen that is not there, draws a finished scan: rviz.sh AGRISEE PACKAGES WORKDIR; leaves WORKDIR/rviz/rviz.png.
 # That it shows the fruit is judged by the colours of the first three. 77 where RViz, Xvfb or ImageMagick are missing.
-# docs/images/rviz.png: MAX_VIEWS=8 WHEN='moving, 4 views' rviz.sh..., then convert rviz.png -colors 128 PNG8:docs/images/rviz.png
+# docs/images/rviz.png: MAX_VIEWS=8 WHEN='moving, 4 views' rviz.sh..., then copy WORKDIR/rviz/rviz.png
 agrisee=$1
 . "$(dirname "$0")/common.sh" "$2" "$3/rviz" rviz Xvfb import convert
 
