@@ -143,11 +143,15 @@ class MarkerMaker {
         add("bodies", Marker::SPHERE, pose, 2.0 * f.body->radii, color, 0.55);
       }
       frame("frames", f.pose(), 1.5 * radius);
+      // Where nothing hides it: at the tail of the arrow, else above.
+      const bool arrow_drawn = f.picking && f.picking->reachable;
       Pose label = Pose::Identity();
       label.translation() = center + Eigen::Vector3d(0.0, 0.0, 1.3 * radius);
+      if (arrow_drawn)
+        label.translation() = f.picking->world_T_pre_grasp.translation() - 0.015 * f.picking->direction;
       add("ids", Marker::TEXT_VIEW_FACING, label, Eigen::Vector3d(0.0, 0.0, 0.025), {20, 20, 20}, 1.0).text =
           std::to_string(f.id);
-      if (f.picking && f.picking->reachable) {
+      if (arrow_drawn) {
         Marker& arrow =
             add("picking", Marker::ARROW, Pose::Identity(), Eigen::Vector3d(0.003, 0.008, 0.012), color, 0.9);
         line(arrow, f.picking->world_T_pre_grasp.translation(), center - radius * f.picking->direction);

@@ -28,6 +28,7 @@ start_master() { # on a port that nobody uses; roslaunch's own gives up after te
   local port
   port=$(python3 -c 'import socket; s = socket.socket(); s.bind(("127.0.0.1", 0)); print(s.getsockname()[1])')
   export ROS_MASTER_URI=http://127.0.0.1:$port ROS_IP=127.0.0.1 ROS_HOME=$work/ros ROS_LOG_DIR=$work/ros/log
+  export ROSCONSOLE_STDOUT_LINE_BUFFERED=1  # for those who wait for a line
   rosmaster --core -p "$port" >master.txt 2>&1 &
   children+=($!)
   for _ in $(seq 120); do

@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 # RViz, on a screen that is not there, draws a finished scan: rviz.sh AGRISEE PACKAGES WORKDIR; leaves WORKDIR/rviz/rviz.png.
 # That it shows the fruit is judged by the colours of the first three. 77 where RViz, Xvfb or ImageMagick are missing.
+# docs/images/rviz.png: MAX_VIEWS=8 WHEN='moving, 4 views' rviz.sh..., then copy WORKDIR/rviz/rviz.png
 agrisee=$1
 . "$(dirname "$0")/common.sh" "$2" "$3/rviz" rviz Xvfb import convert
 
@@ -22,7 +23,8 @@ shows() { # shows R G B: whether some hundred pixels of the picture have this co
 for _ in $(seq 100); do
   kill -0 $launched 2>/dev/null || { tail -n 40 launch.txt; echo "FAILED: roslaunch has ended"; exit 1; }
   sleep 5
-  grep -q 'done, ' launch.txt || continue
+  grep -q "${WHEN:-done, }" launch.txt || continue
+  sleep 3
   import -window root rviz.png
   shows 226 61 50 && shows 42 127 204 && shows 245 166 35 && { echo "RViz shows the fruit"; exit 0; }
 done
