@@ -2,10 +2,10 @@
 // The default path: surface from a frame, fusion, split, whole processing of a cloud of 15 k and 150 k points.
 #include <agrisee/process.hpp>
 #include <agrisee/sensor/l515.hpp>
+#include <agrisee/sensor/reconstruct_surface.hpp>
 #include <agrisee/study/truss.hpp>
 
 #include <benchmark/benchmark.h>
-
 
 namespace {
 
