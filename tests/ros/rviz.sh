@@ -20,7 +20,7 @@ shows() { # shows R G B: whether some hundred pixels of the picture have this co
   [ "$(convert rviz.png -fuzz 12% -fill black +opaque "rgb($1,$2,$3)" -fill white -opaque "rgb($1,$2,$3)" \
     -format '%[fx:int(mean*w*h)]' info:)" -gt 100 ]
 }
-for _ in $(seq 100); do
+for _ in $(seq 200); do
   kill -0 $launched 2>/dev/null || { tail -n 40 launch.txt; echo "FAILED: roslaunch has ended"; exit 1; }
   sleep 5
   grep -q "${WHEN:-done, }" launch.txt || continue
