@@ -18,7 +18,7 @@ one() {
   # A file of 4 KB may cost 64 MB at most in one piece: no reader believes what a header promises.
   "$build/fuzz_$target" "$build/corpus/$target" "$build/seeds/$target" "${known[@]}" \
     -dict="$here/dictionaries/$target.dict" -artifact_prefix="$build/findings/$target-" -max_total_time="$each" \
-    -max_len=4096 -malloc_limit_mb=64 -rss_limit_mb=2048 -timeout=10 -print_final_stats=1 -detect_leaks=1 \
+    -max_len=4096 -malloc_limit_mb=64 -rss_limit_mb=2048 -timeout=30 -print_final_stats=1 -detect_leaks=1 \
     >"$build/logs/$target.txt" 2>&1
   local code=$?
   local done cov
