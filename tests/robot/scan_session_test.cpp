@@ -68,8 +68,8 @@ TEST_CASE("a session leads a scan to its end, and another after it") {
     while (session.state() == SessionState::moving) {
       t += 1.0;
       const Pose pose = session.goal()->world_T_optical;
-      REQUIRE(session.arrived(t, pose, pose));
       session.set_joints(*session.goal()->joints, t);
+      REQUIRE(session.arrived(t, pose, pose));
       session.observe(look(pose), pose, t);
     }
     CHECK(session.state() == SessionState::done);
