@@ -48,13 +48,13 @@ bench:
 	@cmake -S . -B build/bench -G Ninja -DCMAKE_BUILD_TYPE=Release -DAGRISEE_BUILD_BENCHMARKS=ON -DAGRISEE_BENCHMARK_PEERS=ON \
 	  -DAGRISEE_BUILD_TESTS=OFF -DAGRISEE_BUILD_EXAMPLES=OFF -DAGRISEE_BUILD_CLI=OFF
 	@cmake --build build/bench -j $(JOBS)
-	@benchmarks/report.py build/bench docs/benchmarks.md $(if $(LARGE),--large)
+	@python3 benchmarks/report.py build/bench docs/benchmarks.md $(if $(LARGE),--large)
 
 fuzz:
 	@cmake/packages.sh build fuzz
 	@cmake --preset fuzz -G Ninja
 	@cmake --build --preset fuzz -j $(JOBS)
-	@tests/fuzz/run.sh build/fuzz/fuzz $(SECONDS_IN_ALL)
+	@bash tests/fuzz/run.sh build/fuzz/fuzz $(SECONDS_IN_ALL)
 
 survive: build
 	@python3 tests/cli/survive.py $(AGRISEE) build/survive kill $(KILLS)
