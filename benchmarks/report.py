@@ -41,10 +41,13 @@ def output_of(*command):
 
 def run(program, pattern):
     """The medians of a program's runs that match: name -> (ms at one thread of processor time, or wall; peak MB)."""
-    text = output_of(str(program), "--benchmark_format=json", "--benchmark_repetitions=3", "--benchmark_min_time=0.1",
-                     "--benchmark_report_aggregates_only=true", "--benchmark_filter=" + pattern)
+    done = subprocess.run([str(program), "--benchmark_format=json", "--benchmark_repetitions=3",
+                           "--benchmark_min_time=0.1", "--benchmark_report_aggregates_only=true",
+                           "--benchmark_filter=" + pattern], stdout=subprocess.PIPE, text=True)
+    if done.returncode != 0:  # an answer that differs from a peer's, among others
+        sys.exit(f"{program} failed with exit code {done.returncode}")
     out = {}
-    for one in json.loads(text)["benchmarks"] if text else []:
+    for one in json.loads(done.stdout)["benchmarks"] if done.stdout.strip() else []:
         if one.get("aggregate_name") != "median":
             continue
         name = one["run_name"].replace("/real_time", "")
