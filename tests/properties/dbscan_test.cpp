@@ -16,7 +16,10 @@ TEMPLATE_TEST_CASE("DBSCAN: motions, scales, shuffles and precision change nothi
   const auto cloud = laws::exact_cloud<TestType>(kind);
   const auto near = oracle::within(cloud, TestType(eps));
   laws::check_exact_laws<TestType>(
-      kind, [&](const auto& p, double scale, int threads) { return dbscan(p, {scale * eps, min_points}, threads); },
+      kind,
+      [&](const auto& p, double scale, int threads) {
+        return dbscan(p, {scale * eps, min_points}, threads);
+      },
       [&](const Labels& labels) {  // what every order of the points shares
         Labels kept;
         for (const int label : labels) kept.push_back(label > 0);
@@ -43,8 +46,7 @@ TEMPLATE_TEST_CASE("DBSCAN: m of each point and m times the neighbours change no
   const auto cloud = laws::exact_cloud<TestType>(kind);
   for (const int min_points : {1, 4, 9}) {
     const int more = min_points * static_cast<int>(m);
-    CHECK(dbscan(laws::repeated(cloud, m), {0x1p-8, more}) ==
-          laws::repeated(dbscan(cloud, {0x1p-8, min_points}), m));
+    CHECK(dbscan(laws::repeated(cloud, m), {0x1p-8, more}) == laws::repeated(dbscan(cloud, {0x1p-8, min_points}), m));
   }
 }
 
@@ -57,7 +59,8 @@ TEMPLATE_TEST_CASE("DBSCAN of exact and hostile clouds is what its definition sa
     for (const double eps : {0x1p-9, 0x1p-8, 0.3, 1e-18, 1e10})
       for (const int min_points : {1, 3, 12}) {
         INFO(kind << ", eps " << eps << ", min_points " << min_points);
-        CHECK((dbscan(cloud, {eps, min_points}, 2) == oracle::dbscan(cloud, eps, static_cast<std::size_t>(min_points))));
+        CHECK(
+            (dbscan(cloud, {eps, min_points}, 2) == oracle::dbscan(cloud, eps, static_cast<std::size_t>(min_points))));
       }
   }
 }

@@ -33,13 +33,15 @@ TEMPLATE_TEST_CASE("density: motions, scales, shuffles and precision change noth
   INFO(kind << ", k " << k);
   laws::check_exact_laws<TestType>(
       kind,
-      [&](const auto& p, double scale, int threads) { return both(see::classify(p, with(scale * 0x1p-7, k), threads)); },
+      [&](const auto& p, double scale, int threads) {
+        return both(see::classify(p, with(scale * 0x1p-7, k), threads));
+      },
       [](const auto& v) { return v; });
 }
 
 TEMPLATE_TEST_CASE("density: m of each point are m times as dense", "", float, double) {
-  // With m times the neighbours asked for the same are core. A point that is not now has its own copies beside it, which
-  // are no core points either: it is frontier wherever a core point is near.
+  // With m times the neighbours asked for the same are core. A point that is not now has its own copies beside it,
+  // which are no core points either: it is frontier wherever a core point is near.
   const std::string kind = GENERATE(from_range(laws::exact_kinds()));
   const std::size_t m = GENERATE(2u, 5u);
   const auto cloud = laws::exact_cloud<TestType>(kind);
@@ -93,9 +95,8 @@ TEMPLATE_TEST_CASE("density: whatever comes first, merged points keep their dist
       for (std::size_t i = 0; i < kept.size(); ++i)
         for (std::size_t j = 0; j < i; ++j) REQUIRE(distance_sq<TestType>(kept[i], kept[j]) >= apart);
       for (const auto& p : cloud)
-        REQUIRE(std::any_of(kept.begin(), kept.end(), [&](const auto& q) {
-          return p == q || distance_sq<TestType>(p, q) < apart;
-        }));
+        REQUIRE(std::any_of(kept.begin(), kept.end(),
+                            [&](const auto& q) { return p == q || distance_sq<TestType>(p, q) < apart; }));
       REQUIRE(both(map.classification()) == both(oracle::classify(kept, 0x1p-7, 5)));
     }
 }

@@ -80,7 +80,8 @@ Points<S> hostile_cloud(const std::string& kind) {
   if (kind == "vanishing")  // points that differ, squares that do not
     for (auto& p : out) p *= std::sqrt(Limits::denorm_min());
   if (kind == "nan")
-    for (std::size_t i = 0; i < n; i += 5) out[i][static_cast<int>(i % 3)] = i % 2 ? Limits::infinity() : Limits::quiet_NaN();
+    for (std::size_t i = 0; i < n; i += 5)
+      out[i][static_cast<int>(i % 3)] = i % 2 ? Limits::infinity() : Limits::quiet_NaN();
   if (kind == "huge")  // squares overflow
     for (std::size_t i = 7; i < n; i += 90) out[i] = Vector3<S>(1, -1, S(i)) * (Limits::max() / S(1000));
   if (kind == "only nan") out.assign(40, Vector3<S>::Constant(Limits::quiet_NaN()));
@@ -162,8 +163,8 @@ inline Labels partition(const Labels& labels) {
   return out;
 }
 
-/// What exact motions, exact scales, shuffles, the precision and the number of threads must not change, for a stage that
-/// gives one value a point by distances alone: `stage(points, scale, threads)`, its lengths times `scale`.
+/// What exact motions, exact scales, shuffles, the precision and the number of threads must not change, for a stage
+/// that gives one value a point by distances alone: `stage(points, scale, threads)`, its lengths times `scale`.
 /// `as(values)` is what has to be the same.
 template <typename S, typename Stage, typename As>
 void check_exact_laws(const std::string& kind, const Stage& stage, const As& as) {

@@ -24,7 +24,10 @@ TEMPLATE_TEST_CASE("outlier removal: motions, scales, shuffles and precision cha
   INFO(kind << ", k " << k);
   // Distances round like coordinates do: the mean's last bits, which may decide where all are equal, are covered.
   laws::check_exact_laws<TestType>(
-      kind, [&](const auto& p, double, int threads) { return stays(p, {k, 1.3, false}, threads); },
+      kind,
+      [&](const auto& p, double, int threads) {
+        return stays(p, {k, 1.3, false}, threads);
+      },
       [](const auto& v) { return v; });
 }
 
@@ -54,7 +57,8 @@ TEMPLATE_TEST_CASE("outlier removal: mean distances of hostile clouds are those 
   }
 }
 
-TEMPLATE_TEST_CASE("outlier removal: a few points that are too far to tell how far go, and only they", "", float, double) {
+TEMPLATE_TEST_CASE("outlier removal: a few points that are too far to tell how far go, and only they", "", float,
+                   double) {
   const auto cloud = laws::hostile_cloud<TestType>("huge");
   const auto stay = stays(cloud, {20, 6.0, false});
   for (std::size_t i = 0; i < cloud.size(); ++i) {
