@@ -195,36 +195,4 @@ inline std::string fault_of(const agrisee::Joints& q, const agrisee::arm::Mount&
   return {};
 }
 
-/// Joint angles near `q` that put world_T_tool where it is asked for, by Newton's method on the DH table, and whether
-/// they do.
-inline bool solve(agrisee::Joints& q, const agrisee::arm::Mount& mount, const agrisee::Pose& tool0_T_tool,
-                  const agrisee::Pose& world_T_tool) {
-  const Matrix wanted = matrix_of(world_T_tool);
-  const auto pose = [&](const agrisee::Joints& at) {
-    return times(times(matrix_of(mount.world_T_base), links(at)[5]), matrix_of(tool0_T_tool));
-  };
-  using Residual = Eigen::Matrix<double, 12, 1>;
-  const auto residual = [&](const agrisee::Joints& at) {
-    const Matrix m = pose(at);
-    Residual r;
-    for (std::size_t i = 0; i < 3; ++i)
-      for (std::size_t j = 0; j < 4; ++j) r[int(4 * i + j)] = m[i][j] - wanted[i][j];
-    return r;
-  };
-  for (int iteration = 0; iteration < 50; ++iteration) {
-    const Residual r = residual(q);
-    if (r.cwiseAbs().maxCoeff() < 1e-10) return true;
-    Eigen::Matrix<double, 12, 6> jacobian;
-    for (int j = 0; j < 6; ++j) {
-      agrisee::Joints plus = q, minus = q;
-      plus[j] += 1e-6, minus[j] -= 1e-6;
-      jacobian.col(j) = (residual(plus) - residual(minus)) / 2e-6;
-    }
-    const Eigen::Matrix<double, 6, 6> normal =
-        jacobian.transpose() * jacobian + 1e-12 * Eigen::Matrix<double, 6, 6>::Identity();
-    q -= normal.inverse() * (jacobian.transpose() * r);
-  }
-  return residual(q).cwiseAbs().maxCoeff() < 1e-8;
-}
-
 }  // namespace verify
