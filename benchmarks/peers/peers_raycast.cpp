@@ -145,8 +145,8 @@ int main(int argc, char** argv) {
     peers::add("bvh_build", "Embree low", triangles, threads,
                [](int t) { return built(t, RTC_BUILD_QUALITY_LOW); }, peers::Unchecked());
 #endif
-    if (threads == 1)
-      peers::add("bvh_build", "ours", triangles, threads, [](int) { return Bvh(spheres()).size(); }, peers::Unchecked());
+    peers::add("bvh_build", "ours", triangles, threads, [](int t) { return Bvh(spheres(), t).size(); },
+               peers::Unchecked());
   }
   return peers::main(argc, argv);
 }

@@ -362,9 +362,7 @@ class Pipeline {
       source.normals.push_back(image.normals[c]);
     }
     const Cloud target = surfels_.cloud();
-    // Cells of twice the usual size: a table of them all still fits where a few surfels lie far off.
-    const Grid<float> search(target, static_cast<float>(parameters_.icp.max_distance));
-    const IcpResult icp = register_cloud(source, source.normals, target, target.normals, parameters_.icp, search);
+    const IcpResult icp = register_cloud(source, source.normals, target, target.normals, parameters_.icp);
     if (!icp.accepted) return;
     const Eigen::Isometry3f correction = icp.target_T_source.cast<float>();
     for (std::size_t c = 0; c < image.points.size(); ++c) {

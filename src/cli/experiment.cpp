@@ -7,7 +7,6 @@
 #include <agrisee/io/parameters.hpp>
 #include <agrisee/io/report.hpp>
 #include <agrisee/io/scene.hpp>
-#include <agrisee/study/run_cell.hpp>
 #include <agrisee/version.hpp>
 
 #include <chrono>
@@ -20,6 +19,7 @@
 #include <sstream>
 
 #include "commands.hpp"
+#include "simulate.hpp"
 #include "trusses.hpp"
 
 namespace agrisee::cli {
@@ -49,7 +49,7 @@ struct SceneJob {
   const study::Subject& ready() {
     std::call_once(*once, [&] {
       const auto known = io::read_ground_truth(path.parent_path() / "ground_truth.json");
-      subject = study::make_subject(name, fingerprint, file.scene, file.workcell, known, 1);
+      subject = cli::make_subject(name, fingerprint, file.scene, file.workcell, known);
     });
     return *subject;
   }
@@ -162,7 +162,7 @@ std::vector<std::string> run_cells(std::vector<CellJob>& cells, std::vector<Scen
         CellJob& job = cells[open[k]];
         std::string outcome;
         try {
-          study::CellRecord record = study::run_cell(scenes[job.scene].ready(), job.cell, job.parameters, 1);
+          study::CellRecord record = cli::run_cell(scenes[job.scene].ready(), job.cell, job.parameters);
           record.fingerprint = job.fingerprint;
           io::write_record(job.path, record);
           std::ostringstream text;
@@ -201,7 +201,7 @@ std::vector<study::SceneRecord> judge_scenes(const ExperimentOptions& options, s
           records[s] = *record;
           return;
         }
-        records[s] = study::judge_scene(scenes[s].ready());
+        records[s] = cli::judge_scene(scenes[s].ready());
         io::write_record(path, records[s]);
       },
       1);

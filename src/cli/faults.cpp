@@ -12,6 +12,7 @@
 #include <sstream>
 
 #include "commands.hpp"
+#include "simulate.hpp"
 #include "trusses.hpp"
 
 namespace agrisee::cli {
@@ -51,7 +52,7 @@ Subject subject_of(const std::string& text) {
   const auto known = truss ? std::optional(truss->truth)
                            : io::read_ground_truth(fs::path(text).parent_path() / "ground_truth.json");
   return {file.workcell.name, file.workcell,
-          std::make_unique<study::Truth>(study::make_truth(file.scene, known, file.workcell.sensor))};
+          std::make_unique<study::Truth>(cli::make_truth(file.scene, known, file.workcell.sensor))};
 }
 
 template <typename T>
@@ -107,8 +108,9 @@ int run_faults(const FaultOptions& options) {
       [&](std::size_t i) {
         const Job& job = jobs[i];
         const Subject& subject = subjects[job.subject];
-        study::FaultRecord r = study::scan_with_faults(subject.name, subject.workcell, *subject.truth, parameters,
-                                                       noise, job.faults, job.trial);
+        study::FaultRecord r =
+            cli::scan_with_faults(subject.name, subject.workcell, *subject.truth, parameters, noise, job.faults,
+                                  job.trial);
         const std::lock_guard<std::mutex> lock(mutex);
         std::cerr << "[" << ++done << "/" << jobs.size() << "] " << r.scene << ", " << r.kind << " at "
                   << 100.0 * r.rate << " %: " << r.found << "/" << r.fruit << " fruit, " << r.invented << " invented, "

@@ -10,8 +10,6 @@
 #include <agrisee/io/scene.hpp>
 #include <agrisee/see/density.hpp>
 #include <agrisee/study/evaluate.hpp>
-#include <agrisee/study/greedy_planner.hpp>
-#include <agrisee/study/simulated_scan.hpp>
 #include <agrisee/version.hpp>
 
 #include <algorithm>
@@ -24,6 +22,7 @@
 
 #include "commands.hpp"
 #include "many.hpp"
+#include "simulate.hpp"
 
 namespace agrisee::cli {
 namespace {
@@ -177,13 +176,12 @@ int run_scan(const ScanOptions& options) {
   if (resuming && content != task.content)
     throw FileError(task.scene + ": is not the scene any more that the scan in " + folder.string() + " began with");
   task.content = content;
-  const TracedScene traced(file.scene);
-  file.workcell.sensor.check();
-  Pipeline(file.workcell, parameters);  // what cannot be scanned is refused before anything is written
+  const TracedScene traced(file.scene, task.threads);
+  cli::check_scan(file.workcell, parameters);  // what cannot be scanned is refused before anything is written
   if (task.planner == "greedy") {
     const study::Samples samples = study::fruit_samples(file.scene);
     if (samples.size() == 0) throw FileError(task.scene + ": holds no fruit, whose truth the greedy planner needs");
-    simulation.planner = study::make_greedy_planner(traced, samples, file.workcell, {}, simulation.threads);
+    simulation.planner = cli::make_greedy_planner(traced, samples, file.workcell, simulation.threads);
   }
   if (!resuming) {
     prepare_output(folder.string(), options.force);
@@ -215,7 +213,7 @@ int run_scan(const ScanOptions& options) {
   };
   ScanResult result;
   try {
-    result = study::scan(file.workcell, traced, parameters, std::move(simulation));
+    result = cli::scan(file.workcell, traced, parameters, std::move(simulation));
     if (isatty(STDERR_FILENO)) std::cerr << "\n";
     io::RunInfo info;
     info.scene = file.workcell.name;

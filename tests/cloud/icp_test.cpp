@@ -109,6 +109,43 @@ TEST_CASE("ICP with noise and strays: robust weights do better") {
   CHECK(robust < 0.5 * plain);
 }
 
+TEMPLATE_TEST_CASE("matches that are kept are those that a search of all points finds", "", float, double) {
+  using S = TestType;
+  const auto target = truss<S>(3000, 1, 6, 5e-4);
+  const auto source = truss<S>(400, 2, 6, 5e-4, true);
+  const double angle = GENERATE(30.0, 180.0);  // degrees; 180: normals are not tested
+  IcpParameters params;
+  params.max_normal_angle = deg(angle);
+  const Grid<S> search(target, S(0.003));
+  detail::IcpProblem<S, PointCloud<S>, PointCloud<S>, Grid<S>> problem(source, source.normals, target, target.normals,
+                                                                      params, search, 1);
+  Pose pose = kSmall;
+  double step = 1.0;
+  std::size_t changed = 0;
+  std::vector<Index> last;
+  for (int k = 0; k < 14; ++k, step *= 0.6) {  // steps that get shorter, with a jump back
+    if (k == 9) step = 0.5;
+    pose = about_middle({3e-4 * step, -4e-4 * step, 2e-4 * step}, {-1e-3 * step, 2e-3 * step, 1e-3 * step}) * pose;
+    problem.match(pose);
+    for (std::size_t i = 0; i < problem.points().size(); ++i) {
+      const Vector3<S> q = (pose * problem.points()[i]).template cast<S>();
+      Index best = -1;
+      S best_sq = S(params.max_distance) * S(params.max_distance);
+      for (std::size_t j = 0; j < target.size(); ++j) {
+        const bool agrees = problem.normals().empty() || target.normals[j].template cast<double>().dot(
+                                                             pose.linear() * problem.normals()[i]) >=
+                                                             std::cos(params.max_normal_angle);
+        const S d_sq = distance_sq<S>(target.points[j], q);
+        if (agrees && d_sq <= best_sq && (d_sq < best_sq || best < 0)) best = static_cast<Index>(j), best_sq = d_sq;
+      }
+      if (problem.matches()[i] != best) FAIL("step " << k << ", point " << i);
+    }
+    for (std::size_t i = 0; i < last.size(); ++i) changed += last[i] != problem.matches()[i];
+    last = problem.matches();
+  }
+  CHECK(changed > 100);
+}
+
 TEST_CASE("ICP obeys the laws: shuffles, motions, threads, searches") {
   const auto target = truss<double>(4000, 1, 6, 3e-4);
   const auto source = moved(kSmall, truss<double>(900, 2, 6, 3e-4, true));

@@ -5,7 +5,7 @@
 set -uo pipefail
 build=$1 seconds=$2; shift 2
 here=$(cd "$(dirname "$0")" && pwd)
-targets=${*:-ply pcd stl obj scene parameters records}
+targets=${*:-ply pcd stl obj scene parameters records messages}
 cores=$(nproc)
 count=$(wc -w <<<"$targets")
 each=$((seconds * cores / count)); [ "$each" -gt 0 ] || each=1
@@ -16,8 +16,9 @@ one() {
   mkdir -p "$build/corpus/$target"
   local known=(); [ -d "$here/regressions/$target" ] && known=("$here/regressions/$target")
   # A file of 4 KB may cost 64 MB at most in one piece: no reader believes what a header promises.
-  "$build/fuzz_$target" "$build/corpus/$target" "$build/seeds/$target" "${known[@]}" \
-    -dict="$here/dictionaries/$target.dict" -artifact_prefix="$build/findings/$target-" -max_total_time="$each" \
+  local words=(); [ -f "$here/dictionaries/$target.dict" ] && words=(-dict="$here/dictionaries/$target.dict")
+  "$build/fuzz_$target" "$build/corpus/$target" "$build/seeds/$target" "${known[@]}" "${words[@]}" \
+    -artifact_prefix="$build/findings/$target-" -max_total_time="$each" \
     -max_len=4096 -malloc_limit_mb=64 -rss_limit_mb=2048 -timeout=30 -print_final_stats=1 -detect_leaks=1 \
     >"$build/logs/$target.txt" 2>&1
   local code=$?

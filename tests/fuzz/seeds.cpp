@@ -150,6 +150,29 @@ void add_texts(std::vector<Seed>& seeds, const fs::path& folder) {
   seeds.push_back({"records", "views", "c" + bytes_of(folder / "views.csv")});
 }
 
+void add_messages(std::vector<Seed>& seeds) {
+  for (const std::uint8_t type : {std::uint8_t(7), std::uint8_t(8)}) {  // float, double
+    const std::uint32_t bytes = type == 7 ? 4 : 8, step = 3 * bytes + 4;
+    std::string cloud(1, 'd');
+    put<std::uint32_t>(cloud, {2, 2, step, 2 * step + 5});
+    put<std::uint8_t>(cloud, {0, 4});
+    for (std::uint8_t axis = 0; axis < 4; ++axis) {
+      put<std::uint8_t>(cloud, {axis});
+      put<std::uint32_t>(cloud, {axis * bytes});
+      put<std::uint8_t>(cloud, {axis < 3 ? type : std::uint8_t(7), 1});
+    }
+    for (std::uint32_t i = 0; i < 4 * step + 10; ++i) put<std::uint8_t>(cloud, {static_cast<std::uint8_t>(7 * i)});
+    seeds.push_back({"messages", type == 7 ? "cloud_float" : "cloud_double", cloud});
+  }
+  for (const std::uint8_t kind : {std::uint8_t(2), std::uint8_t(4), std::uint8_t(255 - 2)}) {
+    std::string image(1, 'i');
+    put<std::uint32_t>(image, {3, 2, 12});
+    put<std::uint8_t>(image, {kind});
+    for (std::uint8_t i = 0; i < 80; ++i) put<std::uint8_t>(image, {i});
+    seeds.push_back({"messages", "image_" + std::to_string(kind), image});
+  }
+}
+
 }  // namespace
 
 Mesh seed_mesh() {
@@ -166,6 +189,7 @@ std::vector<Seed> make_seeds() {
   add_clouds(seeds, folder);
   add_meshes(seeds, folder);
   add_texts(seeds, folder);
+  add_messages(seeds);
   return seeds;
 }
 

@@ -296,6 +296,48 @@ TEST_CASE("visit reaches every triangle of the boxes that are kept, and stops wh
   REQUIRE(visited == 7);
 }
 
+TEST_CASE("a tree of many pieces is the same on any number of threads, and right") {
+  Mesh mesh = shapes::sphere({0.0, 0.5, 0.2}, 0.04, 160);  // more than a piece of work holds
+  append(mesh, shapes::sphere({0.01, 0.5, 0.2}, 0.04, 160));
+  REQUIRE(mesh.triangles.size() > 40000);
+  struct Walk {
+    std::vector<Vector3f> boxes;
+    std::vector<std::uint32_t> triangles;
+  };
+  const auto walk = [&](const Bvh& bvh) {
+    Walk all;
+    bvh.visit(
+        [&](const Vector3f& min, const Vector3f& max) {
+          all.boxes.insert(all.boxes.end(), {min, max});
+          return true;
+        },
+        [&](std::uint32_t i, const Triangle&) {
+          all.triangles.push_back(i);
+          return true;
+        });
+    return all;
+  };
+  const Bvh alone(mesh);
+  const Walk one = walk(alone);
+  for (const int threads : {2, 3}) {
+    const Walk more = walk(Bvh(mesh, threads));
+    REQUIRE((one.boxes == more.boxes && one.triangles == more.triangles));
+  }
+  std::vector<std::uint32_t> ids = one.triangles;
+  std::sort(ids.begin(), ids.end());
+  REQUIRE(ids.size() == mesh.triangles.size());
+  for (std::size_t i = 0; i < ids.size(); ++i)
+    if (ids[i] != i) FAIL("triangle " << i << " is not in the tree once");
+  Rng rng(5);
+  for (int k = 0; k < 60; ++k) {
+    const Vector3f o = random_vector(rng, 0.3), d = Vector3f(0.0f, 0.5f, 0.2f) + random_vector(rng, 0.04) - o;
+    const auto hit = alone.closest(o, d);
+    const auto expected = brute_closest(mesh, o, d, 0.0f, kInf);
+    REQUIRE(hit.has_value() == expected.has_value());
+    if (hit) REQUIRE((hit->triangle == expected->triangle && hit->t == expected->t));
+  }
+}
+
 TEST_CASE("a traced scene knows the object and the normal of each triangle") {
   Scene scene;
   scene.objects.push_back({1, ObjectClass::fruit, shapes::sphere({-0.1, 0.5, 0.2}, 0.03, 16)});

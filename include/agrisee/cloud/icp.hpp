@@ -4,8 +4,9 @@
 /// rigid motion that lays a source cloud (one view) on a target cloud (what is merged so far), or a report that there
 /// is none to be trusted. The paper (its AgriSEE + SOR algorithm, last line) names ICP and gives no more.
 ///
-/// Both clouds in one frame but for a small error; metres, radians. Cost an iteration: a neighbour query a source
-/// point, with a radius that shrinks to the distance of the last match, and one 6 x 6 eigenproblem.
+/// Both clouds in one frame but for a small error; metres, radians. Cost an iteration: a neighbour query, with a radius
+/// that shrinks to the distance of the last match, for every source point whose match may have changed, and one 6 x 6
+/// eigenproblem.
 ///
 /// Each iteration solves the weighted normal equations of the linearised residuals (Gauss-Newton) for a rotation about
 /// the source's centroid, in units of its root-mean-square radius so that turns and shifts weigh alike, and a
@@ -14,11 +15,15 @@
 #pragma once
 
 #include <agrisee/cloud/icp_parameters.hpp>
+#include <agrisee/core/all_neighbors.hpp>
 #include <agrisee/core/grid.hpp>
 #include <agrisee/core/parallel.hpp>
 #include <agrisee/core/pose.hpp>
+#include <agrisee/geometry/aabb.hpp>
 
 #include <Eigen/Eigenvalues>
+
+#include <optional>
 
 namespace agrisee {
 
@@ -29,19 +34,21 @@ struct IcpResult {
   /// Residuals (m) at the initial pose and at the end of the search, over the points matched at both:
   /// sqrt(mean(2 rho(r))), the root mean square where the kernel is `none`. 0 without matches.
   double rms_before = 0.0;
-  double rms_after = 0.0;                       ///< the same at the end
-  std::size_t matches_before = 0;               ///< matched points at the initial pose
-  std::size_t matches = 0;                      ///< and at the end
-  int iterations = 0;                           ///< steps taken
-  int constrained = 0;                          ///< of six directions, those that the surface determines, last step
-  double translation = 0.0;                     ///< size of the motion found (m, at the source's centroid)
-  double rotation = 0.0;                        ///< and its turn (rad)
+  double rms_after = 0.0;          ///< the same at the end
+  std::size_t matches_before = 0;  ///< matched points at the initial pose
+  std::size_t matches = 0;         ///< and at the end
+  int iterations = 0;              ///< steps taken
+  int constrained = 0;             ///< of six directions, those that the surface determines, last step
+  double translation = 0.0;        ///< size of the motion found (m, at the source's centroid)
+  double rotation = 0.0;           ///< and its turn (rad)
 };
 
 namespace detail {
 
 using Vector6 = Eigen::Matrix<double, 6, 1>;
 using Matrix6 = Eigen::Matrix<double, 6, 6>;
+
+constexpr std::size_t kFew = 4;  ///< points of the target that a first look for a match should find
 
 /// Source points, their matches at the present pose and the sums made of them.
 template <typename S, typename Source, typename Target, typename Search>
@@ -53,9 +60,12 @@ class IcpProblem {
       : target_(target), target_normals_(target_normals), params_(params), search_(search), threads_(threads) {
     const bool turned = !source_normals.empty() && params.max_normal_angle < kPi;
     cos_min_ = turned ? std::cos(params.max_normal_angle) : -2.0;
-    for (std::size_t i = 0; i < agrisee::size(source); ++i) {
+    first_reach_ = std::min(static_cast<S>(params.max_distance), typical_distance(target, kFew));
+    // In an order that keeps neighbours together, so that one query finds in the cache what the last one read.
+    const Grid<scalar_t<Source>> order(source, static_cast<scalar_t<Source>>(params.max_distance));
+    for (const Index id : order.ids()) {
+      const auto i = static_cast<std::size_t>(id);
       const Eigen::Vector3d p = point(source, i).template cast<double>();
-      if (!is_finite(p)) continue;
       if (turned && !(source_normals[i].squaredNorm() > 0)) continue;  // no test is possible
       points_.push_back(p);
       if (turned) normals_.push_back(source_normals[i].template cast<double>());
@@ -63,13 +73,21 @@ class IcpProblem {
     }
     if (!points_.empty()) centroid_ /= static_cast<double>(points_.size());
     double squares = 0.0;
-    for (const auto& p : points_) squares += (p - centroid_).squaredNorm();
+    for (const auto& p : points_) {
+      squares += (p - centroid_).squaredNorm();
+      radius_ = std::max(radius_, (p - centroid_).norm());
+    }
     if (squares > 0.0) length_ = std::sqrt(squares / static_cast<double>(points_.size()));
     match_.assign(points_.size(), -1);
+    safe_until_.assign(points_.size(), 0.0);
     residual_.assign(points_.size(), 0.0);
   }
 
   const Eigen::Vector3d& centroid() const { return centroid_; }
+  /// The source's usable points, in the order of matches() and residuals().
+  const std::vector<Eigen::Vector3d>& points() const { return points_; }
+  /// Their normals; empty where these are not tested.
+  const std::vector<Eigen::Vector3d>& normals() const { return normals_; }
   const std::vector<Index>& matches() const { return match_; }
   const std::vector<double>& residuals() const { return residual_; }
   std::size_t matched() const {
@@ -77,29 +95,22 @@ class IcpProblem {
   }
 
   /// The nearest target point with a normal that agrees, for every source point, and its residual.
+  /// A match stays without being looked for while no point can have moved far enough for another to be nearer.
   void match(const Pose& target_T_source) {
-    const S limit = static_cast<S>(params_.max_distance);
+    const double moved = matched_ ? farthest_move(target_T_source) : 0.0;
+    moved_ += moved;
+    // Steps get shorter: so far beyond a match the next few of them reach, and are saved a search each.
+    const S beyond = 8.0 * moved < double(first_reach_) ? static_cast<S>(8.0 * moved) : S(0);
     parallel_for(points_.size(), threads_, [&](std::size_t i) {
       const Eigen::Vector3d q = target_T_source * points_[i];
-      const Vector3<S> query = q.template cast<S>();
       const Eigen::Vector3d normal =
           normals_.empty() ? Eigen::Vector3d::Zero() : Eigen::Vector3d(target_T_source.linear() * normals_[i]);
-      Index best = -1;
-      S best_sq = limit * limit;
-      if (match_[i] >= 0 && agrees(match_[i], normal)) {  // the last match bounds the distance of the next
-        const S d_sq = distance_sq<S>(target_point(match_[i]), query);
-        if (d_sq <= best_sq) best = match_[i], best_sq = d_sq;
-      }
-      search_.visit(query, best < 0 ? limit : std::sqrt(best_sq), [&](Index j, S d_sq) {
-        if (d_sq > best_sq || (d_sq == best_sq && best >= 0 && j >= best) || !agrees(j, normal)) return;
-        best = j;
-        best_sq = d_sq;
-      });
-      match_[i] = best;
-      if (best < 0) return;
-      const Eigen::Vector3d gap = q - target_point(best).template cast<double>();
-      residual_[i] = params_.point_to_point ? gap.norm() : target_normal(best).dot(gap);
+      if (!(match_[i] >= 0 && moved_ <= safe_until_[i] && agrees(match_[i], normal))) find(i, q, normal, beyond);
+      if (match_[i] < 0) return;
+      const Eigen::Vector3d gap = q - target_point(match_[i]).template cast<double>();
+      residual_[i] = params_.point_to_point ? gap.norm() : target_normal(match_[i]).dot(gap);
     });
+    matched_ = target_T_source;
   }
 
   /// The step (a pose in the target frame, to be applied after `target_T_source`) that lowers the weighted residuals.
@@ -120,7 +131,7 @@ class IcpProblem {
         const auto add = [&](const Eigen::Vector3d& direction, double r) {
           Vector6 j;
           j << arm.cross(direction), direction;
-          sums.h.noalias() += weight * j * j.transpose();
+          sums.h += (weight * j).lazyProduct(j.transpose());
           sums.g += weight * r * j;
         };
         if (!params_.point_to_point) {
@@ -153,6 +164,47 @@ class IcpProblem {
   }
 
  private:
+  /// How far (m) a point may have moved since the last matching, at most.
+  double farthest_move(const Pose& target_T_source) const {
+    const double turn = angle_of(matched_->inverse() * target_T_source);
+    return (target_T_source * centroid_ - *matched_ * centroid_).norm() + turn * radius_;
+  }
+
+  /// The match of source point i, which is at q, and how far the points may move before it has to be looked for again.
+  void find(std::size_t i, const Eigen::Vector3d& q, const Eigen::Vector3d& normal, S beyond) {
+    const S limit = static_cast<S>(params_.max_distance);
+    const Vector3<S> query = q.template cast<S>();
+    Index best = -1;
+    S best_sq = limit * limit, reach = first_reach_;
+    if (match_[i] >= 0 && agrees(match_[i], normal)) {  // the last match bounds the distance of the next
+      const S d_sq = distance_sq<S>(target_point(match_[i]), query);
+      if (d_sq <= best_sq) best = match_[i], best_sq = d_sq, reach = std::sqrt(best_sq) + beyond;
+    }
+    S other_sq = best_sq;  // of the nearest but the match, whether its normal agrees or not
+    for (;; reach *= S(2)) {
+      reach = std::min(reach, limit);
+      other_sq = reach * reach;
+      search_.visit(query, reach, [&](Index j, S d_sq) {
+        if (j == best) return;
+        if (d_sq < best_sq || (d_sq == best_sq && (best < 0 || j < best))) {
+          if (agrees(j, normal)) {
+            if (best >= 0) other_sq = std::min(other_sq, best_sq);
+            best = j;
+            best_sq = d_sq;
+            return;
+          }
+        }
+        other_sq = std::min(other_sq, d_sq);
+      });
+      if (best >= 0 || !(reach < limit)) break;
+    }
+    match_[i] = best;
+    constexpr double kRounding = 1e-6;  // of distances in S, of poses
+    const double slack = double(std::sqrt(other_sq)) * (1.0 - kRounding) - double(std::sqrt(best_sq)) -
+                         kRounding * q.cwiseAbs().maxCoeff();
+    safe_until_[i] = moved_ + 0.5 * slack;
+  }
+
   Vector3<S> target_point(Index j) const { return point(target_, static_cast<std::size_t>(j)); }
   Eigen::Vector3d target_normal(Index j) const {
     return target_normals_[static_cast<std::size_t>(j)].template cast<double>();
@@ -169,12 +221,29 @@ class IcpProblem {
   const IcpParameters& params_;
   const Search& search_;
   int threads_;
+  S first_reach_;  // where a match is looked for first (m)
   double cos_min_ = -2.0, length_ = 1.0;
+  double radius_ = 0.0;          // of the source about its centroid (m)
+  std::optional<Pose> matched_;  // the pose of the last matching
+  double moved_ = 0.0;           // how far a point may have moved by then (m), all steps added up
   Eigen::Vector3d centroid_ = Eigen::Vector3d::Zero();
   std::vector<Eigen::Vector3d> points_, normals_;
-  std::vector<Index> match_;      // in the target, -1 = none
-  std::vector<double> residual_;  // of matched points
+  std::vector<Index> match_;        // in the target, -1 = none
+  std::vector<double> residual_;    // of matched points
+  std::vector<double> safe_until_;  // a match holds while moved_ is not beyond
 };
+
+/// Cells (m) of a grid over the target: its own spacing, as most matches are no farther away than that, or as much more
+/// as keeps the cells few.
+template <typename Target>
+scalar_t<Target> icp_cell(const Target& target, const IcpParameters& params) {
+  using S = scalar_t<Target>;
+  Aabb box;
+  for (std::size_t i = 0; i < agrisee::size(target); ++i)
+    if (is_finite(point(target, i))) box.extend(point(target, i).template cast<double>());
+  const double few = box.empty() ? 0.0 : std::cbrt(box.size().prod() / (8.0 * double(agrisee::size(target))));
+  return static_cast<S>(std::min(0.5 * params.max_distance, std::max(few, double(typical_distance(target, kFew)))));
+}
 
 }  // namespace detail
 
@@ -189,7 +258,7 @@ class IcpProblem {
 /// @param target points (m) that stay
 /// @param target_normals one unit normal a target point; may be empty for point to point
 /// @param params see their struct
-/// @param search a KdTree or Grid over `target`; a grid with cells of about `max_distance` / 2 is fastest
+/// @param search a KdTree or Grid over `target`; a grid with cells of the target's spacing is fastest
 /// @param initial pose of the source frame in the target frame to start from and to measure the correction against
 /// @param threads the result does not depend on it
 /// @throws ParameterError for a bad parameter; InputError when sizes disagree, target normals are missing or `initial`
@@ -263,7 +332,7 @@ IcpResult register_cloud(const Source& source, const std::vector<Vector3<scalar_
   params.check();
   using S = scalar_t<Target>;
   return register_cloud(source, source_normals, target, target_normals, params,
-                        Grid<S>(target, static_cast<S>(0.5 * params.max_distance)), initial, threads);
+                        Grid<S>(target, detail::icp_cell(target, params)), initial, threads);
 }
 
 }  // namespace agrisee

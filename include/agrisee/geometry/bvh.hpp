@@ -40,8 +40,10 @@ class Bvh {
   /// Nothing to hit.
   Bvh() = default;
 
+  /// @param mesh its triangles
+  /// @param threads the tree does not depend on it
   /// @throws InputError when a triangle names a vertex that the mesh does not have
-  explicit Bvh(const Mesh& mesh);
+  explicit Bvh(const Mesh& mesh, int threads = 1);
 
   /// Number of triangles of the mesh, the degenerate ones included.
   std::size_t size() const { return triangles_.size() + degenerate_; }
@@ -89,7 +91,7 @@ class Bvh {
   std::size_t degenerate_ = 0;
 };
 
-inline Bvh::Bvh(const Mesh& mesh) {
+inline Bvh::Bvh(const Mesh& mesh, int threads) {
   const std::size_t n = mesh.triangles.size();
   check_input(n < std::numeric_limits<std::uint32_t>::max(), "bvh: too many triangles");
   std::vector<detail::BvhItem> items;
@@ -110,7 +112,7 @@ inline Bvh::Bvh(const Mesh& mesh) {
     }
     items.push_back(detail::BvhItem(t, static_cast<std::uint32_t>(i)));
   }
-  nodes_ = detail::build_bvh(items);
+  nodes_ = detail::build_bvh(items, threads);
   triangles_.reserve(items.size());
   ids_.reserve(items.size());
   for (const detail::BvhItem& item : items) {

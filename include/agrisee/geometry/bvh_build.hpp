@@ -1,13 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// @file
-/// How the tree of bvh.hpp is built: top down, each node split where the surface area heuristic over 16 bins an axis is
-/// lowest (Wald 2007). O(n log n); deterministic.
+/// How the tree of bvh.hpp is built: top down, each node split where the surface area heuristic over bins along
+/// the axes is lowest (Wald 2007). O(n log n); deterministic.
 #pragma once
 
+#include <agrisee/core/parallel.hpp>
 #include <agrisee/geometry/triangle.hpp>
 
 #include <algorithm>
 #include <limits>
+#include <utility>
+#include <vector>
 
 namespace agrisee::detail {
 
@@ -53,120 +56,205 @@ struct BvhItem {
   Eigen::Array4f center() const { return 0.5f * box.min + 0.5f * box.max; }
 };
 
-/// Where to split the items [begin, end): they are reordered and the first of the right side is returned, or `begin`
-/// when a leaf is better.
-inline std::size_t split_bvh(std::vector<BvhItem>& items, std::size_t begin, std::size_t end, const BvhBox& box,
-                             const BvhBox& centers, int depth) {
-  constexpr int kBins = 16;
-  constexpr std::size_t kMaxLeaf = 8;
-  constexpr float kNodeCost = 1.0f;  // of a step down, in triangle tests
-  const std::size_t n = end - begin;
-  if (n <= 2) return begin;
-  const Eigen::Array4f extent = centers.max - centers.min;
-  const auto first = items.begin() + static_cast<std::ptrdiff_t>(begin);
-  const auto last = items.begin() + static_cast<std::ptrdiff_t>(end);
-  const float longest = (box.max - box.min).head<3>().maxCoeff();
-  const float scale = std::isfinite(longest) && longest > 0.0f ? 1.0f / longest : 1.0f;
+/// A run of items that becomes a node, and the boxes around them and around their centers.
+struct BvhRange {
+  std::size_t begin = 0, end = 0;
+  BvhBox box, centers;
 
-  float best_cost = std::numeric_limits<float>::infinity();
-  int best_axis = -1, best_bin = 0;
-  Eigen::Array4f to_bin = Eigen::Array4f::Zero();
-  for (int a = 0; a < 3; ++a) {
-    const float k = float(kBins) * (1.0f - 1e-6f) / extent[a];
-    if (extent[a] > 0.0f && std::isfinite(k)) to_bin[a] = k;
+  std::size_t size() const { return end - begin; }
+  /// Take in the item at `end`.
+  void push(const BvhItem& item) {
+    box.extend(item.box);
+    centers.extend(item.center());
+    ++end;
   }
-  const auto bin = [&](const BvhItem& item, int a) {
-    return std::clamp(static_cast<int>((item.center()[a] - centers.min[a]) * to_bin[a]), 0, kBins - 1);
+};
+
+/// Bins along the three axes of the box around the centers of a range.
+struct BvhBins {
+  static constexpr int kMost = 16;
+  struct Bin {
+    BvhBox box;
+    std::uint32_t n = 0;
   };
-  if (depth < kBvhSahDepth && (to_bin > 0.0f).any()) {
-    struct Bin {
-      BvhBox box;
-      std::size_t n = 0;
-    };
-    Bin bins[3][kBins];
-    for (auto item = first; item != last; ++item)
-      for (int a = 0; a < 3; ++a) {
-        Bin& b = bins[a][bin(*item, a)];
-        b.box.extend(item->box);
-        ++b.n;
-      }
+
+  int size;                    ///< bins an axis
+  Eigen::Array4f from, scale;  ///< of bin coordinates; the scale is 0 along axes that cannot be split
+
+  explicit BvhBins(const BvhRange& range)
+      : size(range.size() < 16   ? 4
+             : range.size() < 64 ? 8
+                                 : kMost),
+        from(Eigen::Array4f::Zero()),
+        scale(Eigen::Array4f::Zero()) {
+    const Eigen::Array4f extent = range.centers.max - range.centers.min;
     for (int a = 0; a < 3; ++a) {
-      if (!(to_bin[a] > 0.0f)) continue;
-      float right_cost[kBins];
-      BvhBox sweep;
-      std::size_t count = 0;
-      for (int b = kBins - 1; b > 0; --b) {
-        sweep.extend(bins[a][b].box);
-        count += bins[a][b].n;
-        right_cost[b] = count == 0 ? -1.0f : sweep.half_area(scale) * float(count);
-      }
-      sweep = BvhBox();
-      count = 0;
-      for (int b = 1; b < kBins; ++b) {
-        sweep.extend(bins[a][b - 1].box);
-        count += bins[a][b - 1].n;
-        if (count == 0 || right_cost[b] < 0.0f) continue;
-        const float cost = sweep.half_area(scale) * float(count) + right_cost[b];
-        if (cost < best_cost) {
-          best_cost = cost;
-          best_axis = a;
-          best_bin = b;
-        }
-      }
+      const float k = static_cast<float>(size) * (1.0f - 1e-6f) / extent[a];
+      if (!(extent[a] > 0.0f) || !std::isfinite(k)) continue;
+      from[a] = range.centers.min[a];
+      scale[a] = k;  // small enough for rounding never to reach bin `size`
     }
   }
-  const float area = box.half_area(scale);
-  if (n <= kMaxLeaf && !(best_cost + kNodeCost * area < area * float(n))) return begin;
-  if (best_axis >= 0) {
-    const auto middle = std::partition(first, last, [&](const BvhItem& i) { return bin(i, best_axis) < best_bin; });
-    return static_cast<std::size_t>(middle - items.begin());
+  bool usable() const { return (scale > 0.0f).any(); }
+  /// The bin of a center along an axis.
+  int of(const Eigen::Array4f& center, int axis) const {
+    return static_cast<int>((center[axis] - from[axis]) * scale[axis]);
   }
-  // All centres (nearly) coincide, or the tree is too deep: halve along the longest axis.
-  int axis = 0;
-  (centers.max - centers.min).head<3>().maxCoeff(&axis);
-  const auto middle = first + (last - first) / 2;
-  std::nth_element(first, middle, last, [&](const BvhItem& a, const BvhItem& b) {
-    const float ca = a.center()[axis], cb = b.center()[axis];
-    return ca < cb || (ca == cb && a.triangle < b.triangle);
-  });
-  return static_cast<std::size_t>(middle - items.begin());
+};
+
+/// Items with a bin below `bin` along `axis` are the left side.
+struct BvhSplit {
+  int axis = -1;  ///< -1 = the heuristic found none
+  int bin = 0;
+  float cost = std::numeric_limits<float>::infinity();
+};
+
+/// The split between bins that the surface area heuristic takes to be cheapest.
+/// @param scale see BvhBox::half_area()
+inline BvhSplit cheapest_split(const std::vector<BvhItem>& items, const BvhRange& range, const BvhBins& bins,
+                               float scale) {
+  BvhBins::Bin all[3][BvhBins::kMost];
+  for (std::size_t i = range.begin; i < range.end; ++i) {
+    const Eigen::Array4f center = items[i].center();
+    for (int a = 0; a < 3; ++a) {
+      BvhBins::Bin& b = all[a][bins.of(center, a)];
+      b.box.extend(items[i].box);
+      ++b.n;
+    }
+  }
+  BvhSplit best;
+  for (int a = 0; a < 3; ++a) {
+    if (!(bins.scale[a] > 0.0f)) continue;
+    float right_cost[BvhBins::kMost];
+    BvhBox sweep;
+    std::uint32_t count = 0;
+    for (int b = bins.size - 1; b > 0; --b) {
+      if (all[a][b].n > 0) {
+        sweep.extend(all[a][b].box);
+        count += all[a][b].n;
+      }
+      right_cost[b] = count == 0 ? -1.0f : sweep.half_area(scale) * static_cast<float>(count);
+    }
+    sweep = BvhBox();
+    count = 0;
+    for (int b = 1; b < bins.size; ++b) {
+      if (all[a][b - 1].n == 0) continue;  // a split here puts the same items on either side as the one before
+      sweep.extend(all[a][b - 1].box);
+      count += all[a][b - 1].n;
+      if (right_cost[b] < 0.0f) break;
+      const float cost = sweep.half_area(scale) * static_cast<float>(count) + right_cost[b];
+      if (cost < best.cost) best = {a, b, cost};
+    }
+  }
+  return best;
 }
 
-/// The nodes of a tree over `items`, which are put into the order of the leaves. No items: no nodes.
-inline std::vector<BvhNode> build_bvh(std::vector<BvhItem>& items) {
-  std::vector<BvhNode> nodes;
-  if (items.empty()) return nodes;
-  nodes.reserve(items.size());
-  nodes.emplace_back();
-  struct Task {
-    std::size_t begin, end;
-    std::uint32_t node;
-    int depth;
-  };
-  std::vector<Task> tasks{{0, items.size(), 0, 0}};
-  while (!tasks.empty()) {
-    const Task task = tasks.back();
-    tasks.pop_back();
-    BvhBox box, centers;
-    for (std::size_t i = task.begin; i < task.end; ++i) {
-      box.extend(items[i].box);
-      centers.extend(items[i].center());
+/// Split a range: its items are reordered.
+/// @return the two sides; the left one is empty when a leaf is better
+inline std::pair<BvhRange, BvhRange> split_bvh(std::vector<BvhItem>& items, const BvhRange& range, int depth) {
+  constexpr std::size_t kMinLeaf = 4, kMaxLeaf = 8;  // fewer are not split, more always are
+  constexpr float kNodeCost = 1.0f;                  // of a step down, in triangle tests
+  BvhRange left, right;
+  left.begin = left.end = range.begin;
+  if (range.size() <= kMinLeaf) return {left, right};
+  const float longest = (range.box.max - range.box.min).head<3>().maxCoeff();
+  const float scale = std::isfinite(longest) && longest > 0.0f ? 1.0f / longest : 1.0f;
+  const BvhBins bins(range);
+  const BvhSplit best = depth < kBvhSahDepth && bins.usable() ? cheapest_split(items, range, bins, scale) : BvhSplit();
+  const float area = range.box.half_area(scale);
+  if (range.size() <= kMaxLeaf && !(best.cost + kNodeCost * area < area * static_cast<float>(range.size())))
+    return {left, right};
+  if (best.axis >= 0) {
+    std::size_t end = range.end;
+    while (left.end < end) {
+      if (bins.of(items[left.end].center(), best.axis) < best.bin) {
+        left.push(items[left.end]);
+      } else {
+        right.push(items[left.end]);
+        std::swap(items[left.end], items[--end]);
+      }
     }
+  } else {
+    // All centers (nearly) coincide, or the tree is too deep: halve along the longest axis.
+    int axis = 0;
+    (range.centers.max - range.centers.min).head<3>().maxCoeff(&axis);
+    const auto at = [&](std::size_t i) { return items.begin() + static_cast<std::ptrdiff_t>(i); };
+    const std::size_t middle = range.begin + range.size() / 2;
+    std::nth_element(at(range.begin), at(middle), at(range.end), [&](const BvhItem& a, const BvhItem& b) {
+      const float ca = a.center()[axis], cb = b.center()[axis];
+      return ca < cb || (ca == cb && a.triangle < b.triangle);
+    });
+    while (left.end < middle) left.push(items[left.end]);
+    for (std::size_t i = middle; i < range.end; ++i) right.push(items[i]);
+  }
+  right.begin = left.end;
+  right.end = range.end;
+  return {left, right};
+}
+
+/// A node that is still to be made of a range.
+struct BvhTask {
+  BvhRange range;
+  std::uint32_t node;
+  int depth;
+};
+
+/// Make a node and all below it, but what `put_off` takes.
+/// @param put_off `bool(const BvhTask&)`: true for what it takes charge of
+template <typename PutOff>
+void grow_bvh(std::vector<BvhNode>& nodes, std::vector<BvhItem>& items, const BvhTask& whole, PutOff&& put_off) {
+  std::vector<BvhTask> tasks{whole};
+  while (!tasks.empty()) {
+    const BvhTask task = tasks.back();
+    tasks.pop_back();
+    if (put_off(task)) continue;
     BvhNode& node = nodes[task.node];
-    node.min = box.min.head<3>();
-    node.max = box.max.head<3>();
-    const std::size_t middle = split_bvh(items, task.begin, task.end, box, centers, task.depth);
-    if (middle == task.begin) {
-      node.first = static_cast<std::uint32_t>(task.begin);
-      node.count = static_cast<std::uint32_t>(task.end - task.begin);
+    node.min = task.range.box.min.head<3>();
+    node.max = task.range.box.max.head<3>();
+    const auto [left, right] = split_bvh(items, task.range, task.depth);
+    if (left.size() == 0) {
+      node.first = static_cast<std::uint32_t>(task.range.begin);
+      node.count = static_cast<std::uint32_t>(task.range.size());
       continue;
     }
     const auto children = static_cast<std::uint32_t>(nodes.size());
     node.first = children;
     node.count = 0;
     nodes.resize(nodes.size() + 2);
-    tasks.push_back({middle, task.end, children + 1, task.depth + 1});
-    tasks.push_back({task.begin, middle, children, task.depth + 1});
+    tasks.push_back({right, children + 1, task.depth + 1});
+    tasks.push_back({left, children, task.depth + 1});
+  }
+}
+
+/// The nodes of a tree over `items`, which are put into the order of the leaves. No items: no nodes.
+/// @param threads the result does not depend on it
+inline std::vector<BvhNode> build_bvh(std::vector<BvhItem>& items, int threads) {
+  constexpr std::size_t kSubtree = 8192;  // ranges of at most so many are independent pieces of work
+  std::vector<BvhNode> nodes;
+  if (items.empty()) return nodes;
+  nodes.reserve(items.size());
+  nodes.emplace_back();
+  BvhTask whole{{}, 0, 0};
+  for (const BvhItem& item : items) whole.range.push(item);
+  std::vector<BvhTask> roots;
+  grow_bvh(nodes, items, whole, [&](const BvhTask& task) {
+    if (task.range.size() > kSubtree) return false;
+    roots.push_back(task);
+    return true;
+  });
+  std::vector<std::vector<BvhNode>> subtrees(roots.size());
+  const auto grow = [&](std::size_t r) {
+    subtrees[r].reserve(roots[r].range.size());
+    subtrees[r].emplace_back();
+    grow_bvh(subtrees[r], items, {roots[r].range, 0, roots[r].depth}, [](const BvhTask&) { return false; });
+  };
+  parallel_for(roots.size(), threads, grow, 1);
+  for (std::size_t r = 0; r < roots.size(); ++r) {
+    const auto shift = static_cast<std::uint32_t>(nodes.size() - 1);  // of all but the root, whose place is there
+    for (BvhNode& node : subtrees[r])
+      if (node.count == 0) node.first += shift;
+    nodes[roots[r].node] = subtrees[r].front();
+    nodes.insert(nodes.end(), subtrees[r].begin() + 1, subtrees[r].end());
   }
   return nodes;
 }

@@ -12,8 +12,10 @@ namespace agrisee {
 /// go away.
 class TracedScene {
  public:
+  /// @param scene its objects
+  /// @param threads the result does not depend on it
   /// @throws InputError when a mesh names a vertex that it does not have; the object's index is named
-  explicit TracedScene(const Scene& scene) {
+  explicit TracedScene(const Scene& scene, int threads = 1) {
     Mesh all;
     std::size_t vertices = 0, triangles = 0;
     for (const Object& object : scene.objects) {
@@ -41,7 +43,7 @@ class TracedScene {
       normals_.push_back(std::isfinite(length) && length > 0.0 ? Eigen::Vector3f((n / length).cast<float>())
                                                                : Eigen::Vector3f(Eigen::Vector3f::Zero()));
     }
-    bvh_ = Bvh(all);
+    bvh_ = Bvh(all, threads);
   }
 
   /// The tree over all triangles.

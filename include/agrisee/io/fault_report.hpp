@@ -4,7 +4,7 @@
 #pragma once
 
 #include <agrisee/io/report.hpp>
-#include <agrisee/study/faults.hpp>
+#include <agrisee/study/fault_record.hpp>
 
 #include <filesystem>
 #include <vector>
