@@ -6,9 +6,10 @@ CMAKE_ARGS ?=
 CONFIGURE := cmake -S . -B build/release -G Ninja -DCMAKE_BUILD_TYPE=Release $(CMAKE_ARGS)
 AGRISEE := build/release/agrisee
 
-.PHONY: help build demo test experiment bench fuzz survive format clean
+.PHONY: help build demo test experiment bench fuzz survive long format clean
 SECONDS_IN_ALL ?= 14400
 KILLS ?= 100
+RUNS ?= 1000
 
 help:
 	@echo "make demo    install what is missing, build, scan a 7-fruit truss, evaluate it, draw it"
@@ -17,6 +18,7 @@ help:
 	@echo "make bench   build and run the benchmarks, against other libraries where they are installed; docs/benchmarks.md"
 	@echo "make fuzz    fuzz the readers with clang's libFuzzer, for hours (SECONDS_IN_ALL=60: for a minute)"
 	@echo "make survive kill a scan a hundred times (KILLS=...) and fill its disk: nothing may be lost"
+	@echo "make long    scan a thousand trusses in one process (RUNS=...): memory and time may not grow"
 	@echo "make format  run clang-format on all sources"
 	@echo "make clean   remove build/ and demo/"
 
@@ -59,6 +61,12 @@ fuzz:
 survive: build
 	@python3 tests/cli/survive.py $(AGRISEE) build/survive kill $(KILLS)
 	@python3 tests/cli/survive.py $(AGRISEE) build/survive full || [ $$? = 77 ]
+
+long:
+	@cmake/packages.sh build test
+	@$(CONFIGURE) -DAGRISEE_BUILD_TESTS=ON
+	@cmake --build build/release --target long_run -j $(JOBS)
+	@build/release/tests/long_run $(RUNS)
 
 format:
 	@git ls-files '*.hpp' '*.cpp' | xargs clang-format -i

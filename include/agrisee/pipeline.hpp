@@ -24,7 +24,11 @@
 
 namespace agrisee {
 
-/// One scan of one truss.
+/// One scan of one truss. Not to be used by two threads at once; two pipelines in two threads are independent.
+///
+/// All calls can be stopped from another thread (core/cancellation.hpp), which throws Cancelled and leaves the pipeline
+/// as it was before the call. `observe` stops while it works out what the frame shows and where it lies; what it then
+/// does to the scan so far, some tens of ms, is done to the end.
 class Pipeline {
  public:
   /// So many refused views on end are the end of a scan.
@@ -67,8 +71,8 @@ class Pipeline {
   /// contradicts what other views saw (see FreeSpaceParameters::max_contradiction): its pose is wrong. Of views that
   /// contradict one another the more are believed, so that a wrong first view is found out too.
   /// @return the view as recorded
-  /// @throws InputError for a frame whose size disagrees with its intrinsics or a pose that is not rigid; the scan so
-  /// far is kept
+  /// @throws InputError for a frame whose size disagrees with its intrinsics or a pose that is not rigid; Cancelled;
+  /// the scan so far is kept
   const View& observe(const sensor::DepthFrame& frame, const Pose& world_T_optical,
                       const std::optional<Joints>& joints = std::nullopt) {
     check(frame);
@@ -78,15 +82,26 @@ class Pipeline {
     view.target = world_T_optical * Eigen::Vector3d(0.0, 0.0, target_distance(world_T_optical));
     view.joints = joints;
     view.plan_seconds = plan_seconds_;
+    const bool shows = std::any_of(frame.depth.begin(), frame.depth.end(), sensor::DepthFrame::valid);
+    const bool frozen = shows && is_last_frame(frame);
+    Surface surface;
+    double looked = 0.0;
+    if (parameters_.fuse_surfaces) {
+      const Stopwatch watch(looked);
+      surface = surface_of(frame, frozen, view);
+    }
+    // From here on the scan so far changes: to be done to the end.
+    const detail::CancellationSwap to_the_end(nullptr);
+    seconds_.fuse += looked;
     plan_seconds_ = 0.0;
     refusals_ = 0;
+    if (shows && !frozen) last_frame_ = frame.depth;
     std::vector<Eigen::Vector3f> added;
     std::optional<Indices> kept;
     {
       const Stopwatch watch(seconds_.fuse);
-      const bool frozen = is_last_frame(frame);
       if (parameters_.fuse_surfaces)
-        kept = take_surface(frame, frozen, view, added);
+        kept = take_surface(std::move(surface), frozen, view, added);
       else if (frozen)
         view.discarded = true;
       else
@@ -121,6 +136,7 @@ class Pipeline {
   }
 
   /// Where to look next, from where the arm stands now; empty when the scan is over, `stop_reason` says why.
+  /// @throws InputError when `current` is not finite; Cancelled
   std::optional<plan::ReachableView> next_view(const Joints& current) {
     check_input(current.allFinite(), "next_view: the joints are not finite");
     double spent = 0.0;
@@ -169,6 +185,7 @@ class Pipeline {
   const plan::Reach& reach() const { return reach_; }
 
   /// Clean, split and locate what has been seen so far, and plan the picking from where the arm stood last.
+  /// @throws Cancelled
   ScanResult result() const {
     CloudOrigin origin;
     for (const View& v : views_) origin.sensors.push_back(v.world_T_optical.translation());
@@ -232,21 +249,41 @@ class Pipeline {
   }
 
   /// True when a frame that shows something is the last one again; a real sensor's noise never repeats.
-  bool is_last_frame(const sensor::DepthFrame& frame) {
+  bool is_last_frame(const sensor::DepthFrame& frame) const {
     const auto equal = [](float a, float b) { return a == b || (!(a > 0.0f) && !(b > 0.0f)); };
-    const bool same = std::equal(frame.depth.begin(), frame.depth.end(), last_frame_.begin(), last_frame_.end(), equal);
-    const bool shows = std::any_of(frame.depth.begin(), frame.depth.end(), sensor::DepthFrame::valid);
-    if (shows && !same) last_frame_ = frame.depth;
-    return shows && same;
+    return std::equal(frame.depth.begin(), frame.depth.end(), last_frame_.begin(), last_frame_.end(), equal);
+  }
+
+  /// What a frame shows, laid on what is fused so far.
+  struct Surface {
+    sensor::SurfaceImage image;
+    bool believed = false;  // if not, the image is as reported
+  };
+
+  /// The frame's surface; changes nothing but what is told of the view.
+  Surface surface_of(const sensor::DepthFrame& frame, bool frozen, View& view) const {
+    Surface out;
+    out.image =
+        sensor::reconstruct_surface(frame, view.world_T_optical, workcell_.scan_volume, parameters_.surface, threads_);
+    view.points_in = out.image.points_in;
+    if (frozen) return out;
+    if (parameters_.register_views) {
+      if (contradicted(out.image)) {
+        // A pose that errs by millimetres contradicts at borders and thin parts, until the view is laid on the others.
+        sensor::SurfaceImage laid = out.image;
+        register_image(laid);
+        if (contradicted(laid)) return out;
+        out.image = std::move(laid);
+      }
+      register_image(out.image);
+    }
+    out.believed = true;
+    return out;
   }
 
   /// The frame's surface becomes part of what is fused so far, unless it is not believed.
   /// @return where what was fused before is not believed any more: the points that are kept, those from before counted
-  std::optional<Indices> take_surface(const sensor::DepthFrame& frame, bool frozen, View& view,
-                                      std::vector<Eigen::Vector3f>& added) {
-    sensor::SurfaceImage image =
-        sensor::reconstruct_surface(frame, view.world_T_optical, workcell_.scan_volume, parameters_.surface, threads_);
-    view.points_in = image.points_in;
+  std::optional<Indices> take_surface(Surface surface, bool frozen, View& view, std::vector<Eigen::Vector3f>& added) {
     images_.emplace_back();  // nothing that counts as evidence
     images_.back().world_T_optical = view.world_T_optical;
     const std::size_t id = views_.size();
@@ -254,15 +291,9 @@ class Pipeline {
       view.discarded = true;
       return std::nullopt;
     }
-    if (!parameters_.register_views || !contradicted(image)) {
-      fuse(std::move(image), id, added);
-      return std::nullopt;
-    }
-    // A pose that errs by millimetres contradicts at borders and thin parts, until the view is laid on the others.
-    sensor::SurfaceImage laid = image;
-    register_image(laid);
-    if (!contradicted(laid)) {
-      fuse(std::move(laid), id, added);
+    sensor::SurfaceImage& image = surface.image;
+    if (surface.believed) {
+      add(std::move(image), id, added);
       return std::nullopt;
     }
     // Those of the views that were not believed which tell the same as this one; more of them than of the others?
@@ -286,7 +317,8 @@ class Pipeline {
     }
     for (const std::size_t v : group) {
       if (v < id) views_[v].discarded = false;
-      fuse(std::move(held_.at(v)), v, added);
+      register_image(held_.at(v));
+      add(std::move(held_.at(v)), v, added);
       held_.erase(v);
     }
     Indices kept(added.size());
@@ -306,9 +338,8 @@ class Pipeline {
     return all.contradiction() > parameters_.free_space.max_contradiction;
   }
 
-  /// Lay an image on what is fused so far and add it.
-  void fuse(sensor::SurfaceImage image, std::size_t id, std::vector<Eigen::Vector3f>& added) {
-    if (parameters_.register_views) register_image(image);
+  /// Add an image that is laid on what is fused so far.
+  void add(sensor::SurfaceImage image, std::size_t id, std::vector<Eigen::Vector3f>& added) {
     for (std::size_t c = 0; c < image.points.size(); ++c)
       if (surfels_.add(image.points[c], image.normals[c], image.sigma[c], static_cast<int>(id)))
         added.push_back(image.points[c]);

@@ -47,6 +47,7 @@ inline Cloud thinned(const Cloud& cloud, const Parameters& parameters) {
   if (finite.views.empty()) return out;
   Neighbors<float> nearest;
   for (const auto& p : out.points) {
+    if ((out.views.size() & 0xFFF) == 0) throw_if_cancelled();
     search.knn(p, 1, nearest);
     out.views.push_back(finite.views[static_cast<std::size_t>(nearest.front().index)]);
   }
@@ -133,6 +134,7 @@ inline void complete_normals(Cloud& cloud, const Parameters& parameters, const C
   const KdTree<float> search(sure);
   Neighbors<float> nearest;
   for (std::size_t i = 0; i < cloud.size(); ++i) {
+    if ((i & 0xFFF) == 0) throw_if_cancelled();
     if (cloud.normals[i].squaredNorm() > 0.0f) continue;
     cloud.normals[i] = estimated[i];
     if (seen_from(cloud, i, origin) || sure.empty()) continue;
@@ -195,7 +197,7 @@ inline ScanResult process_finite(Cloud raw, const Parameters& parameters, const 
 /// @param origin where the points were seen from
 /// @param seen_through evidence of free space from the views, or empty
 /// @param threads the result does not depend on it
-/// @throws ParameterError
+/// @throws ParameterError; Cancelled (core/cancellation.hpp)
 inline ScanResult process(const Cloud& cloud, const Parameters& parameters = {}, const CloudOrigin& origin = {},
                           const SeenThrough& seen_through = {}, int threads = 1) {
   return detail::process_finite(select(cloud, finite_indices(cloud)), parameters, origin, seen_through, threads);
@@ -209,7 +211,7 @@ inline ScanResult process(const Cloud& cloud, const Parameters& parameters = {},
 /// @param origin where the points were seen from
 /// @param seen_through evidence of free space from the views, or empty
 /// @param threads the result does not depend on it
-/// @throws ParameterError
+/// @throws ParameterError; Cancelled (core/cancellation.hpp)
 template <typename C, typename = scalar_t<C>>
 ScanResult process(const C& cloud, const Parameters& parameters = {}, const CloudOrigin& origin = {},
                    const SeenThrough& seen_through = {}, int threads = 1) {

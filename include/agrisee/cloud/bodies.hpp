@@ -199,6 +199,7 @@ std::vector<FoundBody> find_bodies(const PointCloud<S>& cloud, const std::vector
   std::vector<Entry> entries;
   std::vector<Ellipsoid> known;  // where proposals ended up; most of them meet
   for (const BodyCandidate& c : candidates) {
+    throw_if_cancelled();
     if (!plausible(c.body.mean_radius())) continue;
     // Not worth a fit where hardly anything supports even the first guess.
     if (detail::judge(cloud, grid, taken, c.body, parameters, {}).coverage < 0.3 * parameters.min_coverage) continue;
@@ -242,6 +243,7 @@ std::vector<FoundBody> find_bodies(const PointCloud<S>& cloud, const std::vector
         taken[i] = 1;
     });
     for (Entry& e : entries) {
+      throw_if_cancelled();
       if (!e.alive) continue;
       const double gap = (e.fit.body.center - body.center).norm() - e.fit.body.mean_radius() - body.mean_radius();
       if (gap > 0.5 * body.mean_radius()) continue;
@@ -270,6 +272,7 @@ Labels assign_to_bodies(const PointCloud<S>& cloud, const std::vector<FoundBody>
   std::vector<float> best(cloud.size(), std::numeric_limits<float>::infinity());
   const double cos_loose = std::cos(std::min(kPi / 2, 1.6 * parameters.max_angle));
   for (std::size_t b = 0; b < bodies.size(); ++b) {
+    throw_if_cancelled();
     const Ellipsoid& body = bodies[b].fit.body;
     const double r = body.mean_radius();
     grid.visit(body.center.cast<S>(), static_cast<S>(1.4 * r), [&](Index index, S) {

@@ -8,6 +8,7 @@
 /// crescent yields a sphere and a whole fruit its own shape. Units: metres. Cost: linear in the points per iteration.
 #pragma once
 
+#include <agrisee/core/cancellation.hpp>
 #include <agrisee/core/cloud.hpp>
 #include <agrisee/core/error.hpp>
 
@@ -224,6 +225,7 @@ std::optional<EllipsoidFit> fit_ellipsoid(const PointCloud<S>& cloud, const Indi
     const Ellipsoid body = fit.body;
     const double inlier = 3.0 * std::max(parameters.noise, 0.01 * size);
     for (const Sample& sample : samples) {
+      if (((&sample - samples.data()) & 0xFFF) == 0) throw_if_cancelled();
       const auto row = detail::ellipsoid_row(body, sample.point, sample.normal, size, gate, cos_max);
       if (!(row.weight > 0.0)) continue;
       Eigen::Matrix<double, 10, 1> j;

@@ -292,6 +292,7 @@ IcpResult register_cloud(const Source& source, const std::vector<Vector3<scalar_
 
   Pose pose = initial;
   while (enough() && result.iterations < params.max_iterations) {
+    throw_if_cancelled();
     const double scale = robust_scale(problem.matches(), problem.residuals(), params.min_scale());
     const Pose step = problem.step(pose, scale, result.constrained);
     const double shift = (step * (pose * problem.centroid()) - pose * problem.centroid()).norm();

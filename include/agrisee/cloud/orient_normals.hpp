@@ -169,7 +169,7 @@ std::vector<Vector3<scalar_t<C>>> orient_normals_consistently(std::vector<Vector
     });
   });
   edges.erase(std::remove_if(edges.begin(), edges.end(), [](const Edge& e) { return e.cost == S(2); }), edges.end());
-  std::sort(edges.begin(), edges.end());
+  detail::sort_cancellably(edges.begin(), edges.end());
 
   std::vector<detail::PatchSums> points(n);
   Eigen::Vector3d origin = Eigen::Vector3d::Zero();  // among the points, for the sake of the digits
@@ -183,6 +183,7 @@ std::vector<Vector3<scalar_t<C>>> orient_normals_consistently(std::vector<Vector
   }
   detail::Patches patches(std::move(points));
   for (const Edge& e : edges) {  // Kruskal: an edge inside a patch changes nothing
+    if (((&e - edges.data()) & 0xFFFF) == 0) throw_if_cancelled();
     const auto a = static_cast<std::size_t>(e.a), b = static_cast<std::size_t>(e.b);
     patches.join(a, b, normals[a].dot(normals[b]) < 0);
   }

@@ -75,6 +75,7 @@ Eigen::Vector3d densest_point(const PointCloud<S>& cloud, const Indices& indices
   const Grid<S> grid(part, static_cast<S>(radius));
   std::size_t best = 0, most = 0;
   for (std::size_t i = 0; i < part.size(); ++i) {
+    if ((i & 0xFF) == 0) throw_if_cancelled();
     const std::size_t count = grid.count(part.points[i], static_cast<S>(radius));
     if (count > most) {
       most = count;

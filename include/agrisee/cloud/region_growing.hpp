@@ -115,6 +115,7 @@ Labels grow_from_seeds(const C& cloud, const std::vector<Vector3<scalar_t<C>>>& 
     labels[static_cast<std::size_t>(seed)] = ++regions;
     queue.assign(1, seed);
     for (std::size_t head = 0; head < queue.size(); ++head) {
+      if ((head & 0xFF) == 0) throw_if_cancelled();
       const auto i = static_cast<std::size_t>(queue[head]);
       const Vector3<S> normal = normals[i];
       neighbors(i, [&](Index index) {

@@ -41,7 +41,7 @@ struct SorParameters {
 };
 
 /// Mean distance (m) of every point to its `k` nearest others: the paper's d_i. Where there are fewer, the mean of
-/// those there are; 0 for a point alone; NaN for a point that is not finite.
+/// those there are; 0 for a point alone; NaN for a point that is not finite; infinite where squares of distances overflow.
 /// @param cloud points (m), any cloud type
 /// @param k how many others
 /// @param search a KdTree or Grid over `cloud`
@@ -70,14 +70,14 @@ std::vector<double> mean_neighbor_distances(const C& cloud, int k, const Search&
 
 namespace detail {
 
-/// The points with d_i <= mu + alpha sigma. NaN marks points that do not count.
+/// The points with d_i <= mu + alpha sigma. Those with a d_i that is not finite do not count, and go.
 inline Indices within_deviation(const std::vector<double>& distances, const SorParameters& params) {
   double sum = 0.0, squares = 0.0, n = 0.0;
   for (const double d : distances)
-    if (!std::isnan(d)) sum += d, n += 1.0;
+    if (std::isfinite(d)) sum += d, n += 1.0;
   const double mean = n > 0.0 ? sum / n : 0.0;
   for (const double d : distances)
-    if (!std::isnan(d)) squares += (d - mean) * (d - mean);
+    if (std::isfinite(d)) squares += (d - mean) * (d - mean);
   const double degrees = params.sample_deviation ? n - 1.0 : n;
   const double sigma = degrees > 0.0 ? std::sqrt(squares / degrees) : 0.0;
   // The factor covers the rounding of the mean where all d_i are equal.
@@ -106,8 +106,8 @@ std::vector<double> mean_neighbor_distances(const C& cloud, int k, int threads =
   return distances;
 }
 
-/// Indices of the points that stay, ascending; the cloud is not changed. Points that are not finite go, and do not
-/// count in mean and deviation. A single point, or points that all coincide, stay; so does any cloud whose d_i are all
+/// Indices of the points that stay, ascending; the cloud is not changed. Points that are not finite, or so far from K
+/// others that the square of the distance overflows, go, and do not count in mean and deviation. A single point, or points that all coincide, stay; so does any cloud whose d_i are all
 /// equal.
 /// @param cloud points (m), any cloud type
 /// @param params see their struct

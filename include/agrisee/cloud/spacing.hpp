@@ -59,6 +59,7 @@ double estimate_noise(const C& cloud, const Search& search, double radius, doubl
   for (std::size_t i = 0; i < n; i += step) {
     const Vector3<S> p = point(cloud, i);
     if (!is_finite(p)) continue;
+    throw_if_cancelled();
     search.radius(p, static_cast<S>(radius), found);
     if (found.size() < 8) continue;
     moments.reset(p.template cast<double>());

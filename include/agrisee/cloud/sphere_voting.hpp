@@ -7,6 +7,7 @@
 /// little of each shows and however they touch. Cost: linear in points times radii; memory linear in the votes.
 #pragma once
 
+#include <agrisee/core/cancellation.hpp>
 #include <agrisee/core/cloud.hpp>
 #include <agrisee/core/error.hpp>
 #include <agrisee/core/random.hpp>
@@ -53,6 +54,7 @@ std::vector<VotedCenter> vote_for_centers(const PointCloud<S>& cloud, double rad
   votes.reserve(cloud.size() * static_cast<std::size_t>(steps));
   const double limit = pitch * double(kHalf - 4) - radius_max;
   for (std::size_t i = 0; i < cloud.size(); ++i) {
+    if ((i & 0xFFF) == 0) throw_if_cancelled();
     if (!is_finite(cloud.points[i]) || !(cloud.normals[i].squaredNorm() > S(0.5))) continue;
     const Eigen::Vector3d p = cloud.points[i].template cast<double>() - origin;
     if (p.cwiseAbs().maxCoeff() > limit) continue;
@@ -62,7 +64,7 @@ std::vector<VotedCenter> vote_for_centers(const PointCloud<S>& cloud, double rad
       votes.push_back(pack(std::llround(c.x()), std::llround(c.y()), std::llround(c.z())));
     }
   }
-  std::sort(votes.begin(), votes.end());
+  detail::sort_cancellably(votes.begin(), votes.end());
   struct Cell {
     std::uint64_t key;
     float votes;
@@ -84,6 +86,7 @@ std::vector<VotedCenter> vote_for_centers(const PointCloud<S>& cloud, double rad
   // The cells of the nine rows about a cell are consecutive in the list, and move forward as the cell does.
   std::array<std::size_t, 9> rows{};
   for (const Cell& c : cells) {
+    if (((&c - cells.data()) & 0xFFFF) == 0) throw_if_cancelled();
     if (double(c.votes) < min_votes / 27.0) continue;
     double total = 0.0;
     Eigen::Vector3d mean = Eigen::Vector3d::Zero();
@@ -109,6 +112,7 @@ std::vector<VotedCenter> vote_for_centers(const PointCloud<S>& cloud, double rad
   std::vector<VotedCenter> out;
   const double apart = 0.6 * radius_min;
   for (const Sum& s : sums) {
+    if (((&s - sums.data()) & 0xFFF) == 0) throw_if_cancelled();
     const bool free = std::none_of(out.begin(), out.end(),
                                    [&](const VotedCenter& o) { return (o.center - s.center).norm() < apart; });
     if (free) out.push_back({s.center, s.votes});

@@ -174,6 +174,7 @@ void propose_voted(const PointCloud<S>& cloud, const PointCloud<S>& voters, cons
                    const BodyParameters& parameters, std::vector<BodyCandidate>& candidates) {
   const std::size_t proposed = candidates.size();
   for (const VotedCenter& v : vote_for_centers(voters, parameters.radius_min, parameters.radius_max, min_votes)) {
+    throw_if_cancelled();
     const bool known = std::any_of(
         candidates.begin(), candidates.begin() + static_cast<std::ptrdiff_t>(proposed),
         [&](const BodyCandidate& c) { return (c.body.center - v.center).norm() < 0.15 * c.body.mean_radius(); });
@@ -201,6 +202,7 @@ void extend_labels(Labels& labels, const PointCloud<S>& cloud, const std::vector
       owner[r] = static_cast<std::size_t>(most - row);
   }
   for (std::size_t i = 0; i < labels.size(); ++i) {
+    if ((i & 0xFFF) == 0) throw_if_cancelled();
     if (labels[i] != 0) continue;
     const Eigen::Vector3d p = cloud.points[i].template cast<double>(), n = cloud.normals[i].template cast<double>();
     if (const std::size_t b = owner[static_cast<std::size_t>(regions[i])]) {

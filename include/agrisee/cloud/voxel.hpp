@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// Thins a cloud: one point, the mean, for each occupied cell of a grid anchored at the origin.
-/// Metres. Cost O(n): a sort of 16 bytes a point, by as many digits as the cloud is wide in cells.
+/// Metres. Cost O(n): a sort of 16 bytes a point, by as many digits as the cloud is wide in cells; O(n log n) for clouds
+/// that reach a million cells from the origin.
 #pragma once
 
 #include <agrisee/core/cloud.hpp>
@@ -10,6 +11,51 @@
 #include <agrisee/core/radix_sort.hpp>
 
 namespace agrisee {
+
+namespace detail {
+
+/// The finite points in the order of their cells of edge `leaf` (m), by z, then y, then x; equal keys are one cell.
+template <typename S>
+std::vector<Keyed> by_cell(const std::vector<Vector3<S>>& points, double leaf) {
+  const double inverse = 1.0 / leaf;
+  std::vector<Keyed> order;
+  order.reserve(points.size());
+  CellIndex least = CellIndex::Constant(CellTable::kLimit), most = -least;
+  std::vector<CellIndex> cells;
+  cells.reserve(points.size());
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const Vector3<S>& p = points[i];
+    if (!is_finite(p)) continue;
+    order.push_back({0, static_cast<Index>(i)});
+    cells.emplace_back(CellTable::coordinate(double(p.x()), inverse), CellTable::coordinate(double(p.y()), inverse),
+                       CellTable::coordinate(double(p.z()), inverse));
+    least = least.cwiseMin(cells.back());
+    most = most.cwiseMax(cells.back());
+  }
+  if (order.empty()) return order;
+  if (least.minCoeff() > -CellTable::kLimit && most.maxCoeff() < CellTable::kLimit) {
+    // Rows of cells one after the other: as few digits as the cloud needs, at most 63 bits.
+    const Eigen::Matrix<std::uint64_t, 3, 1> across = (most - least).cast<std::uint64_t>();
+    for (std::size_t j = 0; j < order.size(); ++j) {
+      const Eigen::Matrix<std::uint64_t, 3, 1> c = (cells[j] - least).cast<std::uint64_t>();
+      order[j].key = (c.z() * (across.y() + 1) + c.y()) * (across.x() + 1) + c.x();
+    }
+    radix_sort(order);
+    return order;
+  }
+  // A cell that far from the origin has no small integers for a name.
+  const auto cell = [&](Index i) {
+    const Eigen::Vector3d c = points[static_cast<std::size_t>(i)].template cast<double>() * inverse;
+    return std::array<double, 3>{std::floor(c.z()), std::floor(c.y()), std::floor(c.x())};
+  };
+  std::stable_sort(order.begin(), order.end(),
+                   [&](const Keyed& a, const Keyed& b) { return cell(a.index) < cell(b.index); });
+  for (std::size_t j = 1; j < order.size(); ++j)
+    order[j].key = order[j - 1].key + (cell(order[j].index) != cell(order[j - 1].index) ? 1u : 0u);
+  return order;
+}
+
+}  // namespace detail
 
 /// The mean point of every cell of edge `leaf` (m) that holds finite points, cells by z, then y, then x.
 /// Normals, where all points have them, are averaged and made unit; views are dropped.
@@ -20,30 +66,7 @@ namespace agrisee {
 template <typename S>
 PointCloud<S> average_in_voxels(const PointCloud<S>& cloud, double leaf, std::vector<int>* members = nullptr) {
   check_parameter(std::isfinite(leaf) && leaf > 0, "leaf", "positive", leaf);
-  const double inverse = 1.0 / leaf;
-  const auto cell = [&](const Vector3<S>& p) {
-    return CellIndex(CellTable::coordinate(double(p.x()), inverse), CellTable::coordinate(double(p.y()), inverse),
-                     CellTable::coordinate(double(p.z()), inverse));
-  };
-  std::vector<Keyed> order;
-  order.reserve(cloud.size());
-  CellIndex least = CellIndex::Constant(CellTable::kLimit), most = -least;
-  std::vector<CellIndex> cells;
-  cells.reserve(cloud.size());
-  for (std::size_t i = 0; i < cloud.size(); ++i) {
-    if (!is_finite(cloud.points[i])) continue;
-    order.push_back({0, static_cast<Index>(i)});
-    cells.push_back(cell(cloud.points[i]));
-    least = least.cwiseMin(cells.back());
-    most = most.cwiseMax(cells.back());
-  }
-  // Rows of cells one after the other: as few digits as the cloud needs, at most 63 bits.
-  const Eigen::Matrix<std::uint64_t, 3, 1> across = (most - least).cast<std::uint64_t>();
-  for (std::size_t j = 0; j < order.size(); ++j) {
-    const Eigen::Matrix<std::uint64_t, 3, 1> c = (cells[j] - least).cast<std::uint64_t>();
-    order[j].key = (c.z() * (across.y() + 1) + c.y()) * (across.x() + 1) + c.x();
-  }
-  radix_sort(order);
+  const std::vector<Keyed> order = detail::by_cell(cloud.points, leaf);
   const bool with_normals = cloud.normals.size() == cloud.points.size();
   std::size_t occupied = order.empty() ? 0 : 1;
   for (std::size_t j = 1; j < order.size(); ++j) occupied += order[j].key != order[j - 1].key ? 1u : 0u;

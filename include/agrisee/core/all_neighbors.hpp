@@ -193,7 +193,12 @@ class FarCells {
       std::size_t points = 0, c = 0;
       for (; c < cells.size() && points < k; ++c) points += size(cells[c].index);
       if (points >= k) reach = std::min(reach, cells[c - 1].distance + half_diagonal_);
-      if (points >= k || m >= runs_.size() || cells.back().distance > radius + half_diagonal_) break;
+      if (points >= k || m >= runs_.size() || cells.empty() || cells.back().distance > radius + half_diagonal_) break;
+    }
+    if (!std::isfinite(reach * reach)) {  // all are wanted, or too far for S to tell how far
+      tile.clear();
+      tile.append(grid_, 0, grid_.stored());
+      return;
     }
     const S rounding = S(8) * std::numeric_limits<S>::epsilon() * (q.cwiseAbs().maxCoeff() + half_diagonal_);
     tile.clear();

@@ -28,6 +28,11 @@ struct FileError : Error {
   using Error::Error;
 };
 
+/// The work was stopped from outside: see core/cancellation.hpp.
+struct Cancelled : Error {
+  Cancelled() : Error("cancelled") {}
+};
+
 /// Throw ParameterError("<field> must be <rule>, got <value>") unless `ok`.
 template <typename T>
 void check_parameter(bool ok, const char* field, const char* rule, const T& value) {

@@ -6,6 +6,7 @@
 /// Queries for all points at once are several times as fast through tiles.hpp.
 #pragma once
 
+#include <agrisee/core/cancellation.hpp>
 #include <agrisee/core/cloud.hpp>
 #include <agrisee/core/neighbors.hpp>
 #include <agrisee/core/stencil.hpp>
@@ -223,7 +224,7 @@ class Grid {
       const Vector3<S> p = point(cloud, i);
       if (is_finite(p)) order.emplace_back(cell_of(p), static_cast<Index>(i));
     }
-    std::sort(order.begin(), order.end());
+    detail::sort_cancellably(order.begin(), order.end());
     reserve(n);
     for (std::size_t j = 0; j < n; ++j) {
       const auto& [cell, i] = order[j];

@@ -44,7 +44,14 @@ class KdTree {
   /// The k nearest points; see neighbors.hpp.
   void knn(const Vector3<S>& q, std::size_t k, Neighbors<S>& out) const {
     KnnResult result{detail::Nearest<S>(out, std::min(k, data_->points.size())), data_->ids};
-    if (k > 0 && searchable(q)) search(result, q);
+    if (k > 0 && searchable(q)) {
+      search(result, q);
+      if (!std::isfinite(result.nearest.worst_sq())) {  // squares overflow, and the tree's bounds with them: try all
+        out.clear();
+        for (std::size_t i = 0; i < data_->points.size(); ++i)
+          result.addPoint(distance_sq<S>(data_->points[i], q), i);
+      }
+    }
     result.nearest.finish();
   }
 

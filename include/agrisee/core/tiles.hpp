@@ -73,7 +73,10 @@ template <typename S, typename Make>
 void for_cells(const Grid<S>& grid, int threads, Make&& make) {
   parallel_chunks(grid.stored(), threads, 2048, [&](std::size_t begin, std::size_t end) {
     auto body = make();
-    grid.cells(begin, end, body);
+    grid.cells(begin, end, [&](const typename Grid<S>::Cell& cell, std::size_t first, std::size_t last) {
+      throw_if_cancelled();  // a cell may be crowded
+      body(cell, first, last);
+    });
   });
 }
 

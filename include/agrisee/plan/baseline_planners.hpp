@@ -26,6 +26,7 @@ class FixedPlanner : public Planner {
       std::size_t best = directions_.size();
       std::optional<ReachableView> view;
       for (std::size_t i = 0; i < (first_ ? 1 : directions_.size()); ++i) {
+        throw_if_cancelled();
         band_.direction = directions_[i];
         const auto there = reach(band_, current);
         if (there && (!view || there->move_time < view->move_time)) {
@@ -49,9 +50,9 @@ class FixedPlanner : public Planner {
 
  private:
   void plan(const Joints& current, const Reach& reach) {
-    planned_ = true;
     std::vector<Eigen::Vector3d> reachable;
     for (const Eigen::Vector3d& d : spread_directions(400)) {
+      throw_if_cancelled();
       band_.direction = d;
       if (reach(band_, current)) reachable.push_back(d);
     }
@@ -73,6 +74,7 @@ class FixedPlanner : public Planner {
       directions_.push_back(last);
     }
     complete_ = static_cast<int>(directions_.size()) == count_;
+    planned_ = true;
   }
 
   Aabb volume_;
@@ -97,11 +99,15 @@ class RandomPlanner : public Planner {
 
   std::optional<ReachableView> next(const Progress& progress, const Joints& current, const Reach& reach) override {
     if (progress.views.empty() && !refused_) return first_view(volume_, eye_, current, reach, band_);
-    for (int tries = 0; tries < 2000; ++tries) {
-      band_.direction = rng_.direction();
-      if (auto view = reach(band_, current)) return view;
+    Rng rng = rng_;  // drawn from for good once there is an answer
+    std::optional<ReachableView> view;
+    for (int tries = 0; tries < 2000 && !view; ++tries) {
+      throw_if_cancelled();
+      band_.direction = rng.direction();
+      view = reach(band_, current);
     }
-    return std::nullopt;
+    rng_ = rng;
+    return view;
   }
 
   void refused() override { refused_ = true; }

@@ -47,6 +47,7 @@ inline std::optional<ReachableView> first_view(const Aabb& volume, const Eigen::
   });
   band.target = volume.center();
   for (const Eigen::Vector3d& d : directions) {
+    throw_if_cancelled();
     band.direction = d;
     auto view = reach(band, current);
     if (view && skip-- == 0) return view;

@@ -58,16 +58,25 @@ class GainPlanner : public Planner {
     }
     const Aabb& extent = model_.extent();
     if (candidates_.empty() || (extent_.min - extent.min).norm() > 0.02 || (extent_.max - extent.max).norm() > 0.02) {
-      extent_ = extent;
-      candidates_.clear();
+      std::vector<Candidate> candidates;  // all of them or none, should this be cancelled
       const std::vector<Eigen::Vector3d> directions = spread_directions(parameters_.candidates);
       for (std::size_t i = 0; i < directions.size(); ++i) {
-        const ViewRequest wish = candidate(static_cast<double>(i), directions[i]);
-        if (auto view = reach(wish, current)) candidates_.push_back({wish, std::move(*view)});
+        throw_if_cancelled();
+        const ViewRequest wish = candidate(static_cast<double>(i), directions[i], extent);
+        if (auto view = reach(wish, current)) candidates.push_back({wish, std::move(*view)});
       }
+      extent_ = extent;
+      candidates_ = std::move(candidates);
     }
     if (ranked_.empty()) {
-      if (const auto reason = rank(current, reach)) return stop(*reason);
+      const auto completeness = completeness_;
+      try {
+        if (const auto reason = rank(current, reach)) return stop(*reason);
+      } catch (...) {  // half a ranking is none
+        ranked_.clear();
+        completeness_ = completeness;
+        throw;
+      }
     } else {  // a view was refused: the others have not changed
       const auto refused = [&](const Scored& s) { return was_refused(s.request); };
       ranked_.erase(std::remove_if(ranked_.begin(), ranked_.end(), refused), ranked_.end());
@@ -120,12 +129,12 @@ class GainPlanner : public Planner {
   }
 
   /// The i-th wish: its place and distance follow a low-discrepancy sequence (Roberts' R4, powers of 1 / 1.1673).
-  ViewRequest candidate(double i, const Eigen::Vector3d& direction) const {
+  ViewRequest candidate(double i, const Eigen::Vector3d& direction, const Aabb& extent) const {
     const auto part = [](double x) { return x - std::floor(x); };
     const Eigen::Vector3d where(part(i * 0.8566748838545029), part(i * 0.7338918566271260),
                                 part(i * 0.6287067210378087));
     ViewRequest wish = request(direction);
-    wish.target += parameters_.spread * (where.array() - 0.5).matrix().cwiseProduct(extent_.size());
+    wish.target += parameters_.spread * (where.array() - 0.5).matrix().cwiseProduct(extent.size());
     wish.distance = wish.distance_min + part(i * 0.5385972572236101) * (wish.distance_max - wish.distance_min);
     return wish;
   }
@@ -157,6 +166,7 @@ class GainPlanner : public Planner {
     sort_ranked();
     const double step = 0.5 * std::sqrt(4.0 * kPi / parameters_.candidates);
     for (std::size_t i = 0, n = std::min(kRefined, ranked_.size()); i < n; ++i) {
+      throw_if_cancelled();
       const ViewRequest around = ranked_[i].request;
       if (const auto view = reach(around, current)) rate(ranked_[i], *view, current);
       const Eigen::Vector3d a = any_orthogonal<double>(around.direction), b = around.direction.cross(a);
@@ -185,6 +195,7 @@ class GainPlanner : public Planner {
   }
 
   void consider(const ViewRequest& wish, const ReachableView& view, const Joints& current) {
+    throw_if_cancelled();
     if (was_refused(wish)) return;
     ranked_.emplace_back();
     ranked_.back().request = wish;

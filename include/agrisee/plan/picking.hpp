@@ -158,6 +158,7 @@ inline bool plan_approach(PickingCandidate& c, const std::vector<OrientedEllipso
   for (std::size_t i = 0; i < c.directions.size(); ++i) {
     PickingReason reason = c.verdicts[i];
     if (reason == PickingReason::not_tested) {
+      throw_if_cancelled();
       const ApproachAnswer answer = try_direction(c, c.directions[i], others, current, reach, p);
       if (answer.reached) {
         out.direction = c.directions[i];

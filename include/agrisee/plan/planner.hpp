@@ -52,10 +52,11 @@ class Planner {
   Planner& operator=(const Planner&) = delete;
   virtual ~Planner() = default;
 
-  /// A view has been taken and merged.
+  /// A view has been taken and merged. Never cancelled: the pipeline sees to that.
   virtual void observe(const Progress& progress) = 0;
 
-  /// The next view for an arm that stands at `current`; nothing when there is none worth taking.
+  /// The next view for an arm that stands at `current`; nothing when there is none worth taking. Where it is cancelled,
+  /// the next call answers as if there had been none.
   virtual std::optional<ReachableView> next(const Progress& progress, const Joints& current, const Reach& reach) = 0;
 
   /// The view last returned could not be taken; the next call returns another.

@@ -31,21 +31,14 @@ class SeePlanner : public Planner {
       if (!view) reason_ = StopReason::no_reachable_view;
       return view;
     }
-    while (true) {
-      const std::vector<see::ViewProposal> proposals = planner_.next_views(sensor_);
-      if (proposals.empty()) {
-        reason_ = planner_.stop_reason();
-        return std::nullopt;
-      }
-      for (const see::ViewProposal& p : proposals) {
-        if (auto view = project(p, current, reach)) {
-          planner_.take(p);
-          last_ = p;
-          view->gain = p.visible;
-          return view;
-        }
-        planner_.refuse(p);
-      }
+    // Proposals that are out of reach change SEE's own list: should this be cancelled, it is as before.
+    std::optional<see::Planner> before;
+    if (cancellable()) before = planner_;
+    try {
+      return choose(current, reach);
+    } catch (...) {
+      if (before) planner_ = std::move(*before);
+      throw;
     }
   }
 
@@ -58,6 +51,26 @@ class SeePlanner : public Planner {
 
  private:
   static constexpr double kMaxTurn = deg(45);
+
+  std::optional<ReachableView> choose(const Joints& current, const Reach& reach) {
+    while (true) {
+      const std::vector<see::ViewProposal> proposals = planner_.next_views(sensor_);
+      if (proposals.empty()) {
+        reason_ = planner_.stop_reason();
+        return std::nullopt;
+      }
+      for (const see::ViewProposal& p : proposals) {
+        throw_if_cancelled();
+        if (auto view = project(p, current, reach)) {
+          planner_.take(p);
+          last_ = p;
+          view->gain = p.visible;
+          return view;
+        }
+        planner_.refuse(p);
+      }
+    }
+  }
 
   std::optional<ReachableView> project(const see::ViewProposal& p, const Joints& current, const Reach& reach) const {
     ViewRequest request = band_;
