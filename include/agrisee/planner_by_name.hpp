@@ -8,7 +8,6 @@
 #include <agrisee/plan/baseline_planners.hpp>
 #include <agrisee/plan/gain_planner.hpp>
 #include <agrisee/plan/see_planner.hpp>
-#include <agrisee/planners.hpp>
 #include <agrisee/workcell.hpp>
 
 #include <memory>
@@ -42,11 +41,3 @@ inline std::unique_ptr<plan::Planner> find_planner(const Workcell& workcell, con
 }
 
 }  // namespace agrisee::detail
-
-#ifndef AGRISEE_COMPILED
-inline std::unique_ptr<agrisee::plan::Planner> agrisee::detail::planner_by_name(const Workcell& workcell,
-                                                                                const Parameters& parameters,
-                                                                                std::uint64_t seed, int threads) {
-  return find_planner(workcell, parameters, seed, threads);
-}
-#endif

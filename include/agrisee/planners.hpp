@@ -7,6 +7,9 @@
 #include <agrisee/parameters.hpp>
 #include <agrisee/plan/planner.hpp>
 #include <agrisee/workcell.hpp>
+#ifndef AGRISEE_COMPILED
+#include <agrisee/planner_by_name.hpp>
+#endif
 
 #include <memory>
 
@@ -14,8 +17,17 @@ namespace agrisee {
 
 namespace detail {
 inline namespace AGRISEE_ABI {
-AGRISEE_INLINE std::unique_ptr<plan::Planner> planner_by_name(const Workcell& workcell, const Parameters& parameters,
-                                                              std::uint64_t seed, int threads);
+
+#ifdef AGRISEE_COMPILED
+std::unique_ptr<plan::Planner> planner_by_name(const Workcell& workcell, const Parameters& parameters,
+                                               std::uint64_t seed, int threads);
+#else
+inline std::unique_ptr<plan::Planner> planner_by_name(const Workcell& workcell, const Parameters& parameters,
+                                                      std::uint64_t seed, int threads) {
+  return find_planner(workcell, parameters, seed, threads);
+}
+#endif
+
 }  // namespace AGRISEE_ABI
 }  // namespace detail
 
@@ -31,7 +43,3 @@ inline std::unique_ptr<plan::Planner> make_planner(const Workcell& workcell, con
 }
 
 }  // namespace agrisee
-
-#ifndef AGRISEE_COMPILED
-#include <agrisee/planner_by_name.hpp>
-#endif

@@ -4,29 +4,31 @@
 #pragma once
 
 #include <agrisee/cloud/seen_through.hpp>
+#include <agrisee/cloud_origin.hpp>
 #include <agrisee/core/compiled.hpp>
 #include <agrisee/parameters.hpp>
 #include <agrisee/result.hpp>
+#ifndef AGRISEE_COMPILED
+#include <agrisee/process_stages.hpp>
+#endif
 
 #include <utility>
 
 namespace agrisee {
 
-/// What is known of a ready cloud beside its points.
-struct CloudOrigin {
-  std::vector<Eigen::Vector3d>
-      sensors;  ///< sensor position (m) of each view that `cloud.views` refers to; may be empty
-  std::optional<Eigen::Vector3d> viewpoint;  ///< one sensor position (m) for all points, where there are no views
-  bool check_normals =
-      false;  ///< turn the cloud's own normals, too, where they face away from where they were seen from
-  Eigen::Vector3d cluster_origin = Eigen::Vector3d::Zero();  ///< origin of the cluster frame in world (m)
-};
-
 namespace detail {
 inline namespace AGRISEE_ABI {
-/// process() of a cloud whose points are all finite.
-AGRISEE_INLINE ScanResult process_finite(Cloud raw, const Parameters& parameters, const CloudOrigin& origin,
-                                         const SeenThrough& seen_through, int threads);
+
+#ifdef AGRISEE_COMPILED
+ScanResult process_finite(Cloud raw, const Parameters& parameters, const CloudOrigin& origin,
+                          const SeenThrough& seen_through, int threads);
+#else
+inline ScanResult process_finite(Cloud raw, const Parameters& parameters, const CloudOrigin& origin,
+                                 const SeenThrough& seen_through, int threads) {
+  return run_stages(std::move(raw), parameters, origin, seen_through, threads);
+}
+#endif
+
 }  // namespace AGRISEE_ABI
 }  // namespace detail
 
@@ -65,7 +67,3 @@ ScanResult process(const C& cloud, const Parameters& parameters = {}, const Clou
 }
 
 }  // namespace agrisee
-
-#ifndef AGRISEE_COMPILED
-#include <agrisee/process_stages.hpp>
-#endif

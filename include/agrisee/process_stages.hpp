@@ -8,9 +8,9 @@
 #include <agrisee/cloud/sor.hpp>
 #include <agrisee/cloud/split.hpp>
 #include <agrisee/cloud/voxel.hpp>
+#include <agrisee/cloud_origin.hpp>
 #include <agrisee/core/stopwatch.hpp>
 #include <agrisee/locate.hpp>
-#include <agrisee/process.hpp>
 
 namespace agrisee {
 
@@ -164,11 +164,3 @@ inline ScanResult run_stages(Cloud raw, const Parameters& parameters, const Clou
 }  // namespace detail
 
 }  // namespace agrisee
-
-#ifndef AGRISEE_COMPILED
-inline agrisee::ScanResult agrisee::detail::process_finite(Cloud raw, const Parameters& parameters,
-                                                           const CloudOrigin& origin, const SeenThrough& seen_through,
-                                                           int threads) {
-  return run_stages(std::move(raw), parameters, origin, seen_through, threads);
-}
-#endif

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <agrisee/process.hpp>
 #include <agrisee/process_stages.hpp>
 
 agrisee::ScanResult agrisee::detail::process_finite(Cloud raw, const Parameters& parameters, const CloudOrigin& origin,

@@ -10,12 +10,6 @@
 
 #include <Eigen/Core>
 
-#ifdef AGRISEE_COMPILED
-#define AGRISEE_INLINE
-#else
-#define AGRISEE_INLINE inline
-#endif
-
 #define AGRISEE_JOIN_TOKENS(a, b) a##b
 #define AGRISEE_JOIN(a, b) AGRISEE_JOIN_TOKENS(a, b)
 /// The inline namespace of what may be compiled apart.
