@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The default path: surface from a frame, fusion, split, whole processing of a cloud of 15 k and 150 k points.
+#include <agrisee/cloud/split.hpp>
+#include <agrisee/cloud/surfels.hpp>
 #include <agrisee/process.hpp>
 #include <agrisee/sensor/l515.hpp>
 #include <agrisee/sensor/reconstruct_surface.hpp>

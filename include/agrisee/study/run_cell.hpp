@@ -4,6 +4,10 @@
 /// Cost: the scan, and beside it some 0.3 s a view for judging, which no record counts as computing.
 #pragma once
 
+#include <agrisee/cloud/dbscan.hpp>
+#include <agrisee/cloud/region_growing.hpp>
+#include <agrisee/cloud/spacing.hpp>
+#include <agrisee/cloud/split.hpp>
 #include <agrisee/study/evaluate.hpp>
 #include <agrisee/study/experiment.hpp>
 #include <agrisee/study/greedy_planner.hpp>
