@@ -37,6 +37,7 @@ class AgriseeConan(ConanFile):
     def generate(self):
         CMakeDeps(self).generate()
         toolchain = CMakeToolchain(self)
+        toolchain.cache_variables["AGRISEE_BUILD_COMPILED"] = False
         toolchain.cache_variables["AGRISEE_BUILD_IO"] = bool(self.options.io)
         for part in ("CLI", "TESTS", "EXAMPLES"):
             toolchain.cache_variables["AGRISEE_BUILD_" + part] = False

@@ -4,9 +4,13 @@
 #pragma once
 
 #include <agrisee/cloud/measured_volume.hpp>
+#include <agrisee/cloud/poses.hpp>
+#include <agrisee/cloud/split.hpp>
+#include <agrisee/cloud/volume.hpp>
 #include <agrisee/parameters.hpp>
 #include <agrisee/result.hpp>
 
+#include <bitset>
 #include <numeric>
 
 namespace agrisee {

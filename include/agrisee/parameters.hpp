@@ -4,14 +4,9 @@
 #pragma once
 
 #include <agrisee/cloud/icp_parameters.hpp>
-#include <agrisee/cloud/normals.hpp>
-#include <agrisee/cloud/sor.hpp>
-#include <agrisee/cloud/split.hpp>
-#include <agrisee/cloud/surfels.hpp>
-#include <agrisee/cloud/volume.hpp>
-#include <agrisee/plan/approach.hpp>
-#include <agrisee/plan/free_space.hpp>
+#include <agrisee/cloud/parameters.hpp>
 #include <agrisee/plan/gain_parameters.hpp>
+#include <agrisee/plan/parameters.hpp>
 #include <agrisee/see/params.hpp>
 #include <agrisee/sensor/surface_image.hpp>
 

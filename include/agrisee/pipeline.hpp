@@ -9,7 +9,11 @@
 
 #include <agrisee/cloud/icp.hpp>
 #include <agrisee/cloud/merge.hpp>
+#include <agrisee/cloud/sor.hpp>
+#include <agrisee/cloud/surfels.hpp>
+#include <agrisee/core/stopwatch.hpp>
 #include <agrisee/plan/arm_approach.hpp>
+#include <agrisee/plan/arm_reach.hpp>
 #include <agrisee/plan/contradiction.hpp>
 #include <agrisee/plan/picking.hpp>
 #include <agrisee/planners.hpp>

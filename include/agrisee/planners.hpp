@@ -3,42 +3,35 @@
 /// The planners by name.
 #pragma once
 
+#include <agrisee/core/compiled.hpp>
 #include <agrisee/parameters.hpp>
-#include <agrisee/plan/arm_reach.hpp>
-#include <agrisee/plan/baseline_planners.hpp>
-#include <agrisee/plan/gain_planner.hpp>
-#include <agrisee/plan/see_planner.hpp>
+#include <agrisee/plan/planner.hpp>
 #include <agrisee/workcell.hpp>
 
 #include <memory>
 
 namespace agrisee {
 
+namespace detail {
+inline namespace AGRISEE_ABI {
+AGRISEE_INLINE std::unique_ptr<plan::Planner> planner_by_name(const Workcell& workcell, const Parameters& parameters,
+                                                              std::uint64_t seed, int threads);
+}  // namespace AGRISEE_ABI
+}  // namespace detail
+
 /// The planner that `parameters.planner` names: `gain` (default), `see`, `fixed` (a ring of `max_views`) or `random`.
+/// @param workcell arm, sensor, scan volume
+/// @param parameters of the planner
+/// @param seed of whatever it draws
+/// @param threads the planner's choice does not depend on it
 /// @throws ParameterError for any other name
 inline std::unique_ptr<plan::Planner> make_planner(const Workcell& workcell, const Parameters& parameters,
                                                    std::uint64_t seed = 0, int threads = 1) {
-  const Aabb& volume = workcell.scan_volume;
-  const Eigen::Vector3d eye = workcell.world_T_base.translation();
-  plan::ViewRequest band;
-  band.distance = parameters.gain.distance;
-  band.distance_min = parameters.gain.distance_min;
-  band.distance_max = parameters.gain.distance_max;
-  if (parameters.planner == "gain")
-    return std::make_unique<plan::GainPlanner>(workcell.sensor, volume, eye, parameters.split, parameters.free_space,
-                                               parameters.gain);
-  if (parameters.planner == "see") {
-    see::Parameters see = parameters.see;
-    see.max_views = parameters.max_views;
-    band.distance = see.view_distance;
-    band.distance_min = std::min(band.distance_min, band.distance);
-    band.distance_max = std::max(band.distance_max, band.distance);
-    return std::make_unique<plan::SeePlanner>(volume, eye, see, band, threads);
-  }
-  if (parameters.planner == "fixed")
-    return std::make_unique<plan::FixedPlanner>(volume, eye, parameters.max_views, band);
-  if (parameters.planner == "random") return std::make_unique<plan::RandomPlanner>(volume, eye, band, seed);
-  throw ParameterError("planner must be gain, see, fixed or random, got " + parameters.planner);
+  return detail::planner_by_name(workcell, parameters, seed, threads);
 }
 
 }  // namespace agrisee
+
+#ifndef AGRISEE_COMPILED
+#include <agrisee/planner_by_name.hpp>
+#endif

@@ -5,6 +5,7 @@
 #include <agrisee/io/render.hpp>
 #include <agrisee/io/report_html.hpp>
 #include <agrisee/process.hpp>
+#include <agrisee/process_stages.hpp>
 #include <agrisee/version.hpp>
 
 #include <filesystem>

@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The program of every consumer: small, of two units that share headers, and it needs all that the library needs:
-// Eigen, nanoflann, threads and, with WITH_IO, the compiled library and yaml-cpp.
+// Eigen, nanoflann, threads and, with WITH_IO, that library and yaml-cpp; with WITH_COMPILED the stages come compiled.
 #include "other.hpp"
 
 #ifdef WITH_IO
 #include <agrisee/io/scene.hpp>
+#endif
+#ifdef WITH_COMPILED
+#include <agrisee/process.hpp>
 #endif
 #include <iostream>
 
@@ -16,6 +19,10 @@ int main() {
   } catch (const agrisee::FileError& e) {
     std::cout << e.what() << "\n";
   }
+#endif
+#ifdef WITH_COMPILED
+  const agrisee::ScanResult nothing = agrisee::process(std::vector<Eigen::Vector3f>{});
+  if (!nothing.fruits.empty()) return 3;
 #endif
   std::vector<Eigen::Vector3f> points;
   for (int i = 0; i < 1000; ++i)

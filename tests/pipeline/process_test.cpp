@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <agrisee/core/random.hpp>
 #include <agrisee/process.hpp>
+#include <agrisee/process_stages.hpp>
 
 #include "catch.hpp"
 #include "interop/same_result.hpp"

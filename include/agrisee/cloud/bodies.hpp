@@ -10,55 +10,16 @@
 #pragma once
 
 #include <agrisee/cloud/fit.hpp>
+#include <agrisee/cloud/parameters.hpp>
+#include <agrisee/cloud/seen_through.hpp>
 #include <agrisee/core/grid.hpp>
 #include <agrisee/geometry/direction_bins.hpp>
 #include <agrisee/geometry/pca.hpp>
 
 #include <bitset>
-#include <functional>
 #include <string>
 
 namespace agrisee {
-
-/// Parameters of the competition.
-struct BodyParameters {
-  double radius_min = 0.020;    ///< smallest expected radius of a fruit (m)
-  double radius_max = 0.050;    ///< largest expected radius of a fruit (m)
-  double tolerance = 0.08;      ///< points within this share of the radius belong to the body's surface
-  double max_angle = deg(35);   ///< and their normals within this angle of the body's (rad)
-  double min_coverage = 0.08;   ///< share of the surface that must be covered, contradictions taken off
-  double min_roundness = 0.35;  ///< smaller over larger principal curvature of the support
-  double max_overlap = 0.30;    ///< deepest interpenetration of two bodies, as a share of the smaller radius
-  FitParameters fit;            ///< of the ellipsoids
-
-  /// Whether a body of mean radius r (m) could be a fruit: within the expected range or hardly out of it.
-  bool plausible(double r) const { return r >= 0.85 * radius_min && r <= 1.15 * radius_max; }
-  /// @throws ParameterError
-  void check() const {
-    check_parameter(radius_min > 0, "bodies.radius_min", "positive", radius_min);
-    check_parameter(radius_max >= radius_min && std::isfinite(radius_max), "bodies.radius_max", ">= radius_min",
-                    radius_max);
-    check_parameter(radius_max <= 20.0 * radius_min, "bodies.radius_max", "at most 20 times radius_min", radius_max);
-    check_parameter(tolerance > 0 && tolerance < 1, "bodies.tolerance", "in (0, 1)", tolerance);
-    check_parameter(max_angle > 0 && max_angle < kPi, "bodies.max_angle", "in (0, pi)", max_angle);
-    check_parameter(min_coverage > 0 && min_coverage < 1, "bodies.min_coverage", "in (0, 1)", min_coverage);
-    check_parameter(min_roundness >= 0 && min_roundness <= 1, "bodies.min_roundness", "in [0, 1]", min_roundness);
-    check_parameter(max_overlap >= 0, "bodies.max_overlap", ">= 0", max_overlap);
-    fit.check();
-  }
-  /// f(name, field) for every field.
-  template <typename P, typename F>
-  static void fields(P& p, F&& f) {
-    f("radius_min", p.radius_min);
-    f("radius_max", p.radius_max);
-    f("tolerance", p.tolerance);
-    f("max_angle", p.max_angle);
-    f("min_coverage", p.min_coverage);
-    f("min_roundness", p.min_roundness);
-    f("max_overlap", p.max_overlap);
-    f("fit", p.fit);
-  }
-};
 
 /// A proposal of a body and what proposed it.
 struct BodyCandidate {
@@ -73,9 +34,6 @@ struct FoundBody {
   double coverage = 0.0;  ///< share of its surface covered by its points
   double score = 0.0;     ///< coverage less contradictions
 };
-
-/// Share (0..1) of a body's surface that sight lines have gone through; see plan/free_space.hpp. May be empty: unknown.
-using SeenThrough = std::function<double(const Ellipsoid&)>;
 
 namespace detail {
 

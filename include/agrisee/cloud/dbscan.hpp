@@ -10,32 +10,11 @@
 /// exact ties only), and the point itself counts, as in Open3D.
 #pragma once
 
+#include <agrisee/cloud/parameters.hpp>
 #include <agrisee/core/components.hpp>
 #include <agrisee/core/count_neighbors.hpp>
 
 namespace agrisee {
-
-/// Parameters of dbscan.
-struct DbscanParameters {
-  double eps = 0.007;   ///< radius of a neighbourhood (m)
-  int min_points = 60;  ///< points, itself included, that make a point a core point
-
-  /// The paper's values (table of parameters): eps = 7 mm, N_min = 60.
-  static DbscanParameters paper() { return {}; }
-
-  /// @throws ParameterError naming the field that is out of range
-  void check() const {
-    check_parameter(std::isfinite(eps) && eps > 0, "eps", "positive and finite", eps);
-    check_parameter(min_points >= 1, "min_points", "at least 1", min_points);
-  }
-
-  /// f(name, field) for every field.
-  template <typename P, typename F>
-  static void fields(P& p, F&& f) {
-    f("eps", p.eps);
-    f("min_points", p.min_points);
-  }
-};
 
 namespace detail {
 

@@ -8,6 +8,7 @@
 /// crescent yields a sphere and a whole fruit its own shape. Units: metres. Cost: linear in the points per iteration.
 #pragma once
 
+#include <agrisee/cloud/parameters.hpp>
 #include <agrisee/core/cancellation.hpp>
 #include <agrisee/core/cloud.hpp>
 #include <agrisee/core/error.hpp>
@@ -74,36 +75,6 @@ inline std::pair<Eigen::Vector3d, Eigen::Matrix3d> semi_axes(const Ellipsoid& e)
   axes.col(2) = axes.col(0).cross(axes.col(1));
   return {solver.eigenvalues().cwiseInverse(), axes};
 }
-
-/// Parameters of fit_ellipsoid.
-struct FitParameters {
-  double noise = 0.001;  ///< expected standard deviation of points about a fruit's ellipsoid, its lobes included (m)
-  double shape_prior = 0.04;   ///< standard deviation of the relative semi-axes about a sphere
-  double max_angle = deg(50);  ///< points whose normals differ by more from the body's do not count (rad)
-  int independent = 150;       ///< points above this number add no certainty: neighbours err together
-  int iterations = 12;         ///< at most
-  int max_points = 400;        ///< of more points so many are used, evenly picked; neighbours tell the same
-
-  /// @throws ParameterError
-  void check() const {
-    check_parameter(noise > 0, "fit.noise", "positive", noise);
-    check_parameter(shape_prior > 0, "fit.shape_prior", "positive", shape_prior);
-    check_parameter(max_angle > 0 && max_angle <= kPi, "fit.max_angle", "in (0, pi]", max_angle);
-    check_parameter(independent >= 1, "fit.independent", ">= 1", independent);
-    check_parameter(iterations >= 1, "fit.iterations", ">= 1", iterations);
-    check_parameter(max_points >= 1, "fit.max_points", ">= 1", max_points);
-  }
-  /// f(name, field) for every field.
-  template <typename P, typename F>
-  static void fields(P& p, F&& f) {
-    f("noise", p.noise);
-    f("shape_prior", p.shape_prior);
-    f("max_angle", p.max_angle);
-    f("independent", p.independent);
-    f("iterations", p.iterations);
-    f("max_points", p.max_points);
-  }
-};
 
 /// What a fit found.
 struct EllipsoidFit {

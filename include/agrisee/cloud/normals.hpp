@@ -7,32 +7,11 @@
 /// Any frame, metres. Cost: a grid, the sorting of some 30 neighbours and one 3 x 3 eigenproblem a point.
 #pragma once
 
+#include <agrisee/cloud/parameters.hpp>
 #include <agrisee/core/all_neighbors.hpp>
 #include <agrisee/geometry/pca.hpp>
 
 namespace agrisee {
-
-/// Parameters of estimate_normals.
-struct NormalParameters {
-  double radius = 0.006;   ///< r_n: neighbours are at most this far (m)
-  int max_neighbors = 25;  ///< k_n: of those, at most this many, the nearest; the point itself counts
-
-  /// The paper's values (table of parameters): r_n = 6 mm, k_n = 25.
-  static NormalParameters paper() { return {}; }
-
-  /// @throws ParameterError naming the field that is out of range
-  void check() const {
-    check_parameter(std::isfinite(radius) && radius > 0, "radius", "positive and finite", radius);
-    check_parameter(max_neighbors >= 3, "max_neighbors", "at least 3", max_neighbors);
-  }
-
-  /// f(name, field) for every field.
-  template <typename P, typename F>
-  static void fields(P& p, F&& f) {
-    f("radius", p.radius);
-    f("max_neighbors", p.max_neighbors);
-  }
-};
 
 namespace detail {
 

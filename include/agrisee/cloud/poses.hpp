@@ -5,6 +5,7 @@
 #pragma once
 
 #include <agrisee/cloud/fit.hpp>
+#include <agrisee/cloud/parameters.hpp>
 #include <agrisee/core/grid.hpp>
 #include <agrisee/core/pose.hpp>
 
@@ -95,24 +96,6 @@ Eigen::Matrix3d paper_pose_frame(const PointCloud<S>& cloud, const Indices& indi
       top < 0 ? Eigen::Vector3d(Eigen::Vector3d::UnitZ()) : Eigen::Vector3d(cloud.points[static_cast<std::size_t>(top)].template cast<double>() - mean);
   return frame_from_z_and_x(z, densest_point(cloud, indices, radius) - mean);
 }
-
-/// Parameters of growth_axis.
-struct GrowthAxisParameters {
-  double shell = 0.45;      ///< points outside a fruit within this share of its radius may be its calyx and pedicel
-  double up_weight = 0.35;  ///< weight of "fruit hang below their stem" against the evidence
-
-  /// @throws ParameterError
-  void check() const {
-    check_parameter(shell > 0, "axis.shell", "positive", shell);
-    check_parameter(up_weight >= 0, "axis.up_weight", ">= 0", up_weight);
-  }
-  /// f(name, field) for every field.
-  template <typename P, typename F>
-  static void fields(P& p, F&& f) {
-    f("shell", p.shell);
-    f("up_weight", p.up_weight);
-  }
-};
 
 /// Direction (unit, world) from a fruit's centre towards its calyx, from what can be measured: the points that belong to no
 /// fruit and lie just outside the body (calyx, pedicel) weigh by their nearness; gravity is a weak prior.

@@ -10,48 +10,11 @@
 /// which earlier seeds win), seeds by rising curvature, unsigned normals, and growth only from points of low curvature.
 #pragma once
 
+#include <agrisee/cloud/parameters.hpp>
 #include <agrisee/core/all_neighbors.hpp>
 #include <agrisee/core/components.hpp>
 
 namespace agrisee {
-
-/// Parameters of grow_regions.
-struct RegionGrowingParameters {
-  double radius = 0.006;            ///< r_v: neighbours are nearer than this (m)
-  double smoothness = deg(12.0);    ///< theta_th: their normals differ by less than this (rad)
-  int min_size = 350;               ///< N_min: smaller regions are none; their points go back to the residual
-  int neighbors = 0;                ///< > 0: the k nearest points, itself included, instead of those within `radius`
-  bool seeds_by_curvature = false;  ///< seeds in rising curvature instead of in index order
-  double max_curvature = 1.0;       ///< points above it join but do not grow; 1/3 and more lets all grow
-  bool unsigned_normals = false;    ///< n and -n are the same direction
-
-  /// The paper's values (table of parameters): r_v = 6 mm, theta_th = 12 degrees, N_min = 350.
-  static RegionGrowingParameters paper() { return {}; }
-
-  /// Whether curvatures are asked for.
-  bool needs_curvature() const { return seeds_by_curvature || max_curvature < 1.0 / 3.0; }
-
-  /// @throws ParameterError naming the field that is out of range
-  void check() const {
-    check_parameter(std::isfinite(radius) && radius > 0, "radius", "positive and finite", radius);
-    check_parameter(smoothness >= 0 && smoothness <= kPi, "smoothness", "from 0 to pi", smoothness);
-    check_parameter(min_size >= 1, "min_size", "at least 1", min_size);
-    check_parameter(neighbors >= 0, "neighbors", "0 (use radius) or more", neighbors);
-    check_parameter(max_curvature >= 0, "max_curvature", "not negative", max_curvature);
-  }
-
-  /// f(name, field) for every field.
-  template <typename P, typename F>
-  static void fields(P& p, F&& f) {
-    f("radius", p.radius);
-    f("smoothness", p.smoothness);
-    f("min_size", p.min_size);
-    f("neighbors", p.neighbors);
-    f("seeds_by_curvature", p.seeds_by_curvature);
-    f("max_curvature", p.max_curvature);
-    f("unsigned_normals", p.unsigned_normals);
-  }
-};
 
 namespace detail {
 

@@ -12,33 +12,10 @@
 /// `sample_deviation`; the paper divides by N. Open3D also drops points with d_i = 0, which stay here.
 #pragma once
 
+#include <agrisee/cloud/parameters.hpp>
 #include <agrisee/core/all_neighbors.hpp>
 
 namespace agrisee {
-
-/// Parameters of remove_statistical_outliers.
-struct SorParameters {
-  int mean_k = 20;                ///< K, neighbours of a point without itself; fewer where the cloud has fewer
-  double std_ratio = 2.0;         ///< alpha, deviations above the mean that are still kept
-  bool sample_deviation = false;  ///< divide by N - 1 as PCL and Open3D do, instead of by N
-
-  /// The paper's values (table of parameters): K = 20, alpha = 2.
-  static SorParameters paper() { return {}; }
-
-  /// @throws ParameterError naming the field that is out of range
-  void check() const {
-    check_parameter(mean_k >= 1, "mean_k", "at least 1", mean_k);
-    check_parameter(std::isfinite(std_ratio) && std_ratio >= 0, "std_ratio", "finite and not negative", std_ratio);
-  }
-
-  /// f(name, field) for every field.
-  template <typename P, typename F>
-  static void fields(P& p, F&& f) {
-    f("mean_k", p.mean_k);
-    f("std_ratio", p.std_ratio);
-    f("sample_deviation", p.sample_deviation);
-  }
-};
 
 /// Mean distance (m) of every point to its `k` nearest others: the paper's d_i. Where there are fewer, the mean of
 /// those there are; 0 for a point alone; NaN for a point that is not finite; infinite where squares of distances overflow.

@@ -10,6 +10,7 @@
 
 #include <agrisee/cloud/bodies.hpp>
 #include <agrisee/cloud/dbscan.hpp>
+#include <agrisee/cloud/parameters.hpp>
 #include <agrisee/cloud/poses.hpp>
 #include <agrisee/cloud/region_growing.hpp>
 #include <agrisee/cloud/spacing.hpp>
@@ -19,52 +20,6 @@
 #include <numeric>
 
 namespace agrisee {
-
-/// Parameters of split.
-struct SplitParameters {
-  bool adaptive = true;  ///< derive the lengths and sizes below from the cloud's spacing and `bodies.radius_min`
-  RegionGrowingParameters growing;  ///< as given when not adaptive; otherwise its radius and min_size are derived
-  DbscanParameters clustering;      ///< as given when not adaptive; otherwise derived
-  double growing_reach = 2.2;       ///< adaptive: growth radius in spacings
-  double clustering_reach = 2.5;    ///< adaptive: DBSCAN's eps in spacings
-  double min_region = 0.03;         ///< adaptive: least region or cluster, as a share of the smallest fruit's surface
-  int min_residual = 350;           ///< DBSCAN runs when the residual holds more points than this (not adaptive)
-  bool fit_bodies = true;           ///< let bodies compete; off: the paper's two stages alone
-  BodyParameters bodies;            ///< what may be a fruit
-
-  /// The paper's values and stages.
-  static SplitParameters paper() {
-    SplitParameters p;
-    p.adaptive = false;
-    p.growing = RegionGrowingParameters::paper();
-    p.clustering = DbscanParameters::paper();
-    p.fit_bodies = false;
-    return p;
-  }
-  /// @throws ParameterError
-  void check() const {
-    growing.check();
-    clustering.check();
-    bodies.check();
-    check_parameter(growing_reach > 0, "split.growing_reach", "positive", growing_reach);
-    check_parameter(clustering_reach > 0, "split.clustering_reach", "positive", clustering_reach);
-    check_parameter(min_region > 0 && min_region < 1, "split.min_region", "in (0, 1)", min_region);
-    check_parameter(min_residual >= 0, "split.min_residual", ">= 0", min_residual);
-  }
-  /// f(name, field) for every field.
-  template <typename P, typename F>
-  static void fields(P& p, F&& f) {
-    f("adaptive", p.adaptive);
-    f("growing", p.growing);
-    f("clustering", p.clustering);
-    f("growing_reach", p.growing_reach);
-    f("clustering_reach", p.clustering_reach);
-    f("min_region", p.min_region);
-    f("min_residual", p.min_residual);
-    f("fit_bodies", p.fit_bodies);
-    f("bodies", p.bodies);
-  }
-};
 
 /// What the split found. `labels` count from 1 in the order of `found`.
 struct Split {

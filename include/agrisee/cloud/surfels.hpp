@@ -8,33 +8,13 @@
 /// Metres, world. Cost: a few cells a sample; memory about 80 bytes a surfel.
 #pragma once
 
+#include <agrisee/cloud/parameters.hpp>
 #include <agrisee/core/cloud.hpp>
 #include <agrisee/core/hash_grid.hpp>
 
 #include <cmath>
 
 namespace agrisee {
-
-/// Parameters of SurfelMap.
-struct SurfelParameters {
-  double separation = 0.0024;    ///< least distance between surfels of one surface (m)
-  double max_angle = deg(60);    ///< samples whose normals differ by more belong to another surface (rad)
-  double agreement = 0.0015;     ///< samples this far off along the normal agree in any case (m), beside 3 sigma
-
-  /// @throws ParameterError
-  void check() const {
-    check_parameter(separation > 0 && std::isfinite(separation), "surfels.separation", "positive", separation);
-    check_parameter(max_angle > 0 && max_angle < kPi, "surfels.max_angle", "in (0, pi)", max_angle);
-    check_parameter(agreement >= 0, "surfels.agreement", ">= 0", agreement);
-  }
-  /// f(name, field) for every field.
-  template <typename P, typename F>
-  static void fields(P& p, F&& f) {
-    f("separation", p.separation);
-    f("max_angle", p.max_angle);
-    f("agreement", p.agreement);
-  }
-};
 
 /// A small piece of measured surface.
 struct Surfel {

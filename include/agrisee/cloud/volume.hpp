@@ -4,29 +4,9 @@
 #pragma once
 
 #include <agrisee/cloud/fit.hpp>
+#include <agrisee/cloud/parameters.hpp>
 
 namespace agrisee {
-
-/// Parameters of mass_of.
-struct MassParameters {
-  double density = 980.0;       ///< of the fruit (kg/m3): tomatoes mostly float, just; set that of your cultivar
-  double density_error = 20.0;  ///< standard deviation of the density among fruit (kg/m3)
-  double shape_error = 0.01;  ///< standard deviation of a fruit's volume about its ellipsoid's, relative: lobes, dents
-
-  /// @throws ParameterError
-  void check() const {
-    check_parameter(density > 0 && std::isfinite(density), "mass.density", "positive", density);
-    check_parameter(density_error >= 0 && std::isfinite(density_error), "mass.density_error", ">= 0", density_error);
-    check_parameter(shape_error >= 0 && std::isfinite(shape_error), "mass.shape_error", ">= 0", shape_error);
-  }
-  /// f(name, field) for every field.
-  template <typename P, typename F>
-  static void fields(P& p, F&& f) {
-    f("density", p.density);
-    f("density_error", p.density_error);
-    f("shape_error", p.shape_error);
-  }
-};
 
 /// A value with its standard error.
 struct Estimate {
