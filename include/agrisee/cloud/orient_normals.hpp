@@ -154,7 +154,12 @@ std::vector<Vector3<scalar_t<C>>> orient_normals_consistently(std::vector<Vector
       if (j != i && left > 0) --left, f(j);
     });
   };
-  std::vector<Edge> edges(n * k, Edge{S(2), 0, 0});  // a cost of 2 marks no edge
+  std::vector<Edge> edges;  // a cost of 2 marks no edge
+  edges.reserve(n * k);
+  while (edges.size() < n * k) {  // many: by parts, to be stopped between them
+    throw_if_cancelled();
+    edges.resize(std::min(n * k, edges.size() + (std::size_t(1) << 18)), Edge{S(2), 0, 0});
+  }
   parallel_for(n, threads, [&](std::size_t i) {
     if (!known(i)) return;
     std::size_t next = i * k;
@@ -176,11 +181,13 @@ std::vector<Vector3<scalar_t<C>>> orient_normals_consistently(std::vector<Vector
   for (std::size_t i = n; i-- > 0;)
     if (known(i)) origin = point(cloud, i).template cast<double>();
   for (std::size_t i = 0; i < n; ++i) {
+    if ((i & 0x3FFF) == 0) throw_if_cancelled();
     if (!known(i)) continue;
     const Eigen::Vector3d p = point(cloud, i).template cast<double>() - origin;
     const Eigen::Vector3d normal = normals[i].template cast<double>();
     points[i] = {1.0, p, normal, normal.dot(p), p.squaredNorm()};
   }
+  throw_if_cancelled();
   detail::Patches patches(std::move(points));
   for (const Edge& e : edges) {  // Kruskal: an edge inside a patch changes nothing
     if (((&e - edges.data()) & 0xFFFF) == 0) throw_if_cancelled();

@@ -26,6 +26,7 @@ double estimate_spacing(const C& cloud, const Search& search, std::size_t sample
   for (std::size_t i = 0; i < n; i += step) {
     const Vector3<S> p = point(cloud, i);
     if (!is_finite(p)) continue;
+    throw_if_cancelled();
     search.knn(p, 9, found);
     while (!found.empty() && !std::isfinite(found.back().distance)) found.pop_back();  // too far for S to tell how far
     if (found.size() < 2) continue;

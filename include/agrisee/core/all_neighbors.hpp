@@ -50,6 +50,7 @@ scalar_t<C> typical_distance(const C& cloud, std::size_t k) {
     return *at;
   };
   for (std::size_t s = 0; s < std::min(kSamples, some.size()); ++s) {
+    throw_if_cancelled();
     const Vector3<S> q = some[s * some.size() / kSamples];
     for (std::size_t i = 0; i < some.size(); ++i) distances[i] = distance_sq<S>(some[i], q);
     const S d = std::sqrt(nth(distances, k / share));

@@ -22,7 +22,7 @@ class Grid {
  public:
   /// @param cloud points (m), any cloud type
   /// @param cell edge length of a cell (m), > 0; half to one times the usual query radius serves best
-  /// @throws ParameterError when `cell` is not positive and finite
+  /// @throws ParameterError when `cell` is not positive and finite; Cancelled
   template <typename C>
   Grid(const C& cloud, S cell) : size_(agrisee::size(cloud)) {
     check_parameter(std::isfinite(cell) && cell > 0, "grid cell", "positive and finite", cell);
@@ -30,6 +30,7 @@ class Grid {
     Eigen::Vector3d max = -min_;
     std::size_t n = 0;
     for (std::size_t i = 0; i < size_; ++i) {
+      look_up(i);
       const Vector3<S> p = point(cloud, i);
       if (!is_finite(p)) continue;
       const Eigen::Vector3d d = p.template cast<double>();
@@ -168,6 +169,11 @@ class Grid {
  private:
   static constexpr double kMaxCells = 1 << 30;
 
+  /// Whether this is to be stopped, asked once in some thousand points.
+  static void look_up(std::size_t i) {
+    if ((i & 0x1FFF) == 0) throw_if_cancelled();
+  }
+
   S distance_sq(std::size_t j, const Vector3<S>& q) const {
     const S dx = x_[j] - q.x(), dy = y_[j] - q.y(), dz = z_[j] - q.z();
     return dx * dx + dy * dy + dz * dz;
@@ -200,6 +206,7 @@ class Grid {
     starts_.assign(cells + 1, 0);
     std::vector<std::uint32_t> keys(size_);
     for (std::size_t i = 0; i < size_; ++i) {
+      look_up(i);
       const Vector3<S> p = point(cloud, i);
       if (!is_finite(p)) continue;
       const Cell c = cell_of(p);
@@ -207,9 +214,11 @@ class Grid {
       ++starts_[keys[i] + 1];
     }
     for (std::size_t c = 0; c < cells; ++c) starts_[c + 1] += starts_[c];
+    throw_if_cancelled();
     reserve(n);
     std::vector<std::uint32_t> at(starts_.begin(), starts_.end() - 1);
     for (std::size_t i = 0; i < size_; ++i) {
+      look_up(i);
       const Vector3<S> p = point(cloud, i);
       if (!is_finite(p)) continue;
       store(at[keys[i]]++, p, i);
@@ -227,6 +236,7 @@ class Grid {
     detail::sort_cancellably(order.begin(), order.end());
     reserve(n);
     for (std::size_t j = 0; j < n; ++j) {
+      look_up(j);
       const auto& [cell, i] = order[j];
       if (cells_.empty() || cells_.back() != cell) {
         cells_.push_back(cell);
