@@ -10,7 +10,9 @@
 
 #include <Eigen/Core>
 
+/// Two tokens as one.
 #define AGRISEE_JOIN_TOKENS(a, b) a##b
+/// The same, macros among them replaced first.
 #define AGRISEE_JOIN(a, b) AGRISEE_JOIN_TOKENS(a, b)
 /// The inline namespace of what may be compiled apart.
 #define AGRISEE_ABI AGRISEE_JOIN(aligned_, EIGEN_MAX_STATIC_ALIGN_BYTES)
