@@ -1,0 +1,15 @@
+var searchData=
+[
+  ['hash_5fgrid_2ehpp_0',['hash_grid.hpp',['../hash__grid_8hpp.html',1,'']]],
+  ['hashgrid_1',['HashGrid',['../classagrisee_1_1HashGrid.html',1,'agrisee::HashGrid&lt; S &gt;'],['../classagrisee_1_1HashGrid.html#aa1a79c38f16ff366bddfea53f24e2b7e',1,'agrisee::HashGrid::HashGrid()']]],
+  ['hashgrid_3c_20float_20_3e_2',['HashGrid&lt; float &gt;',['../classagrisee_1_1HashGrid.html',1,'agrisee']]],
+  ['height_3',['height',['../structagrisee_1_1OrientedCylinder.html#ae6369e37ea7438c37485d5f17a4834a6',1,'agrisee::OrientedCylinder::height()'],['../structagrisee_1_1Cylinder.html#ae6430f7b43c826f0096ed893438d8dde',1,'agrisee::Cylinder::height()'],['../structagrisee_1_1io_1_1CloudFile.html#a0f95eddb2c52cbe7cf4b91398fd58ffb',1,'agrisee::io::CloudFile::height()'],['../structagrisee_1_1io_1_1Image.html#aeb13d1827233277b2a146645b28cd3d9',1,'agrisee::io::Image::height()'],['../structagrisee_1_1sensor_1_1Intrinsics.html#a66b10dbf567bdb4f257b0d0edcddea4c',1,'agrisee::sensor::Intrinsics::height()']]],
+  ['herringbone_4',['herringbone',['../truss__layout_8hpp.html#af8b4e55ab31b6e293f5f8dbd86d7277a',1,'agrisee::study']]],
+  ['hidden_5',['hidden',['../structagrisee_1_1study_1_1SceneRecord.html#a85a22cc45c11abdc2bba5c5aa326fb2f',1,'agrisee::study::SceneRecord::hidden()'],['../structagrisee_1_1study_1_1PlacedFruit.html#a92990086f64891c35013f3a66005f42e',1,'agrisee::study::PlacedFruit::hidden()'],['../structagrisee_1_1study_1_1TrussParameters.html#a3daa89aee8e0fe65ec66d18e8b25a688',1,'agrisee::study::TrussParameters::hidden()'],['../structagrisee_1_1study_1_1PaperTruss.html#a4bb8821d154e4ab595ab1d5ae92af84c',1,'agrisee::study::PaperTruss::hidden()'],['../structagrisee_1_1study_1_1PaperSegmentation.html#a034c5ef7f723dd71a1da3caf0a00832a',1,'agrisee::study::PaperSegmentation::hidden()'],['../structagrisee_1_1study_1_1PaperScanning.html#aa2427e0bf750b7b3ff6aa628318c9920',1,'agrisee::study::PaperScanning::hidden()'],['../structagrisee_1_1study_1_1TrueFruit.html#ad267f93eab23ee25ec76906789487ed1',1,'agrisee::study::TrueFruit::hidden()'],['../structagrisee_1_1study_1_1CellRecord.html#af893b31b4d1ed3a6174129f7f8542421',1,'agrisee::study::CellRecord::hidden()'],['../structagrisee_1_1study_1_1LocatedFruit.html#a600f75cf35e39f8a32fcad2e42b200fd',1,'agrisee::study::LocatedFruit::hidden()']]],
+  ['hidden_5fshare_5fmost_6',['hidden_share_most',['../structagrisee_1_1study_1_1SceneRecord.html#a4484437de5f3e342b2533c807b0706fa',1,'agrisee::study::SceneRecord']]],
+  ['hide_5fbehind_7',['hide_behind',['../truss__layout_8hpp.html#ae8f911329c21938d54dfee03f7b53f4e',1,'agrisee::study']]],
+  ['highest_5fpoint_8',['highest_point',['../poses_8hpp.html#a5aa54aca797d0881e4e6349ab8bee6c5',1,'agrisee']]],
+  ['hit_9',['Hit',['../structagrisee_1_1Bvh_1_1Hit.html',1,'agrisee::Bvh']]],
+  ['hosts_10',['hosts',['../structagrisee_1_1study_1_1TrussLayout.html#a7ec42b2b64e10228b51899f337b79215',1,'agrisee::study::TrussLayout']]],
+  ['housing_11',['housing',['../mount_8hpp.html#a18e37e5997aeedccd450e0c079684d0b',1,'agrisee::arm']]]
+];

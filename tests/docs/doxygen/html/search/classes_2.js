@@ -1,0 +1,27 @@
+var searchData=
+[
+  ['cancellation_0',['Cancellation',['../classagrisee_1_1Cancellation.html',1,'agrisee']]],
+  ['cancellationscope_1',['CancellationScope',['../classagrisee_1_1CancellationScope.html',1,'agrisee']]],
+  ['cancelled_2',['Cancelled',['../structagrisee_1_1Cancelled.html',1,'agrisee']]],
+  ['capsule_3',['Capsule',['../structagrisee_1_1Capsule.html',1,'agrisee']]],
+  ['capture_4',['Capture',['../structagrisee_1_1sensor_1_1Capture.html',1,'agrisee::sensor']]],
+  ['cell_5',['Cell',['../structagrisee_1_1study_1_1Cell.html',1,'agrisee::study']]],
+  ['cellrecord_6',['CellRecord',['../structagrisee_1_1study_1_1CellRecord.html',1,'agrisee::study']]],
+  ['celltable_7',['CellTable',['../classagrisee_1_1CellTable.html',1,'agrisee']]],
+  ['centroid_8',['Centroid',['../structagrisee_1_1Centroid.html',1,'agrisee']]],
+  ['classification_9',['Classification',['../structagrisee_1_1see_1_1Classification.html',1,'agrisee::see']]],
+  ['cloudfile_10',['CloudFile',['../structagrisee_1_1io_1_1CloudFile.html',1,'agrisee::io']]],
+  ['cloudorigin_11',['CloudOrigin',['../structagrisee_1_1CloudOrigin.html',1,'agrisee']]],
+  ['cloudtraits_12',['CloudTraits',['../structagrisee_1_1CloudTraits.html',1,'agrisee']]],
+  ['cloudtraits_3c_20c_2c_20std_3a_3aenable_5fif_5ft_3c_20std_3a_3ais_5fbase_5fof_3c_20eigen_3a_3adensebase_3c_20c_20_3e_2c_20c_20_3e_3a_3avalue_20_26_26_28c_3a_3arowsatcompiletime_3d_3d3_7c_7cc_3a_3acolsatcompiletime_3d_3d3_29_3e_20_3e_13',['CloudTraits&lt; C, std::enable_if_t&lt; std::is_base_of&lt; Eigen::DenseBase&lt; C &gt;, C &gt;::value &amp;&amp;(C::RowsAtCompileTime==3||C::ColsAtCompileTime==3)&gt; &gt;',['../structagrisee_1_1CloudTraits_3_01C_00_01std_1_1enable__if__t_3_01std_1_1is__base__of_3_01Eigen_1e1fadfc2a2b43fa2805de27d6cefa727.html',1,'agrisee']]],
+  ['cloudtraits_3c_20interop_3a_3apointcloud2view_3c_20message_2c_20s_20_3e_20_3e_14',['CloudTraits&lt; interop::PointCloud2View&lt; Message, S &gt; &gt;',['../structagrisee_1_1CloudTraits_3_01interop_1_1PointCloud2View_3_01Message_00_01S_01_4_01_4.html',1,'agrisee']]],
+  ['cloudtraits_3c_20open3d_3a_3ageometry_3a_3apointcloud_20_3e_15',['CloudTraits&lt; open3d::geometry::PointCloud &gt;',['../structagrisee_1_1CloudTraits_3_01open3d_1_1geometry_1_1PointCloud_01_4.html',1,'agrisee']]],
+  ['cloudtraits_3c_20pcl_3a_3apointcloud_3c_20t_20_3e_2c_20std_3a_3avoid_5ft_3c_20decltype_28std_3a_3adeclval_3c_20t_20_26_20_3e_28_29_2ex_29_2c_20decltype_28std_3a_3adeclval_3c_20t_20_26_20_3e_28_29_2ey_29_2c_20decltype_28std_3a_3adeclval_3c_20t_20_26_20_3e_28_29_2ez_29_3e_20_3e_16',['CloudTraits&lt; pcl::PointCloud&lt; T &gt;, std::void_t&lt; decltype(std::declval&lt; T &amp; &gt;().x), decltype(std::declval&lt; T &amp; &gt;().y), decltype(std::declval&lt; T &amp; &gt;().z)&gt; &gt;',['../structagrisee_1_1CloudTraits_3_01pcl_1_1PointCloud_3_01T_01_4_00_01std_1_1void__t_3_01decltype_060d392906060a17635bdc15567789ac8.html',1,'agrisee']]],
+  ['cloudtraits_3c_20pointcloud_3c_20s_20_3e_20_3e_17',['CloudTraits&lt; PointCloud&lt; S &gt; &gt;',['../structagrisee_1_1CloudTraits_3_01PointCloud_3_01S_01_4_01_4.html',1,'agrisee']]],
+  ['cloudtraits_3c_20std_3a_3avector_3c_20vector3_3c_20s_20_3e_2c_20a_20_3e_20_3e_18',['CloudTraits&lt; std::vector&lt; Vector3&lt; S &gt;, A &gt; &gt;',['../structagrisee_1_1CloudTraits_3_01std_1_1vector_3_01Vector3_3_01S_01_4_00_01A_01_4_01_4.html',1,'agrisee']]],
+  ['completeness_19',['Completeness',['../structagrisee_1_1Completeness.html',1,'agrisee']]],
+  ['contact_20',['Contact',['../structagrisee_1_1arm_1_1Contact.html',1,'agrisee::arm']]],
+  ['countinggrid_21',['CountingGrid',['../structagrisee_1_1CountingGrid.html',1,'agrisee']]],
+  ['curve_22',['Curve',['../structagrisee_1_1io_1_1ScanHistory_1_1Curve.html',1,'agrisee::io::ScanHistory']]],
+  ['cylinder_23',['Cylinder',['../structagrisee_1_1Cylinder.html',1,'agrisee']]]
+];

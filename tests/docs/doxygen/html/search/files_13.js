@@ -1,0 +1,4 @@
+var searchData=
+[
+  ['ur3_2ehpp_0',['ur3.hpp',['../ur3_8hpp.html',1,'']]]
+];

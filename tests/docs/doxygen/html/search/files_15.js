@@ -1,0 +1,4 @@
+var searchData=
+[
+  ['workcell_2ehpp_0',['workcell.hpp',['../workcell_8hpp.html',1,'']]]
+];

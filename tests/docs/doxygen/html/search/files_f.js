@@ -1,0 +1,27 @@
+var searchData=
+[
+  ['palette_2ehpp_0',['palette.hpp',['../palette_8hpp.html',1,'']]],
+  ['paper_5ftables_2ehpp_1',['paper_tables.hpp',['../paper__tables_8hpp.html',1,'']]],
+  ['paper_5ftruss_2ehpp_2',['paper_truss.hpp',['../paper__truss_8hpp.html',1,'']]],
+  ['paraboloid_2ehpp_3',['paraboloid.hpp',['../paraboloid_8hpp.html',1,'']]],
+  ['parallel_2ehpp_4',['parallel.hpp',['../parallel_8hpp.html',1,'']]],
+  ['parameters_2ehpp_5',['parameters.hpp',['../plan_2parameters_8hpp.html',1,'(Global Namespace)'],['../cloud_2parameters_8hpp.html',1,'(Global Namespace)'],['../io_2parameters_8hpp.html',1,'(Global Namespace)'],['../parameters_8hpp.html',1,'(Global Namespace)']]],
+  ['params_2ehpp_6',['params.hpp',['../params_8hpp.html',1,'']]],
+  ['pca_2ehpp_7',['pca.hpp',['../pca_8hpp.html',1,'']]],
+  ['pcd_2ehpp_8',['pcd.hpp',['../pcd_8hpp.html',1,'']]],
+  ['pcl_2ehpp_9',['pcl.hpp',['../pcl_8hpp.html',1,'']]],
+  ['picking_2ehpp_10',['picking.hpp',['../picking_8hpp.html',1,'']]],
+  ['pipeline_2ehpp_11',['pipeline.hpp',['../pipeline_8hpp.html',1,'']]],
+  ['planner_2ehpp_12',['planner.hpp',['../plan_2planner_8hpp.html',1,'(Global Namespace)'],['../see_2planner_8hpp.html',1,'(Global Namespace)']]],
+  ['planner_5fby_5fname_2ehpp_13',['planner_by_name.hpp',['../planner__by__name_8hpp.html',1,'']]],
+  ['planners_2ehpp_14',['planners.hpp',['../planners_8hpp.html',1,'']]],
+  ['ply_2ehpp_15',['ply.hpp',['../ply_8hpp.html',1,'']]],
+  ['png_2ehpp_16',['png.hpp',['../png_8hpp.html',1,'']]],
+  ['points_5fto_5fframe_2ehpp_17',['points_to_frame.hpp',['../points__to__frame_8hpp.html',1,'']]],
+  ['pose_2ehpp_18',['pose.hpp',['../pose_8hpp.html',1,'']]],
+  ['poses_2ehpp_19',['poses.hpp',['../poses_8hpp.html',1,'']]],
+  ['primitives_2ehpp_20',['primitives.hpp',['../primitives_8hpp.html',1,'']]],
+  ['process_2ehpp_21',['process.hpp',['../process_8hpp.html',1,'']]],
+  ['process_5fstages_2ehpp_22',['process_stages.hpp',['../process__stages_8hpp.html',1,'']]],
+  ['proposal_2ehpp_23',['proposal.hpp',['../proposal_8hpp.html',1,'']]]
+];

@@ -1,0 +1,27 @@
+var searchData=
+[
+  ['with_5fbase_5fmoved_0',['with_base_moved',['../base__search_8hpp.html#a24dc3f65ff1c3b6a1c512d43f544e70c',1,'agrisee::study']]],
+  ['workcell_1',['workcell',['../classagrisee_1_1Pipeline.html#ad1e85d55deed07586a5c30ad3e501909',1,'agrisee::Pipeline']]],
+  ['wrap_2',['wrap',['../limits_8hpp.html#aa1b6fc44c0b99e3863c87ae433bce7e4',1,'agrisee::arm']]],
+  ['write_3',['write',['../classagrisee_1_1io_1_1AtomicFile.html#a9a0e123c2a5fd18223ac0e35266b4a45',1,'agrisee::io::AtomicFile::write(const void *data, std::size_t size)'],['../classagrisee_1_1io_1_1AtomicFile.html#a44909ebd8639bb4b1a8d90b5f03ce468',1,'agrisee::io::AtomicFile::write(std::string_view text)']]],
+  ['write_5ffault_5freport_4',['write_fault_report',['../fault__report_8hpp.html#a947b0e24cebc0c8271825b8e2ad685aa',1,'agrisee::io']]],
+  ['write_5ffile_5',['write_file',['../files_8hpp.html#a48cacec5dd30528ab7b1884b97bc785f',1,'agrisee::io']]],
+  ['write_5ffruits_6',['write_fruits',['../results_8hpp.html#a80306fd3621f4a6a91318b9b5ad660c2',1,'agrisee::io']]],
+  ['write_5ffruits_5fcsv_7',['write_fruits_csv',['../results_8hpp.html#a35b15d16ee7da77cff43bbf86aef2468',1,'agrisee::io']]],
+  ['write_5fground_5ftruth_8',['write_ground_truth',['../io_2ground__truth_8hpp.html#a2a1f6cb1277ae1a62fa3082abe3bbdcf',1,'agrisee::io']]],
+  ['write_5fpicture_9',['write_picture',['../render_8hpp.html#acdbde31f603178d413090db10e13c553',1,'agrisee::io']]],
+  ['write_5fply_10',['write_ply',['../ply_8hpp.html#aa07deebbb37621d1600e42b931d4a9a9',1,'agrisee::io']]],
+  ['write_5fply_5fmesh_11',['write_ply_mesh',['../mesh__file_8hpp.html#ac9638e1c5764c58f405e3c1962471754',1,'agrisee::io']]],
+  ['write_5fpng_12',['write_png',['../png_8hpp.html#aee32d8cdd0d55741fa7670b3c7065dae',1,'agrisee::io']]],
+  ['write_5fraw_5fply_13',['write_raw_ply',['../ply_8hpp.html#a504809bbc8fb0b49490a5fbca5c82240',1,'agrisee::io']]],
+  ['write_5frecord_14',['write_record',['../io_2experiment_8hpp.html#aa099b17df057d1eadb40de4d8e6bad36',1,'agrisee::io::write_record(const std::filesystem::path &amp;path, const study::CellRecord &amp;record)'],['../io_2experiment_8hpp.html#a399cf6491736c1072ce344b8ac7fcc45',1,'agrisee::io::write_record(const std::filesystem::path &amp;path, const study::SceneRecord &amp;record)']]],
+  ['write_5freport_15',['write_report',['../report_8hpp.html#a12ab1f037a85b459c193baee5b04bce1',1,'agrisee::io']]],
+  ['write_5freport_5fhtml_16',['write_report_html',['../report__html_8hpp.html#ab92991cb398ea615bf7ee2d3be55af28',1,'agrisee::io']]],
+  ['write_5fresult_17',['write_result',['../results_8hpp.html#a3ce34e03d78fea8e22327ce6c6b0b1b0',1,'agrisee::io']]],
+  ['write_5frun_18',['write_run',['../results_8hpp.html#a14e2f73b123aea9e21e027335a6c83cc',1,'agrisee::io']]],
+  ['write_5fscan_5ftask_19',['write_scan_task',['../scan__record_8hpp.html#a66d2505f4e8d42b601035b38e09adbec',1,'agrisee::io']]],
+  ['write_5fscene_20',['write_scene',['../io_2scene_8hpp.html#a8cb5dd5d8f139bff4982f5d590424872',1,'agrisee::io']]],
+  ['write_5fstl_21',['write_stl',['../mesh__file_8hpp.html#a8caf8eafe69aec99652490714a00e03c',1,'agrisee::io']]],
+  ['write_5fview_5frecord_22',['write_view_record',['../scan__record_8hpp.html#a3cb55d61e40e088171fb6896953849c4',1,'agrisee::io']]],
+  ['write_5fviews_23',['write_views',['../results_8hpp.html#a95ae958f52242f3ac5d3270db680386c',1,'agrisee::io']]]
+];

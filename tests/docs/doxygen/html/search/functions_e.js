@@ -1,0 +1,19 @@
+var searchData=
+[
+  ['object_0',['object',['../classagrisee_1_1TracedScene.html#a287e89905e578a9139a82da2ba545cc6',1,'agrisee::TracedScene']]],
+  ['observable_1',['observable',['../limit_8hpp.html#a13c9c478642b12aceead3e95a953bdb0',1,'agrisee::study']]],
+  ['observe_2',['observe',['../classagrisee_1_1Pipeline.html#aeb892201fe73b23ca06940ffbe3d09de',1,'agrisee::Pipeline::observe()'],['../classagrisee_1_1plan_1_1FixedPlanner.html#af4d59ba47de009262f958d288f5c2acb',1,'agrisee::plan::FixedPlanner::observe()'],['../classagrisee_1_1plan_1_1RandomPlanner.html#ae6bba29103331f930e2084322726c43c',1,'agrisee::plan::RandomPlanner::observe()'],['../classagrisee_1_1plan_1_1GainPlanner.html#a9a940b2016a389bb10935b08d273a5af',1,'agrisee::plan::GainPlanner::observe()'],['../classagrisee_1_1plan_1_1Planner.html#a806421a50b0c8d9e3f9c5a96948af87f',1,'agrisee::plan::Planner::observe()'],['../classagrisee_1_1plan_1_1SeePlanner.html#a5d122744c6881f8cca0bb72aa8782fb4',1,'agrisee::plan::SeePlanner::observe()'],['../classagrisee_1_1see_1_1Planner.html#abde0476618a032e17b891aa5063d452b',1,'agrisee::see::Planner::observe()'],['../classagrisee_1_1study_1_1GreedyPlanner.html#adbc934ff309cb56148e28bdef117ba60',1,'agrisee::study::GreedyPlanner::observe()']]],
+  ['observe_5ffrom_3',['observe_from',['../limit_8hpp.html#a991ad4e4bec7fea69277eafb5a487347',1,'agrisee::study']]],
+  ['observe_5fpoints_4',['observe_points',['../classagrisee_1_1Pipeline.html#a23e386be5d44d7b2caf5d6d046507cc8',1,'agrisee::Pipeline']]],
+  ['occluder_5fdirections_5',['occluder_directions',['../occlusion_8hpp.html#a8978a5f50dd3230edb52140ee2d4a2a1',1,'agrisee::see']]],
+  ['occupied_6',['occupied',['../picking_8hpp.html#ab6665fe3bc7ef6dc9a72dc926cae4479',1,'agrisee::plan']]],
+  ['of_5fclass_7',['of_class',['../classagrisee_1_1see_1_1DensityMap.html#a6ef0143c52f1ebe1e14c4b28bc1aa1b2',1,'agrisee::see::DensityMap']]],
+  ['of_5fobservable_8',['of_observable',['../structagrisee_1_1Completeness.html#a9eb766ee6129bdc64379bd19bf10eb73',1,'agrisee::Completeness']]],
+  ['operator_2b_3d_9',['operator+=',['../structagrisee_1_1plan_1_1Evidence.html#acba60c2b850988f2a18f43320fd26fd4',1,'agrisee::plan::Evidence']]],
+  ['operator_3d_3d_10',['operator==',['../neighbors_8hpp.html#a18727c9fa05b49de127388aef8f95da1',1,'agrisee']]],
+  ['orient_5fnormals_5fconsistently_11',['orient_normals_consistently',['../orient__normals_8hpp.html#aa83c7e9db8754b21ebae7bd68c61de7d',1,'agrisee::orient_normals_consistently(std::vector&lt; Vector3&lt; scalar_t&lt; C &gt; &gt; &gt; normals, const C &amp;cloud, const OrientationParameters &amp;params, const NeighborLists &amp;lists, int threads=1)'],['../orient__normals_8hpp.html#ad566f03d88fb4bcf515bf85f4f6fbd17',1,'agrisee::orient_normals_consistently(std::vector&lt; Vector3&lt; scalar_t&lt; C &gt; &gt; &gt; normals, const C &amp;cloud, const OrientationParameters &amp;params={}, int threads=1)']]],
+  ['orient_5fnormals_5fto_5fviewpoint_12',['orient_normals_to_viewpoint',['../normals_8hpp.html#a31f5011ff0a8a7e435a30c32c6008e93',1,'agrisee']]],
+  ['orient_5fnormals_5fto_5fviews_13',['orient_normals_to_views',['../normals_8hpp.html#a32bb2c1e40a51f63850b49f10d5b3152',1,'agrisee']]],
+  ['out_5fdegree_14',['out_degree',['../structagrisee_1_1see_1_1VisibilityGraph.html#ade5c31d959d2e62dfc1387de5e72ed74',1,'agrisee::see::VisibilityGraph']]],
+  ['overlap_15',['overlap',['../overlap_8hpp.html#ac593ac255585be32da33264ad6684062',1,'agrisee::overlap(const Capsule &amp;capsule, const Solid &amp;solid)'],['../overlap_8hpp.html#a2293d936fe7de61b81ae807f190d2538',1,'agrisee::overlap(const Capsule &amp;a, const Capsule &amp;b)'],['../overlap_8hpp.html#a6aa20f090c3b40bd5f6682892fd8b7b7',1,'agrisee::overlap(OrientedCylinder body, const Solid &amp;solid)'],['../overlap_8hpp.html#ab17c348824696fd6ad4071d711282696',1,'agrisee::overlap(const OrientedCylinder &amp;body, const KeepOut &amp;space)']]]
+];

@@ -1,0 +1,4 @@
+var searchData=
+[
+  ['agrisee_0',['AgriSEE',['../index.html',1,'']]]
+];

@@ -1,0 +1,26 @@
+var searchData=
+[
+  ['a_0',['A',['../structagrisee_1_1Ellipsoid.html#a4a600d72ff3aec0a537c1b01c5c72264',1,'agrisee::Ellipsoid']]],
+  ['a_1',['a',['../structagrisee_1_1Capsule.html#a478a4fd4c26bd81e9104bfc22d603dec',1,'agrisee::Capsule']]],
+  ['a2_2',['a2',['../namespaceagrisee_1_1arm_1_1ur3.html#a6d96b27ec45f3fe215ef4a3508a37263',1,'agrisee::arm::ur3']]],
+  ['a3_3',['a3',['../namespaceagrisee_1_1arm_1_1ur3.html#a73ea92a8070b524eb4995b8106f68b8d',1,'agrisee::arm::ur3']]],
+  ['ab_4',['ab',['../structagrisee_1_1SeenTriangle.html#ad17df99c8a6d5328f5a5992548c80ad3',1,'agrisee::SeenTriangle']]],
+  ['abstract_5fmiou_5',['abstract_miou',['../structagrisee_1_1study_1_1PaperText.html#a20aa2c3d5e8dafdb2b7622ee30aa62fe',1,'agrisee::study::PaperText']]],
+  ['abstract_5frecall_6',['abstract_recall',['../structagrisee_1_1study_1_1PaperText.html#a4e838d157724d2aeed9e2f315dd75e39',1,'agrisee::study::PaperText']]],
+  ['abstract_5frmse_7',['abstract_rmse',['../structagrisee_1_1study_1_1PaperText.html#ac1d8ed7368bcc0275bb3d05cf2fe65b7',1,'agrisee::study::PaperText']]],
+  ['accepted_8',['accepted',['../structagrisee_1_1IcpResult.html#a500a18aeade35dc9a5f0362a2f249851',1,'agrisee::IcpResult']]],
+  ['across_5fweight_9',['across_weight',['../structagrisee_1_1plan_1_1PickingParameters.html#a737431253377cefc48346c6cd3424010',1,'agrisee::plan::PickingParameters']]],
+  ['adaptive_10',['adaptive',['../structagrisee_1_1SplitParameters.html#a30025f1f6b25c27f8f9cef853db45170',1,'agrisee::SplitParameters']]],
+  ['adaptive_5fnormals_11',['adaptive_normals',['../structagrisee_1_1Parameters.html#adaf17d49e1fd27fa4a60d8e5127efad1',1,'agrisee::Parameters']]],
+  ['added_12',['added',['../structagrisee_1_1plan_1_1Progress.html#ac49c931ab2f4e51b0a5f9694de23fb12',1,'agrisee::plan::Progress']]],
+  ['after_13',['after',['../structagrisee_1_1Picking.html#a1a9a55e2821d87084c9eedebb70d82b1',1,'agrisee::Picking']]],
+  ['agree_14',['agree',['../structagrisee_1_1plan_1_1Evidence.html#a8514057bb314872d8bf7b985f5efb2d9',1,'agrisee::plan::Evidence']]],
+  ['agreement_15',['agreement',['../structagrisee_1_1SurfelParameters.html#a082b6d4e55ebbe2447d8fd608a99cce8',1,'agrisee::SurfelParameters']]],
+  ['area_16',['area',['../structagrisee_1_1study_1_1SampleParameters.html#a9bd8955b413080ca8fa39f8e435d9f54',1,'agrisee::study::SampleParameters::area()'],['../structagrisee_1_1study_1_1MeshMoments.html#aa9780356ef99af49230e2830459e10f7',1,'agrisee::study::MeshMoments::area()']]],
+  ['around_17',['around',['../structagrisee_1_1study_1_1SimulationOptions.html#ac4cef8c0afd0bb7928eb43e4784dff63',1,'agrisee::study::SimulationOptions']]],
+  ['at_18',['at',['../structagrisee_1_1Neighborhood.html#a66f50d184e6de346fb4f69ffb016c9ed',1,'agrisee::Neighborhood::at()'],['../structagrisee_1_1Tile.html#a5f53142172e39bf192ffd342cb15dc45',1,'agrisee::Tile::at()']]],
+  ['away_5fweight_19',['away_weight',['../structagrisee_1_1plan_1_1PickingParameters.html#aed758403d42183480a8aba1b5918a91d',1,'agrisee::plan::PickingParameters']]],
+  ['axes_20',['axes',['../structagrisee_1_1OrientedEllipsoid.html#ab9b963ed6a7d2c865830f09e61839d94',1,'agrisee::OrientedEllipsoid::axes()'],['../structagrisee_1_1PrincipalAxes.html#a688e12dc209d9b1cac998c84b08250cc',1,'agrisee::PrincipalAxes::axes()'],['../structagrisee_1_1Body.html#a17ab5fe0ed765c18bcde78335d6b5d6e',1,'agrisee::Body::axes()'],['../structagrisee_1_1study_1_1TrueFruit.html#a2b7842985f40d8eff75c9c8766e156fd',1,'agrisee::study::TrueFruit::axes()'],['../structagrisee_1_1study_1_1MeshMoments.html#ae7fa8f86416f9e852044bbb9eb438dcf',1,'agrisee::study::MeshMoments::axes()']]],
+  ['axis_21',['axis',['../structagrisee_1_1OrientedCylinder.html#ae71dd623042fc29cecf0d4214fac2573',1,'agrisee::OrientedCylinder::axis()'],['../structagrisee_1_1Parameters.html#a1612976cea7e27af6b5ff7ebe1dc28c4',1,'agrisee::Parameters::axis()']]],
+  ['axis_5ferror_22',['axis_error',['../structagrisee_1_1study_1_1FruitMetrics.html#a628d9cda43c7c70e1141fff250e2da11',1,'agrisee::study::FruitMetrics']]]
+];

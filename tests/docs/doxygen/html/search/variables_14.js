@@ -1,0 +1,24 @@
+var searchData=
+[
+  ['v_0',['v',['../structagrisee_1_1TriangleHit.html#a2487c2775e747d2ccf42c2ff9a05edf5',1,'agrisee::TriangleHit::v()'],['../structagrisee_1_1Bvh_1_1Hit.html#a43d5975e5cd49308bd23d0514fd92afe',1,'agrisee::Bvh::Hit::v()']]],
+  ['value_1',['value',['../structagrisee_1_1Estimate.html#a6a5e9dfae7cf1c4b34fb0578c9bc1ac6',1,'agrisee::Estimate']]],
+  ['values_2',['values',['../structagrisee_1_1io_1_1ScanHistory_1_1Curve.html#a22d9be17eee514f435f2f92792943038',1,'agrisee::io::ScanHistory::Curve']]],
+  ['variance_3',['variance',['../structagrisee_1_1PrincipalAxes.html#a32941258d0362afb0d56f76726d0f9ea',1,'agrisee::PrincipalAxes']]],
+  ['velocity_4',['velocity',['../structagrisee_1_1arm_1_1JointLimits.html#ac36a41353beffeb991bab2e90b36e4bb',1,'agrisee::arm::JointLimits']]],
+  ['version_5',['version',['../structagrisee_1_1io_1_1ReportInfo.html#a80f884e19ca113f9d490fc0db0f5bd80',1,'agrisee::io::ReportInfo::version()'],['../structagrisee_1_1io_1_1RunInfo.html#aad5c42be985f0c948b3c27dd1520e326',1,'agrisee::io::RunInfo::version()'],['../structagrisee_1_1io_1_1ScanTask.html#a54cc97cc37375364f9c6732f8af9a810',1,'agrisee::io::ScanTask::version()']]],
+  ['vertices_6',['vertices',['../structagrisee_1_1Mesh.html#af3000907e260e0af4a15be492061f3e0',1,'agrisee::Mesh']]],
+  ['view_7',['view',['../structagrisee_1_1Surfel.html#a0dc2f82e8b636015faf7a08f42c041e7',1,'agrisee::Surfel']]],
+  ['view_5fdistance_8',['view_distance',['../structagrisee_1_1see_1_1Parameters.html#a6b8af8aa8af11005747bdbc883128e46',1,'agrisee::see::Parameters']]],
+  ['viewpoint_9',['viewpoint',['../structagrisee_1_1CloudOrigin.html#ab643ca57c7a23909bc419ab796f60068',1,'agrisee::CloudOrigin']]],
+  ['views_10',['views',['../structagrisee_1_1study_1_1PaperScanning.html#a027382df2471a52e621e3355f87ba3e7',1,'agrisee::study::PaperScanning::views()'],['../structagrisee_1_1study_1_1Observability.html#a7087c549b851535afdb2d53f19801e4d',1,'agrisee::study::Observability::views()'],['../structagrisee_1_1study_1_1GreedyOrder.html#a8588181037fe2f8e0cbdd8672c8b001c',1,'agrisee::study::GreedyOrder::views()'],['../structagrisee_1_1study_1_1FaultRecord.html#a6bcb053feac66d5d73c8b8c3fcd93ba0',1,'agrisee::study::FaultRecord::views()'],['../structagrisee_1_1study_1_1BasePlace.html#aa85c547aadcbe59b5a1bf01cd46053c1',1,'agrisee::study::BasePlace::views()'],['../structagrisee_1_1ScanResult.html#aacef24ab0069bbb7e169e827a1e5f3c1',1,'agrisee::ScanResult::views()'],['../structagrisee_1_1plan_1_1Progress.html#a4f5180854a4f2106fb9f54ee23e1e1a8',1,'agrisee::plan::Progress::views()'],['../structagrisee_1_1io_1_1RunFile.html#a031ed2f10803fbd593cf8b7bc8ea65f4',1,'agrisee::io::RunFile::views()'],['../structagrisee_1_1PointCloud.html#a129270512c217ebd1ba2329a4e0617b2',1,'agrisee::PointCloud::views()'],['../structagrisee_1_1study_1_1CellRecord.html#a2e6e1778cc36fe21b16e4c487afa98e5',1,'agrisee::study::CellRecord::views()']]],
+  ['views_5f90_11',['views_90',['../structagrisee_1_1study_1_1SceneRecord.html#ac3282ec28273251b11f54aaad733e811',1,'agrisee::study::SceneRecord']]],
+  ['views_5f95_12',['views_95',['../structagrisee_1_1study_1_1SceneRecord.html#ae9fc079f6f7e5d51c7638b0df1457dc8',1,'agrisee::study::SceneRecord']]],
+  ['views_5f98_13',['views_98',['../structagrisee_1_1study_1_1SceneRecord.html#a526804c9b17b4f12ed5631efc78501f4',1,'agrisee::study::SceneRecord']]],
+  ['views_5f99_14',['views_99',['../structagrisee_1_1study_1_1SceneRecord.html#a1a7a4b580f8bc115b9228cc603ab4fc2',1,'agrisee::study::SceneRecord']]],
+  ['visible_15',['visible',['../structagrisee_1_1see_1_1ViewProposal.html#acd927885d873b1ad03ce10af624316ee',1,'agrisee::see::ViewProposal']]],
+  ['visible_5fshare_16',['visible_share',['../structagrisee_1_1study_1_1TrueFruit.html#a30cd58d7fc395271ed95abd88dc854f2',1,'agrisee::study::TrueFruit']]],
+  ['volume_17',['volume',['../structagrisee_1_1Body.html#ac514a0ae890229022ce68dbc8306ab13',1,'agrisee::Body::volume()'],['../structagrisee_1_1study_1_1TrueFruit.html#adb68a7195153b2234b0dea6fcdfc3c58',1,'agrisee::study::TrueFruit::volume()'],['../structagrisee_1_1study_1_1MeshMoments.html#a604acbbe7cb12fd29ca92cc095325d26',1,'agrisee::study::MeshMoments::volume()']]],
+  ['volume_5ferror_18',['volume_error',['../structagrisee_1_1Body.html#af394b257caed1ca16ebfd9660f4587e7',1,'agrisee::Body']]],
+  ['votes_19',['votes',['../structagrisee_1_1VotedCenter.html#a50299b7675f2899486ee5f2a2ebe2994',1,'agrisee::VotedCenter']]],
+  ['voxel_20',['voxel',['../structagrisee_1_1plan_1_1ExpectedSurfaceParameters.html#a7356beff4eb87b0c13d3bd00cec7c80a',1,'agrisee::plan::ExpectedSurfaceParameters']]]
+];

@@ -1,0 +1,17 @@
+var searchData=
+[
+  ['weight_0',['weight',['../structagrisee_1_1Surfel.html#aacb4a6b07c14b7a07fe6ebb2c3472576',1,'agrisee::Surfel']]],
+  ['width_1',['width',['../structagrisee_1_1io_1_1CloudFile.html#af41ce6ae2fa70eff6b797650ed7ca8c5',1,'agrisee::io::CloudFile::width()'],['../structagrisee_1_1io_1_1Image.html#a3aa701ddc61078142ead888718b3ddfe',1,'agrisee::io::Image::width()'],['../structagrisee_1_1sensor_1_1Intrinsics.html#a39c9184e713b0326b023702eea01b943',1,'agrisee::sensor::Intrinsics::width()']]],
+  ['with_2',['with',['../structagrisee_1_1arm_1_1Contact.html#a94ef22cf7c5c16e41c42137ea6f6fdf7',1,'agrisee::arm::Contact']]],
+  ['workcell_3',['workcell',['../structagrisee_1_1io_1_1SceneFile.html#a1bad4ee44735b72a9c0cb2458739b29d',1,'agrisee::io::SceneFile::workcell()'],['../structagrisee_1_1study_1_1Subject.html#ae7769ef039a04f8b365d91e4f03384e7',1,'agrisee::study::Subject::workcell()'],['../structagrisee_1_1study_1_1Truss.html#a9d284ba5757803e5bffbcc7d74c45aa3',1,'agrisee::study::Truss::workcell()']]],
+  ['world_4',['world',['../structagrisee_1_1study_1_1PaperLocalization.html#acf585100f193b2f666ecf22f91ec4bc2',1,'agrisee::study::PaperLocalization']]],
+  ['world_5fsigma_5',['world_sigma',['../structagrisee_1_1study_1_1PaperLocalization.html#aed6d06d9bd1ebc27bb635dcbf1d033b8',1,'agrisee::study::PaperLocalization']]],
+  ['world_5ft_5fbase_6',['world_T_base',['../structagrisee_1_1arm_1_1Mount.html#ae1c407e13a77904de59936d20339b58f',1,'agrisee::arm::Mount::world_T_base()'],['../structagrisee_1_1Workcell.html#ae56a0c769921e73a81c4fd6f867773e6',1,'agrisee::Workcell::world_T_base()']]],
+  ['world_5ft_5fbody_7',['world_T_body',['../structagrisee_1_1study_1_1PlacedFruit.html#a9ba955da8639946cad49b98997bdedc5',1,'agrisee::study::PlacedFruit']]],
+  ['world_5ft_5foptical_8',['world_T_optical',['../structagrisee_1_1arm_1_1Reached.html#a644f90bcf43db5a87bb6fe67e6cf0f43',1,'agrisee::arm::Reached::world_T_optical()'],['../structagrisee_1_1io_1_1ViewRecord.html#a075b713571108f5d54cb4fa0b3a02426',1,'agrisee::io::ViewRecord::world_T_optical()'],['../structagrisee_1_1plan_1_1ReachableView.html#abf9331ffb28b0aee485b3ced8424ac99',1,'agrisee::plan::ReachableView::world_T_optical()'],['../structagrisee_1_1View.html#a7ae05e4a7c85d9b42bb84da95eae0bfa',1,'agrisee::View::world_T_optical()'],['../structagrisee_1_1sensor_1_1Capture.html#a90f510adbe9e2bc34595ce98100fdc8d',1,'agrisee::sensor::Capture::world_T_optical()'],['../structagrisee_1_1sensor_1_1SurfaceImage.html#a73d6853783a6c8850500fc7da98107b3',1,'agrisee::sensor::SurfaceImage::world_T_optical()']]],
+  ['world_5ft_5foptical_5fasked_9',['world_T_optical_asked',['../structagrisee_1_1io_1_1ViewRecord.html#a814d796d110d5405b45024e80912b1f2',1,'agrisee::io::ViewRecord']]],
+  ['world_5ft_5fpre_5fgrasp_10',['world_T_pre_grasp',['../structagrisee_1_1plan_1_1ReachableApproach.html#a73ea83cd31c6649910ac36a7b42cfa64',1,'agrisee::plan::ReachableApproach::world_T_pre_grasp()'],['../structagrisee_1_1Picking.html#afabe76231bcd3635ec1d67e0fdb17480',1,'agrisee::Picking::world_T_pre_grasp()']]],
+  ['worst_11',['worst',['../structagrisee_1_1study_1_1ErrorSummary.html#a1a289a54384a9e25d0d8d0c14c698fd1',1,'agrisee::study::ErrorSummary']]],
+  ['wrong_5fbelieved_12',['wrong_believed',['../structagrisee_1_1study_1_1FaultRecord.html#a2f47f0e2d768a33d8ac38c2cc6ba902c',1,'agrisee::study::FaultRecord']]],
+  ['wrong_5fposes_13',['wrong_poses',['../structagrisee_1_1study_1_1FaultRecord.html#a0e7aa79df1cc7ca5409cede4c7067c93',1,'agrisee::study::FaultRecord']]]
+];

@@ -1,0 +1,19 @@
+var searchData=
+[
+  ['labelled_0',['labelled',['../structagrisee_1_1io_1_1RunFile.html#abe1760d442b4d8ab14cc6646723ce1d6',1,'agrisee::io::RunFile']]],
+  ['labels_1',['labels',['../structagrisee_1_1Split.html#aabaac5ea1758236ec70a4c1f4d80b2be',1,'agrisee::Split::labels()'],['../structagrisee_1_1ScanResult.html#a843a2cbfc1161bc6e630b461a36d389a',1,'agrisee::ScanResult::labels()']]],
+  ['last_5fview_2',['last_view',['../structagrisee_1_1Surfel.html#ad685b554e41c119e54dc7a715b8a5c84',1,'agrisee::Surfel']]],
+  ['leaflets_3',['leaflets',['../structagrisee_1_1study_1_1PaperTruss.html#a9ca03dcf6596287a4531e905d72dab0f',1,'agrisee::study::PaperTruss::leaflets()'],['../structagrisee_1_1study_1_1TrussParameters.html#ade68a605a5d67542882305370915ac5e',1,'agrisee::study::TrussParameters::leaflets()']]],
+  ['least_4',['least',['../structagrisee_1_1study_1_1BasePlace.html#a6ef384966bc1cab4654b218a12b244f2',1,'agrisee::study::BasePlace']]],
+  ['least_5fmove_5',['least_move',['../structagrisee_1_1see_1_1Parameters.html#a6a141783aa5fd1d3e71d9274efd1e8bd',1,'agrisee::see::Parameters']]],
+  ['length_6',['length',['../structagrisee_1_1study_1_1JointPath.html#a9038179ede1e305819f39959c70b919d',1,'agrisee::study::JointPath']]],
+  ['limit_7',['limit',['../structagrisee_1_1study_1_1BaseSearchParameters.html#a4731902d7816cef447ca4926a5c78374',1,'agrisee::study::BaseSearchParameters']]],
+  ['limits_8',['limits',['../structagrisee_1_1arm_1_1Mount.html#a833af7ffa311a6b884c8f7ecf83e269f',1,'agrisee::arm::Mount']]],
+  ['lobe_5famplitude_9',['lobe_amplitude',['../structagrisee_1_1study_1_1FruitShape.html#a9e4372367b107c357eb11841cb4d8558',1,'agrisee::study::FruitShape']]],
+  ['lobe_5fphase_10',['lobe_phase',['../structagrisee_1_1study_1_1FruitShape.html#a09f0198a1f69b505f28cd0c8959ed539',1,'agrisee::study::FruitShape']]],
+  ['lobes_11',['lobes',['../structagrisee_1_1study_1_1FruitShape.html#abec8576b4c6f61b4d620d350b505fc87',1,'agrisee::study::FruitShape']]],
+  ['locate_12',['locate',['../structagrisee_1_1Timing.html#ac68f6a2ea339deb52ae0d2887c5ba3fc',1,'agrisee::Timing']]],
+  ['lookahead_13',['lookahead',['../structagrisee_1_1plan_1_1GainPlannerParameters.html#a4a24cb7dfdc12f89ba5941c919a4ceaa',1,'agrisee::plan::GainPlannerParameters']]],
+  ['loss_5fbegin_14',['loss_begin',['../structagrisee_1_1sensor_1_1NoiseParameters.html#a5ba47d6ffb684836e7cb2f1964d89e8e',1,'agrisee::sensor::NoiseParameters']]],
+  ['loss_5fend_15',['loss_end',['../structagrisee_1_1sensor_1_1NoiseParameters.html#a9e1a3b5de4f7ee9aa40e67a0988152d2',1,'agrisee::sensor::NoiseParameters']]]
+];
