@@ -15,6 +15,8 @@
 #include <agrisee/cloud/parameters.hpp>
 #include <agrisee/core/all_neighbors.hpp>
 
+#include <limits>
+
 namespace agrisee {
 
 /// Mean distance (m) of every point to its `k` nearest others: the paper's d_i. Where there are fewer, the mean of
@@ -47,12 +49,13 @@ std::vector<double> mean_neighbor_distances(const C& cloud, int k, const Search&
 
 namespace detail {
 
-/// The points with d_i <= mu + alpha sigma. Those with a d_i that is not finite do not count, and go.
+/// The points with d_i <= mu + alpha sigma. Those whose d_i is infinite do not count and go, unless all are: then
+/// nothing sets one apart. Those with NaN go.
 inline Indices within_deviation(const std::vector<double>& distances, const SorParameters& params) {
   double sum = 0.0, squares = 0.0, n = 0.0;
   for (const double d : distances)
     if (std::isfinite(d)) sum += d, n += 1.0;
-  const double mean = n > 0.0 ? sum / n : 0.0;
+  const double mean = n > 0.0 ? sum / n : std::numeric_limits<double>::infinity();
   for (const double d : distances)
     if (std::isfinite(d)) squares += (d - mean) * (d - mean);
   const double degrees = params.sample_deviation ? n - 1.0 : n;
@@ -84,8 +87,8 @@ std::vector<double> mean_neighbor_distances(const C& cloud, int k, int threads =
 }
 
 /// Indices of the points that stay, ascending; the cloud is not changed. Points that are not finite, or so far from K
-/// others that the square of the distance overflows, go, and do not count in mean and deviation. A single point, or points that all coincide, stay; so does any cloud whose d_i are all
-/// equal.
+/// others that the square of the distance overflows, go, and do not count in mean and deviation. A single point, or
+/// points that all coincide, stay; so does any cloud whose d_i are all equal, infinite ones too.
 /// @param cloud points (m), any cloud type
 /// @param params see their struct
 /// @param search a KdTree or Grid over `cloud`
