@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 # Every public name has a docstring that Doxygen understands. Usage: doxygen.sh OUTPUT; 77 where Doxygen is missing.
 set -euo pipefail
-output=$1
+output=$(realpath -m "$1")  # before the folder changes
 cd "$(dirname "$0")/../.."
 command -v doxygen >/dev/null 2>&1 || { echo "SKIPPED: doxygen is not installed"; exit 77; }
 mkdir -p "$output"

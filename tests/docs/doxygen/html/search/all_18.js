@@ -1,4 +1,0 @@
-var searchData=
-[
-  ['y_0',['y',['../structagrisee_1_1Neighborhood.html#a93e1b1678d771b57f4dd5a1a13002f36',1,'agrisee::Neighborhood::y()'],['../structagrisee_1_1Tile.html#a8e1ebc038a20de8c980607e819c05872',1,'agrisee::Tile::y()'],['../classagrisee_1_1Grid.html#a1159bd84469aaeec617679f820e7b186',1,'agrisee::Grid::y()']]]
-];

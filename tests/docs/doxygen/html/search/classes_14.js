@@ -1,4 +1,0 @@
-var searchData=
-[
-  ['workcell_0',['Workcell',['../structagrisee_1_1Workcell.html',1,'agrisee']]]
-];

@@ -1,4 +1,0 @@
-var searchData=
-[
-  ['agrisee_0',['AgriSEE',['../index.html',1,'']]]
-];

@@ -1,4 +1,0 @@
-var searchData=
-[
-  ['joints_0',['joints',['../structagrisee_1_1arm_1_1Reached.html#a5fe1663b5f40e4d9619c88558a82a690',1,'agrisee::arm::Reached::joints()'],['../structagrisee_1_1io_1_1ViewRecord.html#a2671a92628b0992d777bdc2cb5465de7',1,'agrisee::io::ViewRecord::joints()'],['../structagrisee_1_1plan_1_1ReachableApproach.html#ab963b70d96f3b2b4833f84bc3d46efed',1,'agrisee::plan::ReachableApproach::joints()'],['../structagrisee_1_1plan_1_1PickingScene.html#a47525f9b37e83757f30bd58ca1da04cc',1,'agrisee::plan::PickingScene::joints()'],['../structagrisee_1_1plan_1_1ReachableView.html#af3c8421ed69868f7cf9ef043a8e8a5e0',1,'agrisee::plan::ReachableView::joints()'],['../structagrisee_1_1View.html#aaaa2f20e9fd453b57d056c2e9cad41ee',1,'agrisee::View::joints()'],['../structagrisee_1_1Picking.html#a1c305bca87f2e561f75124c887396c3f',1,'agrisee::Picking::joints()']]]
-];
