@@ -139,9 +139,7 @@ def main():
             " stage. Only the ratios travel to other machines.", "", comparison(results)]
     text += ["", f"`examples/01_process_cloud.cpp`, the README's ten lines, compiles in {compiled:.1f} s with"
              f" `agrisee::compiled`, in {headers:.1f} s with the headers alone (`-O2`)."]
-    notes = pathlib.Path(__file__).with_name("notes.md")
-    if notes.exists():
-        text += ["", notes.read_text().strip()]
+    text += ["", pathlib.Path(__file__).with_name("notes.md").read_text().strip()]
     text += ["", "## Our stages alone", "", "| program: run / argument | ms |", "|---|---|"]
     text += [f"| {name} | {number(value[0])} |" for name, value in own.items()]
     target.write_text("\n".join(text) + "\n")

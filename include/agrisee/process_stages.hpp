@@ -125,7 +125,7 @@ inline void complete_normals(Cloud& cloud, const Parameters& parameters, const C
 
 /// process() of a cloud whose points are all finite.
 inline ScanResult run_stages(Cloud raw, const Parameters& parameters, const CloudOrigin& origin,
-                                 const SeenThrough& seen_through, int threads) {
+                             const SeenThrough& seen_through, int threads) {
   parameters.check();
   ScanResult result;
   result.raw = std::move(raw);

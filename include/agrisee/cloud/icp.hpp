@@ -180,21 +180,20 @@ class IcpProblem {
       const S d_sq = distance_sq<S>(target_point(match_[i]), query);
       if (d_sq <= best_sq) best = match_[i], best_sq = d_sq, reach = std::sqrt(best_sq) + beyond;
     }
-    S other_sq = best_sq;  // of the nearest but the match, whether its normal agrees or not
+    S other_sq;  // of the nearest but the match, whether its normal agrees or not
     for (;; reach *= S(2)) {
       reach = std::min(reach, limit);
       other_sq = reach * reach;
       search_.visit(query, reach, [&](Index j, S d_sq) {
         if (j == best) return;
-        if (d_sq < best_sq || (d_sq == best_sq && (best < 0 || j < best))) {
-          if (agrees(j, normal)) {
-            if (best >= 0) other_sq = std::min(other_sq, best_sq);
-            best = j;
-            best_sq = d_sq;
-            return;
-          }
+        const bool nearer = d_sq < best_sq || (d_sq == best_sq && (best < 0 || j < best));
+        if (!nearer || !agrees(j, normal)) {
+          other_sq = std::min(other_sq, d_sq);
+          return;
         }
-        other_sq = std::min(other_sq, d_sq);
+        if (best >= 0) other_sq = std::min(other_sq, best_sq);
+        best = j;
+        best_sq = d_sq;
       });
       if (best >= 0 || !(reach < limit)) break;
     }
