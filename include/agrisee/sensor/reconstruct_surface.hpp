@@ -106,8 +106,8 @@ inline SurfaceImage reconstruct_surface(const DepthFrame& frame, const Pose& wor
   out.depth.assign(n, 0.0f);
 
   // Blocks: the mean of the pixels that agree with the block's median.
-  out.noise = detail::image_noise(inside, k.width, k.height, std::max(1, b), 1);
-  const float agree = static_cast<float>(std::max(3.0 * out.noise, 0.6 * parameters.spacing));
+  const double pixel_noise = detail::image_noise(inside, k.width, k.height, std::max(1, b), 1);
+  const float agree = static_cast<float>(std::max(3.0 * pixel_noise, 0.6 * parameters.spacing));
   std::vector<detail::Block> blocks(n);
   std::vector<float> fill(n, 0.0f);
   const auto make_block = [&](std::size_t c) {
@@ -151,6 +151,8 @@ inline SurfaceImage reconstruct_surface(const DepthFrame& frame, const Pose& wor
   const double pitch = typical / cells.fx;
   const double block_noise =
       std::max(detail::image_noise(block_z, cells.width, cells.height, 1, 1), 0.02 * parameters.target_sigma);
+  constexpr double kOfMedians = 1.2533;  // sqrt(pi / 2): a median's standard deviation over that of a mean
+  out.noise = kOfMedians * block_noise;
   const double wanted = 4.0 * block_noise * block_noise / (parameters.target_sigma * parameters.target_sigma);
   const int w = std::clamp(static_cast<int>(std::ceil(0.5 * (std::sqrt(wanted) - 1.0))), std::min(2, parameters.max_window),
                            parameters.max_window);

@@ -51,7 +51,7 @@ struct SurfaceImage {
   std::vector<Eigen::Vector3f> normals;    ///< their unit normals, towards the sensor (world)
   std::vector<float> sigma;                ///< their standard deviations along the ray (m), positive
   std::size_t points_in = 0;               ///< pixels that returned a point inside the volume
-  double noise = 0.0;                      ///< standard deviation of the pixels about their blocks (m)
+  double noise = 0.0;                      ///< standard deviation of the cells' raw depths (m)
   double fill = 0.0;                       ///< median share of valid pixels in cells with any
 
   /// Cell at which a point in world is seen, or -1 when it is outside the image or behind the sensor.
