@@ -16,7 +16,7 @@ struct FreeSpaceParameters {
   double min_fill = 0.85;      ///< cells without return are evidence when surfaces return at least this share of pixels
   double max_incidence = deg(50);  ///< bodies are tested where a surface would be seen at less than this (rad)
   int min_refuting = 2;        ///< a surfel goes when this many views looked through it and no more than half saw it
-  double max_contradiction = 0.5;  ///< a view is discarded when it contradicts more than this share of what others saw
+  double max_contradiction = 0.3;  ///< a view is discarded when it contradicts more than this share of what others saw
 
   /// @throws ParameterError
   void check() const {
