@@ -7,24 +7,17 @@
 /// (study/simulated_scan.hpp), which drives the same loop. World frame, metres, radians.
 #pragma once
 
-#include <agrisee/cloud/icp.hpp>
 #include <agrisee/cloud/merge.hpp>
-#include <agrisee/cloud/sor.hpp>
-#include <agrisee/cloud/surfels.hpp>
 #include <agrisee/core/stopwatch.hpp>
-#include <agrisee/plan/arm_approach.hpp>
-#include <agrisee/plan/arm_reach.hpp>
-#include <agrisee/plan/contradiction.hpp>
-#include <agrisee/plan/picking.hpp>
+#include <agrisee/fused_views.hpp>
+#include <agrisee/pipeline_stages.hpp>
 #include <agrisee/planners.hpp>
 #include <agrisee/process.hpp>
 #include <agrisee/sensor/points_to_frame.hpp>
-#include <agrisee/sensor/reconstruct_surface.hpp>
 #include <agrisee/workcell.hpp>
 
-#include <map>
+#include <algorithm>
 #include <memory>
-#include <numeric>
 
 namespace agrisee {
 
@@ -57,23 +50,22 @@ class Pipeline {
         approach_(std::move(approach)),
         planner_(std::move(planner)),
         threads_(threads),
-        surfels_(parameters.surfels),
+        fused_(workcell.scan_volume, parameters, threads),
         points_(parameters.see.min_separation()) {
     parameters_.check();
     check_input(!workcell.scan_volume.empty() && workcell.scan_volume.size().allFinite(),
                 "the scan volume is empty or infinite");
     check_input(is_rigid(workcell.world_T_base) && is_rigid(workcell.tool0_T_optical),
                 "a pose of the workcell is not rigid");
-    if (!reach_ && !approach_) approach_ = default_approach();
-    if (!reach_) reach_ = plan::reach_of(workcell_);
+    if (!reach_ && !approach_) approach_ = detail::ur3_approach(workcell_, parameters_.picking);
+    if (!reach_) reach_ = detail::ur3_reach(workcell_);
     if (!planner_) planner_ = make_planner(workcell_, parameters_, seed, threads);
   }
 
   /// Take in a depth frame that was seen from `world_T_optical` (at `joints`, where an arm is known).
   /// A frame without returns inside the scan volume is a view that brought nothing. A view is discarded, and marked so,
   /// when its frame is the last one bit by bit (a sensor that hangs), or where views are registered, when it
-  /// contradicts what other views saw (see FreeSpaceParameters::max_contradiction): its pose is wrong. Of views that
-  /// contradict one another the more are believed, so that a wrong first view is found out too.
+  /// contradicts what other views saw (fused_views.hpp): its pose is wrong.
   /// @return the view as recorded
   /// @throws InputError for a frame whose size disagrees with its intrinsics or a pose that is not rigid; Cancelled;
   /// the scan so far is kept
@@ -88,11 +80,11 @@ class Pipeline {
     view.plan_seconds = plan_seconds_;
     const bool shows = std::any_of(frame.depth.begin(), frame.depth.end(), sensor::DepthFrame::valid);
     const bool frozen = shows && is_last_frame(frame);
-    Surface surface;
+    FusedViews::Look look;
     double looked = 0.0;
-    if (parameters_.fuse_surfaces) {
+    if (parameters_.fuse_surfaces && !frozen) {
       const Stopwatch watch(looked);
-      surface = surface_of(frame, frozen, view);
+      look = fused_.look(frame, world_T_optical);
     }
     // From here on the scan so far changes: to be done to the end.
     const detail::CancellationSwap to_the_end(nullptr);
@@ -104,23 +96,31 @@ class Pipeline {
     std::optional<Indices> kept;
     {
       const Stopwatch watch(seconds_.fuse);
-      if (parameters_.fuse_surfaces)
-        kept = take_surface(std::move(surface), frozen, view, added);
-      else if (frozen)
+      if (frozen) {
+        view.points_in = count_inside(frame, world_T_optical);
         view.discarded = true;
-      else
+        if (parameters_.fuse_surfaces) fused_.skip(world_T_optical);
+      } else if (parameters_.fuse_surfaces) {
+        view.points_in = look.image.points_in;
+        FusedViews::Change change = fused_.take(std::move(look), world_T_optical);
+        added = std::move(change.added);
+        kept = std::move(change.kept);
+        for (std::size_t v = 0; v < views_.size(); ++v) views_[v].discarded = fused_.discarded(v);
+        view.discarded = fused_.discarded(views_.size());
+      } else {
         merge_points(frame, view, added);
+      }
     }
     if (parameters_.filter_each_view && !parameters_.fuse_surfaces && !points_.cloud().empty()) {
       const Stopwatch watch(seconds_.filter);
-      kept = remove_statistical_outliers(points_.cloud(), parameters_.sor, threads_);
+      kept = detail::without_outliers(points_.cloud(), parameters_.sor, threads_);
       points_.keep(*kept);
     }
     view.points_new = added.size();
     views_.push_back(view);
     {
       const Stopwatch watch(seconds_.fuse);
-      refresh_cloud();
+      cloud_ = parameters_.fuse_surfaces ? fused_.cloud() : points_.cloud();
     }
     double spent = 0.0;
     {
@@ -180,7 +180,12 @@ class Pipeline {
   /// The cloud merged so far, before any filter at the end.
   const Cloud& merged() const { return cloud_; }
   /// All points merged so far, filtered away later or not, each with its view.
-  Cloud raw() const { return raw_cloud(); }
+  Cloud raw() const {
+    if (!parameters_.fuse_surfaces) return raw_;
+    Cloud raw = fused_.all();
+    raw.normals.clear();
+    return raw;
+  }
   /// As given.
   const Workcell& workcell() const { return workcell_; }
   /// As given.
@@ -195,12 +200,12 @@ class Pipeline {
     for (const View& v : views_) origin.sensors.push_back(v.world_T_optical.translation());
     origin.cluster_origin = cluster_origin(workcell_.scan_volume, workcell_.world_T_base.translation());
     SeenThrough seen_through;
-    if (!images_.empty())
+    if (fused_.size() > 0)
       seen_through = [this](const Ellipsoid& body) {
-        return plan::seen_through(images_, body, parameters_.free_space);
+        return plan::seen_through(fused_.images(), body, parameters_.free_space);
       };
     ScanResult out = process(cloud_, parameters_, origin, seen_through, threads_);
-    out.raw = raw_cloud();
+    out.raw = raw();
     center_on_all_views(out);
     if (parameters_.picking.enabled) plan_the_picking(out);
     out.views = views_;
@@ -224,24 +229,15 @@ class Pipeline {
         (workcell_.scan_volume.center() - world_T_optical.translation()).dot(world_T_optical.linear().col(2)), 0.0);
   }
 
-  /// How the UR3 of the workcell, its gripper ahead of the sensor, approaches fruit.
-  plan::ReachApproach default_approach() const {
-    const Pose tool0_T_tool =
-        workcell_.tool0_T_optical * Eigen::Translation3d(0.0, 0.0, parameters_.picking.tool_length);
-    return plan::approach_of(plan::mount_of(workcell_), tool0_T_tool, parameters_.picking);
-  }
-
   /// Counts as locating.
   void plan_the_picking(ScanResult& out) const {
     double spent = 0.0;
     {
       const Stopwatch watch(spent);
       const bool known = !views_.empty() && views_.back().joints;
-      const auto plan = plan::plan_picking(
-          out.fruits,
-          {workcell_.keep_out, workcell_.world_T_base.translation(), known ? *views_.back().joints : workcell_.start,
-           plan::seen_directions(out.cloud, out.labels, out.fruits)},
-          approach_, parameters_.picking);
+      const auto plan = detail::picking_of(out, workcell_.keep_out, workcell_.world_T_base.translation(),
+                                           known ? *views_.back().joints : workcell_.start, approach_,
+                                           parameters_.picking);
       for (std::size_t i = 0; i < plan.size(); ++i) out.fruits[i].picking = plan[i];
     }
     out.seconds.locate += spent;
@@ -249,7 +245,7 @@ class Pipeline {
   }
 
   plan::Progress progress(const std::vector<Eigen::Vector3f>& added, const Indices* kept) const {
-    return {cloud_, images_, views_, added, kept};
+    return {cloud_, fused_.images(), views_, added, kept};
   }
 
   /// True when a frame that shows something is the last one again; a real sensor's noise never repeats.
@@ -258,139 +254,22 @@ class Pipeline {
     return std::equal(frame.depth.begin(), frame.depth.end(), last_frame_.begin(), last_frame_.end(), equal);
   }
 
-  /// What a frame shows, laid on what is fused so far.
-  struct Surface {
-    sensor::SurfaceImage image;
-    bool believed = false;  // if not, the image is as reported
-  };
-
-  /// The frame's surface; changes nothing but what is told of the view.
-  Surface surface_of(const sensor::DepthFrame& frame, bool frozen, View& view) const {
-    Surface out;
-    out.image =
-        sensor::reconstruct_surface(frame, view.world_T_optical, workcell_.scan_volume, parameters_.surface, threads_);
-    view.points_in = out.image.points_in;
-    if (frozen) return out;
-    if (parameters_.register_views) {
-      if (contradicted(out.image)) {
-        // A pose that errs by millimetres contradicts at borders and thin parts, until the view is laid on the others.
-        sensor::SurfaceImage laid = out.image;
-        register_image(laid);
-        if (contradicted(laid)) return out;
-        out.image = std::move(laid);
-      }
-      register_image(out.image);
-    }
-    out.believed = true;
-    return out;
+  /// Pixels of a frame that returned a point inside the scan volume.
+  std::size_t count_inside(const sensor::DepthFrame& frame, const Pose& world_T_optical) const {
+    std::size_t count = 0;
+    for (int v = 0; v < frame.intrinsics.height; ++v)
+      for (int u = 0; u < frame.intrinsics.width; ++u)
+        count += sensor::DepthFrame::valid(frame.at(u, v)) &&
+                 workcell_.scan_volume.contains(world_T_optical * frame.point(u, v).cast<double>());
+    return count;
   }
 
-  /// The frame's surface becomes part of what is fused so far, unless it is not believed.
-  /// @return where what was fused before is not believed any more: the points that are kept, those from before counted
-  std::optional<Indices> take_surface(Surface surface, bool frozen, View& view, std::vector<Eigen::Vector3f>& added) {
-    images_.emplace_back();  // nothing that counts as evidence
-    images_.back().world_T_optical = view.world_T_optical;
-    const std::size_t id = views_.size();
-    if (frozen) {
-      view.discarded = true;
-      return std::nullopt;
-    }
-    sensor::SurfaceImage& image = surface.image;
-    if (surface.believed) {
-      add(std::move(image), id, added);
-      return std::nullopt;
-    }
-    // Those of the views that were not believed which tell the same as this one; more of them than of the others?
-    std::vector<std::size_t> group;
-    for (const auto& [other, held] : held_)
-      if (tell_the_same(plan::compare(held, image, parameters_.free_space))) group.push_back(other);
-    held_.emplace(id, std::move(image));
-    group.push_back(id);
-    const auto believed = static_cast<std::size_t>(
-        std::count_if(views_.begin(), views_.end(), [](const View& v) { return !v.discarded && v.points_in > 0; }));
-    if (group.size() <= believed) {
-      view.discarded = true;
-      return std::nullopt;
-    }
-    const std::size_t before = surfels_.size();
-    surfels_ = SurfelMap(parameters_.surfels);
-    for (View& v : views_) v.discarded |= v.points_in > 0;
-    for (std::size_t v = 0; v < images_.size(); ++v) {
-      images_[v] = {};
-      images_[v].world_T_optical = v < id ? views_[v].world_T_optical : view.world_T_optical;
-    }
-    for (const std::size_t v : group) {
-      if (v < id) views_[v].discarded = false;
-      register_image(held_.at(v));
-      add(std::move(held_.at(v)), v, added);
-      held_.erase(v);
-    }
-    Indices kept(added.size());
-    std::iota(kept.begin(), kept.end(), static_cast<Index>(before));
-    return kept;
-  }
-
-  bool tell_the_same(const plan::Evidence& evidence) const {
-    constexpr std::size_t kEnough = 50;
-    return evidence.count() >= kEnough && evidence.contradiction() <= parameters_.free_space.max_contradiction;
-  }
-
-  /// True when the views that are fused looked through what the image shows, or the other way round.
-  bool contradicted(const sensor::SurfaceImage& image) const {
-    plan::Evidence all;
-    for (const auto& other : images_) all += plan::compare(image, other, parameters_.free_space);
-    return all.contradiction() > parameters_.free_space.max_contradiction;
-  }
-
-  /// Add an image that is laid on what is fused so far.
-  void add(sensor::SurfaceImage image, std::size_t id, std::vector<Eigen::Vector3f>& added) {
-    for (std::size_t c = 0; c < image.points.size(); ++c)
-      if (surfels_.add(image.points[c], image.normals[c], image.sigma[c], static_cast<int>(id)))
-        added.push_back(image.points[c]);
-    // The depths are needed from now on, as evidence of free space, and some points, to compare later views with.
-    std::vector<Eigen::Vector3f> some;
-    const std::size_t step = plan::compared_step(image);
-    for (std::size_t c = 0; c < image.points.size(); c += step) some.push_back(image.points[c]);
-    image.points = std::move(some);
-    image.normals = {};
-    image.sigma = {};
-    images_[id] = std::move(image);
-  }
-
-  void register_image(sensor::SurfaceImage& image) const {
-    if (surfels_.size() == 0) return;
-    Cloud source;
-    const std::size_t step = std::max<std::size_t>(1, image.points.size() / 2500);
-    for (std::size_t c = 0; c < image.points.size(); c += step) {
-      source.points.push_back(image.points[c]);
-      source.normals.push_back(image.normals[c]);
-    }
-    const Cloud target = surfels_.cloud();
-    const IcpResult icp = register_cloud(source, source.normals, target, target.normals, parameters_.icp);
-    if (!icp.accepted) return;
-    const Eigen::Isometry3f correction = icp.target_T_source.cast<float>();
-    for (std::size_t c = 0; c < image.points.size(); ++c) {
-      image.points[c] = correction * image.points[c];
-      image.normals[c] = correction.linear() * image.normals[c];
-    }
-    image.world_T_optical = icp.target_T_source * image.world_T_optical;
-  }
-
-  /// Registration lays every view on the first; the errors of that one view's pose would be the whole scan's. Over all
-  /// views they average out: the result is moved to the mean of where each view, as reported, would have put it.
+  /// Move the result to where all views together, as reported, put it.
   void center_on_all_views(ScanResult& out) const {
-    if (images_.empty() || out.cloud.empty()) return;
-    Eigen::Vector3d center = Eigen::Vector3d::Zero(), shift = Eigen::Vector3d::Zero();
+    if (fused_.size() == 0 || out.cloud.empty()) return;
+    Eigen::Vector3d center = Eigen::Vector3d::Zero();
     for (const auto& p : out.cloud.points) center += p.cast<double>() / static_cast<double>(out.cloud.size());
-    std::size_t believed = 0;
-    for (std::size_t v = 0; v < images_.size(); ++v) {
-      if (views_[v].discarded) continue;
-      const Pose reported_T_registered =
-          views_[v].world_T_optical * images_[v].world_T_optical.inverse(Eigen::Isometry);
-      shift += reported_T_registered * center - center;
-      ++believed;
-    }
-    shift /= static_cast<double>(std::max<std::size_t>(believed, 1));
+    const Eigen::Vector3d shift = fused_.shift_to_reported(center);
     for (Cloud* cloud : {&out.cloud, &out.raw})
       for (auto& p : cloud->points) p += shift.cast<float>();
     for (Fruit& f : out.fruits) {
@@ -416,44 +295,17 @@ class Pipeline {
       }
   }
 
-  /// The merged cloud as the planner and the result see it: surfels that later sight lines went through are left out.
-  void refresh_cloud() {
-    if (!parameters_.fuse_surfaces) {
-      cloud_ = points_.cloud();
-      return;
-    }
-    cloud_ = {};
-    for (const Surfel& s : surfels_.surfels()) {
-      int through = 0;
-      for (const auto& image : images_)
-        through += plan::refutes(image, s.position.cast<double>(), parameters_.free_space);
-      if (through >= parameters_.free_space.min_refuting && through >= s.seen_by) continue;
-      cloud_.points.push_back(s.position);
-      cloud_.normals.push_back(s.normal);
-      cloud_.views.push_back(s.view);
-    }
-  }
-
-  Cloud raw_cloud() const {
-    if (!parameters_.fuse_surfaces) return raw_;
-    Cloud raw = surfels_.cloud();
-    raw.normals.clear();
-    return raw;
-  }
-
   Workcell workcell_;
   Parameters parameters_;
   plan::Reach reach_;
   plan::ReachApproach approach_;
   std::unique_ptr<plan::Planner> planner_;
   int threads_;
-  SurfelMap surfels_;                                 // fused surfaces
-  std::vector<sensor::SurfaceImage> images_;          // what each view saw; of discarded ones the pose alone
-  std::map<std::size_t, sensor::SurfaceImage> held_;  // what views saw that are not believed
-  std::vector<float> last_frame_;                     // the last that showed anything
-  SeparatedCloud points_;                             // or merged raw points
-  Cloud raw_;                                         // all of them, filtered away later or not
-  Cloud cloud_;                                       // what is merged so far
+  FusedViews fused_;                // fused surfaces
+  std::vector<float> last_frame_;   // the last that showed anything
+  SeparatedCloud points_;           // or merged raw points
+  Cloud raw_;                       // all of them, filtered away later or not
+  Cloud cloud_;                     // what is merged so far
   std::vector<View> views_;
   int refusals_ = 0;  // since the last view
   StopReason stop_reason_ = StopReason::not_stopped;

@@ -16,3 +16,9 @@
 #define AGRISEE_JOIN(a, b) AGRISEE_JOIN_TOKENS(a, b)
 /// The inline namespace of what may be compiled apart.
 #define AGRISEE_ABI AGRISEE_JOIN(aligned_, EIGEN_MAX_STATIC_ALIGN_BYTES)
+/// What a function is that may be compiled apart: `inline`, where it is not.
+#ifdef AGRISEE_COMPILED
+#define AGRISEE_INLINE
+#else
+#define AGRISEE_INLINE inline
+#endif
