@@ -44,7 +44,7 @@ struct SceneJob {
   io::SceneFile file;
   std::string fingerprint;
   std::unique_ptr<std::once_flag> once = std::make_unique<std::once_flag>();
-  std::optional<study::Subject> subject;
+  std::shared_ptr<const study::Subject> subject;
 
   const study::Subject& ready() {
     std::call_once(*once, [&] {

@@ -43,7 +43,7 @@ std::optional<study::Fault> kind_of(const std::string& name) {
 struct Subject {
   std::string name;
   Workcell workcell;
-  std::unique_ptr<study::Truth> truth;
+  std::shared_ptr<const study::Truth> truth;
 };
 
 Subject subject_of(const std::string& text) {
@@ -52,7 +52,7 @@ Subject subject_of(const std::string& text) {
   const auto known = truss ? std::optional(truss->truth)
                            : io::read_ground_truth(fs::path(text).parent_path() / "ground_truth.json");
   return {file.workcell.name, file.workcell,
-          std::make_unique<study::Truth>(cli::make_truth(file.scene, known, file.workcell.sensor))};
+          cli::make_truth(file.scene, known, file.workcell.sensor)};
 }
 
 template <typename T>

@@ -10,6 +10,7 @@
 #include <agrisee/io/scene.hpp>
 #include <agrisee/see/density.hpp>
 #include <agrisee/study/evaluate.hpp>
+#include <agrisee/study/simulated_scan.hpp>
 #include <agrisee/version.hpp>
 
 #include <algorithm>

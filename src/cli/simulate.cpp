@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "simulate.hpp"
 
+#include <agrisee/study/faults.hpp>
+#include <agrisee/study/run_cell.hpp>
+
 namespace agrisee::cli {
 
 void check_scan(const Workcell& workcell, const Parameters& parameters) {
@@ -18,14 +21,15 @@ std::unique_ptr<plan::Planner> make_greedy_planner(const TracedScene& scene, con
   return study::make_greedy_planner(scene, samples, workcell, {}, threads);
 }
 
-study::Subject make_subject(const std::string& name, const std::string& fingerprint, const Scene& scene,
-                            const Workcell& workcell, const std::optional<study::GroundTruth>& known) {
-  return study::make_subject(name, fingerprint, scene, workcell, known, 1);
+std::shared_ptr<const study::Subject> make_subject(const std::string& name, const std::string& fingerprint,
+                                                   const Scene& scene, const Workcell& workcell,
+                                                   const std::optional<study::GroundTruth>& known) {
+  return std::make_shared<study::Subject>(study::make_subject(name, fingerprint, scene, workcell, known, 1));
 }
 
-study::Truth make_truth(const Scene& scene, const std::optional<study::GroundTruth>& known,
-                        const sensor::L515& sensor) {
-  return study::make_truth(scene, known, sensor);
+std::shared_ptr<const study::Truth> make_truth(const Scene& scene, const std::optional<study::GroundTruth>& known,
+                                               const sensor::L515& sensor) {
+  return std::make_shared<study::Truth>(study::make_truth(scene, known, sensor));
 }
 
 study::SceneRecord judge_scene(const study::Subject& subject) { return study::judge_scene(subject); }
