@@ -73,7 +73,7 @@ inline std::vector<Fruit> locate(const Cloud& cloud, const Split& split, const E
     if (parameters.split.fit_bodies)
       fruit.body = detail::body_of(cloud, members[f], found, parameters.split.bodies, parameters.mass);
     if (parameters.growth_axis && parameters.split.fit_bodies) {
-      const Eigen::Vector3d z = growth_axis(cloud, split.labels, found.fit.body, parameters.axis);
+      const Eigen::Vector3d z = growth_axis(cloud, split.labels, found.fit, parameters.axis);
       const double near = 0.3 * parameters.split.bodies.radius_min;  // a length of the fruit's, so that it scales
       fruit.orientation = frame_from_z_and_x(z, densest_point(cloud, members[f], near) - c.mean);
     } else {

@@ -132,7 +132,51 @@ TEST_CASE("the growth axis points to the stem that meets the fruit") {
     cloud.points.push_back(((0.031 + 0.0004 * i) * up).cast<float>());
     labels.push_back(0);
   }
-  const Ellipsoid body{Sphere{{0, 0, 0}, 0.03}};
-  CHECK(std::acos(growth_axis(cloud, labels, body).dot(up)) < deg(10));
-  CHECK(growth_axis(Cloud{}, {}, body).z() == Approx(1.0));  // nothing but gravity
+  EllipsoidFit ball;
+  ball.body = Ellipsoid{Sphere{{0, 0, 0}, 0.03}};
+  CHECK(std::acos(growth_axis(cloud, labels, ball).dot(up)) < deg(10));
+  CHECK(growth_axis(Cloud{}, {}, ball).z() == Approx(1.0));  // nothing but gravity
+}
+
+TEST_CASE("the growth axis is the one about which the body is round") {
+  const Eigen::Vector3d axis = Eigen::Vector3d(0.4, -0.5, 1.0).normalized();
+  for (const double polar : {0.85, 1.4}) {  // flat, and oblong
+    INFO("polar semi-axis " << polar);
+    const Eigen::Matrix3d along = axis * axis.transpose();
+    const Eigen::Matrix3d A = (Eigen::Matrix3d::Identity() - along + along / polar) / 0.03;
+    Ellipsoid truth{Sphere{{0.1, 0.5, 0.2}, 0.03}};
+    truth.A = A;
+    Cloud cloud;
+    Rng rng(4);
+    Indices indices;
+    while (cloud.size() < 1500) {
+      const Eigen::Vector3d p = truth.surface(rng.direction()), n = truth.normal(p);
+      if (n.y() > 0.3) continue;  // unseen from behind
+      indices.push_back(static_cast<Index>(cloud.size()));
+      cloud.points.push_back((p + 0.0003 * rng.normal() * n).cast<float>());
+      cloud.normals.push_back(n.cast<float>());
+    }
+    const auto fit = fit_ellipsoid(cloud, indices, Ellipsoid{Sphere{{0.1, 0.5, 0.2}, 0.031}});
+    REQUIRE(fit);
+    const BodyAxis round = symmetry_axis(*fit);
+    const double off = std::acos(std::min(std::abs(round.direction.dot(axis)), 1.0));
+    CHECK(off < deg(4));
+    CHECK(off < 4.0 * std::sqrt(round.variance));
+    CHECK(round.variance < deg(12) * deg(12));
+    const Labels all(cloud.size(), 1);
+    CHECK(std::acos(growth_axis(cloud, all, *fit).dot(axis)) < deg(6));
+    // Stem points at the wrong place, some 50 degrees off, turn it by a few degrees only.
+    Cloud more = cloud;
+    Labels labels = all;
+    const Eigen::Vector3d wrong = (axis + 1.2 * axis.unitOrthogonal()).normalized();
+    for (int i = 0; i < 40; ++i) {
+      more.points.push_back((truth.center + (truth.surface(wrong) - truth.center) * (1.02 + 0.01 * i)).cast<float>());
+      labels.push_back(0);
+    }
+    CHECK(std::acos(growth_axis(more, labels, *fit).dot(axis)) < deg(15));
+  }
+  // A sphere has no such axis.
+  EllipsoidFit ball;
+  ball.body = Ellipsoid{Sphere{{0, 0, 0}, 0.03}};
+  CHECK(!std::isfinite(symmetry_axis(ball).variance));
 }

@@ -80,6 +80,8 @@ inline std::pair<Eigen::Vector3d, Eigen::Matrix3d> semi_axes(const Ellipsoid& e)
 struct EllipsoidFit {
   Ellipsoid body;                                               ///< as fitted
   Eigen::Matrix3d center_covariance = Eigen::Matrix3d::Zero();  ///< m2
+  /// Of body.A as (xx, yy, zz, xy, xz, yz) (1/m2), what was expected of its shape included.
+  Eigen::Matrix<double, 6, 6> shape_covariance = Eigen::Matrix<double, 6, 6>::Zero();
   double rms = 0.0;                                             ///< of the inliers (m)
   std::size_t inliers = 0;                                      ///< points within three noises whose normals agree
 };
@@ -232,7 +234,9 @@ std::optional<EllipsoidFit> fit_ellipsoid(const PointCloud<S>& cloud, const Indi
     if (!(inverse_axes[0] > 0.2 / size) || !(inverse_axes[2] < 5.0 / size)) return std::nullopt;
     fit.inliers = static_cast<std::size_t>(share * static_cast<double>(inliers));
     fit.rms = inliers ? std::sqrt(squares / static_cast<double>(inliers)) : 0.0;
-    fit.center_covariance = solver.solve(Matrix9::Identity()).topLeftCorner<3, 3>() * size * size;
+    const Matrix9 covariance = solver.solve(Matrix9::Identity());
+    fit.center_covariance = covariance.topLeftCorner<3, 3>() * size * size;
+    fit.shape_covariance = covariance.bottomRightCorner<6, 6>() / (size * size);
     gate = std::max(0.7 * gate, std::max(4.0 * parameters.noise, 0.05 * size));
     if (iteration > 3 && longest < 1e-4) break;
   }

@@ -237,17 +237,21 @@ struct SplitParameters {
 struct GrowthAxisParameters {
   double shell = 0.45;      ///< points outside a fruit within this share of its radius may be its calyx and pedicel
   double up_weight = 0.35;  ///< weight of "fruit hang below their stem" against the evidence
+  double stem_certainty = 10.0;  ///< of the direction that stem points tell, 1 / variance (1/rad2), against the body's
 
   /// @throws ParameterError
   void check() const {
     check_parameter(shell > 0, "axis.shell", "positive", shell);
     check_parameter(up_weight >= 0, "axis.up_weight", ">= 0", up_weight);
+    check_parameter(stem_certainty > 0 && std::isfinite(stem_certainty), "axis.stem_certainty", "positive",
+                    stem_certainty);
   }
   /// f(name, field) for every field.
   template <typename P, typename F>
   static void fields(P& p, F&& f) {
     f("shell", p.shell);
     f("up_weight", p.up_weight);
+    f("stem_certainty", p.stem_certainty);
   }
 };
 

@@ -9,6 +9,8 @@
 #include <agrisee/core/grid.hpp>
 #include <agrisee/core/pose.hpp>
 
+#include <limits>
+
 namespace agrisee {
 
 /// Mean and standard deviation per axis of some points (m).
@@ -97,11 +99,50 @@ Eigen::Matrix3d paper_pose_frame(const PointCloud<S>& cloud, const Indices& indi
   return frame_from_z_and_x(z, densest_point(cloud, indices, radius) - mean);
 }
 
-/// Direction (unit, world) from a fruit's centre towards its calyx, from what can be measured: the points that belong to no
-/// fruit and lie just outside the body (calyx, pedicel) weigh by their nearness; gravity is a weak prior.
+/// A line through a body's centre, and how well it is known.
+struct BodyAxis {
+  Eigen::Vector3d direction = Eigen::Vector3d::UnitZ();  ///< unit; its sign means nothing
+  double variance = std::numeric_limits<double>::infinity();  ///< of its direction (rad2)
+};
+
+/// The axis about which a body is closest to round: that of the semi-axis that stands apart from the other two. Its
+/// variance is that of the fit, and grows as the other two differ; a sphere has none.
+inline BodyAxis symmetry_axis(const EllipsoidFit& fit) {
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(fit.body.A);
+  const Eigen::Vector3d& inverse = solver.eigenvalues();  // of the semi-axes, ascending
+  const double below = inverse[1] - inverse[0], above = inverse[2] - inverse[1];
+  const int apart = above >= below ? 2 : 0;
+  const double gap = std::max(below, above);
+  if (!(gap > 1e-9 * inverse[2])) return {};
+  BodyAxis axis;
+  axis.direction = solver.eigenvectors().col(apart);
+  double tilt = 0.0;  // an eigenvector turns towards another by their entry of A over the gap
+  for (int other = 0; other < 3; ++other) {
+    if (other == apart) continue;
+    const Eigen::Vector3d u = axis.direction, v = solver.eigenvectors().col(other);
+    Eigen::Matrix<double, 6, 1> entry;
+    entry << u.x() * v.x(), u.y() * v.y(), u.z() * v.z(), u.x() * v.y() + u.y() * v.x(), u.x() * v.z() + u.z() * v.x(),
+        u.y() * v.z() + u.z() * v.y();
+    const double between = inverse[apart] - inverse[other];
+    tilt = std::max(tilt, entry.dot(fit.shape_covariance * entry) / (between * between));
+  }
+  const double oblong = std::min(below, above) / gap;
+  axis.variance = tilt + oblong * oblong;
+  return axis;
+}
+
+/// Direction (unit, world) from a fruit's centre towards its calyx, from what can be measured: fruit are round about
+/// their growth axis, so the body tells the line; the points that belong to no fruit and lie just outside the body
+/// (calyx, pedicel), which weigh by their nearness, and gravity, a weak prior, tell which way, and more where the body
+/// is a sphere.
+/// @param cloud points (m, world)
+/// @param labels 0: of no fruit
+/// @param fit of the fruit's body
+/// @param parameters see their struct
 template <typename S>
-Eigen::Vector3d growth_axis(const PointCloud<S>& cloud, const Labels& labels, const Ellipsoid& body,
+Eigen::Vector3d growth_axis(const PointCloud<S>& cloud, const Labels& labels, const EllipsoidFit& fit,
                             const GrowthAxisParameters& parameters = {}) {
+  const Ellipsoid& body = fit.body;
   const double r = body.mean_radius();
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
   double weights = 0.0;
@@ -119,6 +160,12 @@ Eigen::Vector3d growth_axis(const PointCloud<S>& cloud, const Labels& labels, co
   }
   Eigen::Vector3d axis = parameters.up_weight * Eigen::Vector3d::UnitZ();
   if (weights > 0.0) axis += std::min(1.0, weights / 10.0) * sum / weights;
+  const BodyAxis round = symmetry_axis(fit);
+  constexpr double kLeastVariance = 1e-3;  // rad2: no fruit is round to better than 2 degrees
+  if (std::isfinite(round.variance)) {
+    const double certainty = 1.0 / (std::max(round.variance, kLeastVariance) * parameters.stem_certainty);
+    axis += (round.direction.dot(axis) < 0.0 ? -certainty : certainty) * round.direction;
+  }
   return axis.norm() > 1e-9 ? Eigen::Vector3d(axis.normalized()) : Eigen::Vector3d(Eigen::Vector3d::UnitZ());
 }
 

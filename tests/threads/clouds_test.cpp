@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Stages on clouds, large enough for several threads: the same answer as from one. ThreadSanitizer looks at this
+// program in CI (AGRISEE_SANITIZE).
+#include <agrisee/cloud/dbscan.hpp>
+#include <agrisee/cloud/icp.hpp>
+#include <agrisee/cloud/normals.hpp>
+#include <agrisee/cloud/orient_normals.hpp>
+#include <agrisee/cloud/region_growing.hpp>
+#include <agrisee/cloud/sor.hpp>
+#include <agrisee/core/cancellation.hpp>
+#include <agrisee/see/density.hpp>
+
+#include <thread>
+
+#include "catch.hpp"
+
+using namespace agrisee;
+
+namespace {
+
+constexpr int kThreads = 4;
+
+/// Eight noisy spheres that touch; 2 mm between points.
+const std::vector<Eigen::Vector3f>& fruit() {
+  static const std::vector<Eigen::Vector3f> points = [] {
+    Rng rng(3);
+    std::vector<Eigen::Vector3f> p;
+    for (int i = 0; i < 16000; ++i) {
+      const Eigen::Vector3d center(0.06 * (i % 2), 0.06 * (i / 2 % 2), 0.06 * (i / 4 % 2));
+      p.push_back((center + (0.03 + 0.0003 * rng.normal()) * rng.direction()).cast<float>());
+    }
+    return p;
+  }();
+  return points;
+}
+
+}  // namespace
+
+TEST_CASE("threads: lists of neighbours") {
+  CHECK(nearest_neighbors(fruit(), 12, 1).ids == nearest_neighbors(fruit(), 12, kThreads).ids);
+}
+
+TEST_CASE("threads: outlier removal") {
+  CHECK(remove_statistical_outliers(fruit(), {}, 1) == remove_statistical_outliers(fruit(), {}, kThreads));
+}
+
+TEST_CASE("threads: normals, their orientation, regions") {
+  const auto axes = estimate_normals(fruit(), {}, 1);
+  CHECK(axes == estimate_normals(fruit(), {}, kThreads));
+  const auto normals = orient_normals_consistently(axes, fruit(), {}, 1);
+  CHECK(normals == orient_normals_consistently(axes, fruit(), {}, kThreads));
+  CHECK(grow_regions(fruit(), normals, {}, {}, 1) == grow_regions(fruit(), normals, {}, {}, kThreads));
+}
+
+TEST_CASE("threads: clusters") {
+  CHECK(dbscan(fruit(), {0.003, 5}, 1) == dbscan(fruit(), {0.003, 5}, kThreads));
+  CHECK(dbscan(fruit(), {0.02, 5}, 1) == dbscan(fruit(), {0.02, 5}, kThreads));
+}
+
+TEST_CASE("threads: density classes, from scratch and view by view") {
+  const see::Parameters params;
+  CHECK(see::classify(fruit(), params, 1).classes == see::classify(fruit(), params, kThreads).classes);
+}
+
+TEST_CASE("threads: registration") {
+  const auto normals = estimate_normals(fruit(), {}, 1);
+  Pose moved = Pose::Identity();
+  moved.translation() = Eigen::Vector3d(0.001, -0.0005, 0.0008);
+  const auto at = [&](int threads) {
+    return register_cloud(fruit(), normals, fruit(), normals, {}, moved, threads).target_T_source.matrix().eval();
+  };
+  CHECK(at(1) == at(kThreads));
+}
+
+TEST_CASE("threads: a stage is cancelled from another thread") {
+  Cancellation cancellation;
+  std::thread other([&] { cancellation.request(); });
+  try {
+    const CancellationScope scope(cancellation);
+    for (int i = 0; i < 3; ++i) remove_statistical_outliers(fruit(), {}, kThreads);
+  } catch (const Cancelled&) {  // or it was faster
+  }
+  other.join();
+  SUCCEED();
+}
