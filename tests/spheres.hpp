@@ -11,6 +11,10 @@ namespace test {
 
 using agrisee::Sphere;
 
+/// Three fruit of a small truss, the third behind the others.
+inline const std::vector<Sphere> kThreeFruit = {
+    {{-0.03, 0.53, 0.2}, 0.035}, {{0.045, 0.54, 0.21}, 0.033}, {{0.01, 0.60, 0.20}, 0.034}};
+
 /// Depth frame of spheres, with Gaussian noise along the ray.
 inline agrisee::sensor::DepthFrame render(const std::vector<Sphere>& spheres, const agrisee::sensor::Intrinsics& k,
                                           const agrisee::Pose& world_T_optical, double noise = 0.0, std::uint64_t seed = 1) {

@@ -52,28 +52,10 @@ Triangle corners(const Mesh& mesh, std::uint32_t i) {
   return {mesh.vertices[t[0]], mesh.vertices[t[1]], mesh.vertices[t[2]]};
 }
 
-Eigen::Vector3d random_vector(Rng& rng, double scale) {
-  const double x = rng.uniform(-scale, scale), y = rng.uniform(-scale, scale);
-  return {x, y, rng.uniform(-scale, scale)};
-}
-
-Mesh soup(int n, double size, std::uint64_t seed) {
-  Rng rng(seed);
-  Mesh mesh;
-  for (int i = 0; i < n; ++i) {
-    const Eigen::Vector3d a = random_vector(rng, 0.3);
-    const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
-    mesh.vertices.push_back(a.cast<float>());
-    for (int c = 0; c < 2; ++c) mesh.vertices.push_back((a + random_vector(rng, size)).cast<float>());
-    mesh.triangles.push_back({first, first + 1, first + 2});
-  }
-  return mesh;
-}
-
 Mesh spheres() {
   Rng rng(2);
   Mesh mesh;
-  for (int i = 0; i < 12; ++i) append(mesh, shapes::sphere(random_vector(rng, 0.15), rng.uniform(0.02, 0.05), 40));
+  for (int i = 0; i < 12; ++i) append(mesh, shapes::sphere(shapes::random_vector(rng, 0.15), rng.uniform(0.02, 0.05), 40));
   return mesh;
 }
 
@@ -139,9 +121,9 @@ void agree(const Mesh& mesh, const std::optional<Bvh::Hit>& ours, const std::opt
 
 TEST_CASE("random rays hit what Embree says") {
   const int kind = GENERATE(0, 1, 2, 3);
-  const Mesh mesh = kind == 0   ? soup(200, 0.2, 1)
-                    : kind == 1 ? soup(5000, 0.05, 2)
-                    : kind == 2 ? soup(50000, 0.01, 3)
+  const Mesh mesh = kind == 0   ? shapes::soup(200, 0.2, 1)
+                    : kind == 1 ? shapes::soup(5000, 0.05, 2)
+                    : kind == 2 ? shapes::soup(50000, 0.01, 3)
                                 : spheres();
   const Bvh bvh(mesh);
   const Embree embree(mesh);
@@ -149,9 +131,9 @@ TEST_CASE("random rays hit what Embree says") {
   Tally tally;
   int any_differs = 0;
   for (int i = 0; i < 100000; ++i) {
-    const Eigen::Vector3d eye = i % 2 ? Eigen::Vector3d(0.7 * rng.direction()) : random_vector(rng, 0.3);
+    const Eigen::Vector3d eye = i % 2 ? Eigen::Vector3d(0.7 * rng.direction()) : shapes::random_vector(rng, 0.3);
     const Eigen::Vector3f o = eye.cast<float>();
-    const Eigen::Vector3f d = (random_vector(rng, 0.3) - eye).normalized().cast<float>();
+    const Eigen::Vector3f d = (shapes::random_vector(rng, 0.3) - eye).normalized().cast<float>();
     const float t_min = i % 3 ? 0.0f : 0.25f, t_max = i % 5 ? 9.0f : 0.6f;
     const auto ours = bvh.closest(o, d, t_min, t_max);
     agree(mesh, ours, embree.closest(o, d, t_min, t_max), o, d, tally);

@@ -11,9 +11,6 @@ using namespace agrisee;
 
 namespace {
 
-const std::vector<Sphere> kFruit = {
-    {{-0.03, 0.53, 0.2}, 0.035}, {{0.045, 0.54, 0.21}, 0.033}, {{0.01, 0.60, 0.20}, 0.034}};
-
 Workcell cell() {
   Workcell w;
   w.scan_volume.extend({-0.17, 0.40, -0.02});
@@ -36,7 +33,7 @@ ScanResult look_around(int views, const std::set<int>& wrong, const Eigen::Vecto
     pose.linear() << x, z.cross(x), z;
     pose.translation() = target - 0.38 * z;
     sensor::DepthFrame frame =
-        test::render(kFruit, w.sensor.intrinsics, pose, 0.001, static_cast<std::uint64_t>(v + 1));
+        test::render(test::kThreeFruit, w.sensor.intrinsics, pose, 0.001, static_cast<std::uint64_t>(v + 1));
     if (v == frozen) frame = last;
     last = frame;
     if (wrong.count(v)) pose.translation() += off;
@@ -53,8 +50,8 @@ std::set<int> discarded(const ScanResult& result) {
 }
 
 void check_found(const ScanResult& result) {
-  REQUIRE(result.fruits.size() == kFruit.size());
-  for (const Sphere& s : kFruit) {
+  REQUIRE(result.fruits.size() == test::kThreeFruit.size());
+  for (const Sphere& s : test::kThreeFruit) {
     double best = 1.0;
     for (const Fruit& f : result.fruits)
       if (f.body) best = std::min(best, (f.body->center - s.center).norm());

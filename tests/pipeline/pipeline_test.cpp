@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <agrisee/arm/ur3.hpp>
+#include <agrisee/core/kdtree.hpp>
 #include <agrisee/pipeline.hpp>
+#include <agrisee/plan/directions.hpp>
 
 #include "catch.hpp"
 #include "spheres.hpp"
@@ -7,9 +10,6 @@
 using namespace agrisee;
 
 namespace {
-
-const std::vector<Sphere> kFruit = {
-    {{-0.03, 0.53, 0.2}, 0.035}, {{0.045, 0.54, 0.21}, 0.033}, {{0.01, 0.60, 0.20}, 0.034}};
 
 Workcell cell() {
   Workcell w;
@@ -37,7 +37,7 @@ ScanResult run(const Parameters& parameters, Fault&& fault, Refuse&& refuse, int
     }
     joints = *next->joints;
     auto frame =
-        test::render(kFruit, w.sensor.intrinsics, next->world_T_optical, 0.001, static_cast<std::uint64_t>(asked));
+        test::render(test::kThreeFruit, w.sensor.intrinsics, next->world_T_optical, 0.001, static_cast<std::uint64_t>(asked));
     fault(static_cast<int>(pipeline.views().size()), frame);
     pipeline.observe(frame, next->world_T_optical, joints);
   }
@@ -48,8 +48,8 @@ void no_fault(int, sensor::DepthFrame&) {}
 bool never(int) { return false; }
 
 void check_found(const ScanResult& result) {
-  CHECK(result.fruits.size() == kFruit.size());
-  for (const Sphere& s : kFruit) {
+  CHECK(result.fruits.size() == test::kThreeFruit.size());
+  for (const Sphere& s : test::kThreeFruit) {
     double best = 1.0;
     for (const Fruit& f : result.fruits)
       if (f.body) best = std::min(best, (f.body->center - s.center).norm());
@@ -74,7 +74,7 @@ TEST_CASE("a scan finds every fruit, the hidden one too, and stops by itself") {
     CHECK(f.body->completeness > 0.2);
     CHECK(f.body->confidence > 0.3);
     CHECK(f.body->mass == Approx(980.0 * f.body->volume));
-    const double r = kFruit[0].radius;  // all are within 2 mm of it
+    const double r = test::kThreeFruit[0].radius;  // all are within 2 mm of it
     CHECK(f.body->volume == Approx(4.0 / 3.0 * kPi * r * r * r).epsilon(0.25));
     CHECK(f.body->volume_error > 0.0);
     CHECK(f.body->volume_error < 0.1 * f.body->volume);
@@ -127,7 +127,7 @@ TEST_CASE("frames from other poses than the commanded ones, and a truss that mov
     INFO((moves ? "truss moves" : "other poses"));
     Pipeline pipeline(w);
     Joints joints = w.start;
-    std::vector<Sphere> fruit = kFruit;
+    std::vector<Sphere> fruit = test::kThreeFruit;
     while (const auto next = pipeline.next_view(joints)) {
       joints = *next->joints;
       Pose pose = next->world_T_optical;
@@ -162,17 +162,17 @@ TEST_CASE("the planner says how complete the scan is") {
       seen.push_back(c->seen);
     }
     joints = *next->joints;
-    pipeline.observe(test::render(kFruit, w.sensor.intrinsics, next->world_T_optical), next->world_T_optical, joints);
+    pipeline.observe(test::render(test::kThreeFruit, w.sensor.intrinsics, next->world_T_optical), next->world_T_optical, joints);
   }
   const ScanResult result = pipeline.result();
   REQUIRE(result.completeness);
   REQUIRE(seen.size() >= 2);
   CHECK(result.completeness->seen > seen.front());
-  CHECK(result.completeness->fruits.size() == kFruit.size());
+  CHECK(result.completeness->fruits.size() == test::kThreeFruit.size());
   // What points cover, counted on the true spheres.
   const KdTree<float> tree(result.raw.points);
   double covered = 0.0, all = 0.0;
-  for (const Sphere& s : kFruit)
+  for (const Sphere& s : test::kThreeFruit)
     for (const Eigen::Vector3d& d : plan::spread_directions(2000)) {
       const double area = s.radius * s.radius;
       all += area;
@@ -231,7 +231,7 @@ TEST_CASE("what cannot be observed is refused and what was seen is kept") {
   Pipeline pipeline(w);
   const auto next = pipeline.next_view(w.start);
   REQUIRE(next);
-  pipeline.observe(test::render(kFruit, w.sensor.intrinsics, next->world_T_optical), next->world_T_optical,
+  pipeline.observe(test::render(test::kThreeFruit, w.sensor.intrinsics, next->world_T_optical), next->world_T_optical,
                    next->joints);
   const std::size_t merged = pipeline.merged().size();
   CHECK(merged > 100);
@@ -239,7 +239,7 @@ TEST_CASE("what cannot be observed is refused and what was seen is kept") {
   CHECK_THROWS_AS(pipeline.observe(broken, next->world_T_optical), InputError);
   Pose skewed = next->world_T_optical;
   skewed.translation().x() = std::nan("");
-  CHECK_THROWS_AS(pipeline.observe(test::render(kFruit, w.sensor.intrinsics, next->world_T_optical), skewed),
+  CHECK_THROWS_AS(pipeline.observe(test::render(test::kThreeFruit, w.sensor.intrinsics, next->world_T_optical), skewed),
                   InputError);
   CHECK_THROWS_AS(pipeline.next_view(Joints::Constant(std::nan(""))), InputError);
   CHECK(pipeline.merged().size() == merged);
@@ -267,7 +267,7 @@ TEST_CASE("an external robot's own reach replaces ours") {
   while (const auto next = pipeline.next_view(Joints::Zero())) {
     CHECK(next->world_T_optical.linear().col(2).y() >= 0.5 - 1e-9);
     std::vector<Eigen::Vector3f> points;  // this robot's sensor gives plain points
-    const auto frame = test::render(kFruit, w.sensor.intrinsics, next->world_T_optical);
+    const auto frame = test::render(test::kThreeFruit, w.sensor.intrinsics, next->world_T_optical);
     for (int v = 0; v < frame.intrinsics.height; ++v)
       for (int u = 0; u < frame.intrinsics.width; ++u)
         if (frame.at(u, v) > 0) points.push_back(frame.point(u, v));

@@ -2,6 +2,7 @@
 // Every view that a planner proposes, and every pick that is said to be reachable, in random cells and from random
 // postures, re-checked by a verifier of its own.
 #include <agrisee/pipeline.hpp>
+#include <agrisee/plan/arm_reach.hpp>
 
 #include "properties/cells.hpp"
 

@@ -11,25 +11,6 @@ using namespace agrisee::sensor;
 
 namespace {
 
-Eigen::Vector3d random_vector(Rng& rng, double scale) {
-  const double x = rng.uniform(-scale, scale), y = rng.uniform(-scale, scale);
-  return {x, y, rng.uniform(-scale, scale)};
-}
-
-/// Triangles of edge length about `size` around the origin.
-Mesh soup(int n, double size, std::uint64_t seed) {
-  Rng rng(seed);
-  Mesh mesh;
-  for (int i = 0; i < n; ++i) {
-    const Eigen::Vector3d a = random_vector(rng, 0.3);
-    const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
-    mesh.vertices.push_back(a.cast<float>());
-    for (int c = 0; c < 2; ++c) mesh.vertices.push_back((a + random_vector(rng, size)).cast<float>());
-    mesh.triangles.push_back({first, first + 1, first + 2});
-  }
-  return mesh;
-}
-
 /// Number of pixels that return something; requires that all equal closest().
 std::size_t compare(const TracedScene& scene, const Intrinsics& k, const Pose& pose, double range_min,
                     double range_max) {
@@ -56,16 +37,16 @@ TEST_CASE("a traced image is what single rays find") {
   Rng rng(1);
   for (const double size : {0.002, 0.02, 0.3})
     for (int i = 0; i < 4; ++i) {
-      const TracedScene scene(shapes::scene_of(soup(3000, size, std::uint64_t(i))));
+      const TracedScene scene(shapes::scene_of(shapes::soup(3000, size, std::uint64_t(i))));
       const Eigen::Vector3d eye = 0.8 * rng.direction();
       REQUIRE(compare(scene, k, look_along(eye, -eye, rng.uniform(0.0, 6.0)), 0.25, 9.0) > 10);
       // from amid the triangles: many are partly behind the eye
-      REQUIRE(compare(scene, k, look_along(random_vector(rng, 0.2), rng.direction()), 0.0, 9.0) > 10);
+      REQUIRE(compare(scene, k, look_along(shapes::random_vector(rng, 0.2), rng.direction()), 0.0, 9.0) > 10);
     }
 }
 
 TEST_CASE("a traced image is what single rays find where many triangles crowd") {
-  const TracedScene scene(shapes::scene_of(soup(20000, 0.3, 9)));
+  const TracedScene scene(shapes::scene_of(shapes::soup(20000, 0.3, 9)));
   const Intrinsics k = intrinsics_from_fov(64, 48, deg(70), deg(55));
   REQUIRE(compare(scene, k, look_along({0, -0.9, 0}, Eigen::Vector3d::UnitY()), 0.25, 9.0) > 1000);
 }
@@ -104,7 +85,7 @@ TEST_CASE("a surface that is too near hides what is behind it") {
 }
 
 TEST_CASE("a traced image does not depend on the number of threads") {
-  const TracedScene scene(shapes::scene_of(soup(5000, 0.05, 4)));
+  const TracedScene scene(shapes::scene_of(shapes::soup(5000, 0.05, 4)));
   const Intrinsics k = intrinsics_from_fov(200, 150, deg(70), deg(55));
   const Pose pose = look_along({0, -0.8, 0}, {0, 1, 0});
   const RayImage one = raycast(scene, k, pose, 0.25, 9.0, 1);

@@ -2,6 +2,7 @@
 // Simple meshes for tests and benchmarks.
 #pragma once
 
+#include <agrisee/core/random.hpp>
 #include <agrisee/geometry/scene.hpp>
 
 namespace agrisee::shapes {
@@ -40,6 +41,26 @@ inline Mesh rectangle(const Eigen::Vector3d& corner, const Eigen::Vector3d& edge
                                    Eigen::Vector3d(corner + edge_v)})
     mesh.vertices.push_back(p.cast<float>());
   mesh.triangles = {{0, 1, 2}, {0, 2, 3}};
+  return mesh;
+}
+
+/// A vector whose coordinates are evenly spread over [-scale, scale].
+inline Eigen::Vector3d random_vector(Rng& rng, double scale) {
+  const double x = rng.uniform(-scale, scale), y = rng.uniform(-scale, scale);
+  return {x, y, rng.uniform(-scale, scale)};
+}
+
+/// n triangles of edge length about `size` (m) around the origin.
+inline Mesh soup(int n, double size, std::uint64_t seed) {
+  Rng rng(seed);
+  Mesh mesh;
+  for (int i = 0; i < n; ++i) {
+    const Eigen::Vector3d a = random_vector(rng, 0.3);
+    const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
+    mesh.vertices.push_back(a.cast<float>());
+    for (int c = 0; c < 2; ++c) mesh.vertices.push_back((a + random_vector(rng, size)).cast<float>());
+    mesh.triangles.push_back({first, first + 1, first + 2});
+  }
   return mesh;
 }
 
