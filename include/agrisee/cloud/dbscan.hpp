@@ -83,7 +83,7 @@ Labels dbscan(const C& cloud, const DbscanParameters& params = {}, int threads =
   params.check();
   const S eps = static_cast<S>(params.eps), eps_sq = eps * eps;
   const auto needed = static_cast<std::size_t>(params.min_points);
-  const CountingGrid<S> counting(cloud, eps);
+  const CountingGrid<S> counting(cloud, eps, threads);
   const Grid<S>& grid = counting.grid;
   const S *x = grid.x().data(), *y = grid.y().data(), *z = grid.z().data();
   const auto id = [&](std::size_t j) { return static_cast<std::size_t>(grid.ids()[j]); };
@@ -104,34 +104,31 @@ Labels dbscan(const C& cloud, const DbscanParameters& params = {}, int threads =
         }
       });
 
-  std::vector<char> core(n, 0);
-  std::vector<Index> roots(n, 0);
-  for (std::size_t j = 0; j < grid.stored(); ++j) {
-    core[id(j)] = static_cast<char>(stored_core[j]);
-    roots[id(j)] = sets.root(static_cast<Index>(j));
-  }
-  Labels labels = detail::number_clusters(core, roots);
+  // Clusters are numbered by their first core point in the cloud's order.
+  const Labels stored_labels = number_sets(
+      sets, grid.stored(), 1, threads, [&](std::size_t j) { return stored_core[j] != 0; },
+      [&](std::size_t j) { return grid.ids()[j]; });
+  Labels labels(n, 0);
+  parallel_for(grid.stored(), threads, [&](std::size_t j) { labels[id(j)] = stored_labels[j]; }, 4096);
 
   // Border points: the least label of the core points nearby.
-  constexpr int kNone = std::numeric_limits<int>::max();
-  std::vector<int> stored_labels(grid.stored(), kNone);
-  for (std::size_t j = 0; j < grid.stored(); ++j)
-    if (stored_core[j]) stored_labels[j] = labels[id(j)];
+  constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
   for_cells(grid, threads, [&] {
     return [&](const typename Grid<S>::Cell& cell, std::size_t first, std::size_t last) {
       for (std::size_t j = first; j < last; ++j) {
         if (stored_core[j]) continue;
         const S qx = x[j], qy = y[j], qz = z[j];
-        int least = kNone;
+        auto least = kNone;
         for (const StencilRow& row : counting.stencil) {
           const auto [begin, end] =
               grid.run(cell[2] - row.outer, cell[2] + row.outer, cell[1] + row.dy, cell[0] + row.dz);
           for (std::size_t i = begin; i < end; ++i) {
             const S dx = x[i] - qx, dy = y[i] - qy, dz = z[i] - qz;
-            least = std::min(least, dx * dx + dy * dy + dz * dz <= eps_sq ? stored_labels[i] : kNone);
+            const auto its = static_cast<std::uint32_t>(stored_labels[i]) - 1u;  // of no cluster: the largest
+            least = std::min(least, dx * dx + dy * dy + dz * dz <= eps_sq ? its : kNone);
           }
         }
-        if (least != kNone) labels[id(j)] = least;
+        if (least != kNone) labels[id(j)] = static_cast<int>(least) + 1;
       }
     };
   });

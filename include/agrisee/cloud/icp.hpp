@@ -331,7 +331,7 @@ IcpResult register_cloud(const Source& source, const std::vector<Vector3<scalar_
   params.check();
   using S = scalar_t<Target>;
   return register_cloud(source, source_normals, target, target_normals, params,
-                        Grid<S>(target, detail::icp_cell(target, params)), initial, threads);
+                        Grid<S>(target, detail::icp_cell(target, params), threads), initial, threads);
 }
 
 }  // namespace agrisee

@@ -105,14 +105,15 @@ Labels connected_regions(const C& cloud, const std::vector<Vector3<scalar_t<C>>>
   const std::size_t n = agrisee::size(cloud);
   const S radius = static_cast<S>(params.radius), radius_sq = radius * radius;
   const S cos_min = static_cast<S>(std::cos(params.smoothness));
-  const Grid<S> grid(cloud, S(1.00001) * radius);
+  const Grid<S> grid(cloud, S(1.00001) * radius, threads);
   const auto id = [&](std::size_t j) { return static_cast<std::size_t>(grid.ids()[j]); };
   std::vector<S> nx(grid.stored()), ny(grid.stored()), nz(grid.stored());
-  for (std::size_t j = 0; j < grid.stored(); ++j) {
+  const auto gather = [&](std::size_t j) {
     Vector3<S> normal = normals[id(j)];
     if (!can_join<S>(grid.stored_point(j), normal)) normal.setConstant(std::numeric_limits<S>::quiet_NaN());
     nx[j] = normal.x(), ny[j] = normal.y(), nz[j] = normal.z();
-  }
+  };
+  parallel_for(grid.stored(), threads, gather, 4096);
   const S *x = grid.x().data(), *y = grid.y().data(), *z = grid.z().data();
   const S *u = nx.data(), *v = ny.data(), *w = nz.data();
   const auto join = [&](DisjointSets& sets, const auto& cosine) {
@@ -134,19 +135,18 @@ Labels connected_regions(const C& cloud, const std::vector<Vector3<scalar_t<C>>>
   else
     join(sets, [](S c) { return c; });
 
-  std::vector<Index> roots(n, -1);
-  for (std::size_t j = 0; j < grid.stored(); ++j)
-    if (!std::isnan(nx[j])) roots[id(j)] = sets.root(static_cast<Index>(j));
-  Labels labels(n, 0), number(grid.stored(), 0);
-  int regions = 0;
-  for (const Index seed : seed_order<S>(n, params.seeds_by_curvature, curvatures)) {
-    const Index root = roots[static_cast<std::size_t>(seed)];
-    if (root < 0) continue;
-    int& mine = number[static_cast<std::size_t>(root)];
-    if (mine == 0) mine = ++regions;
-    labels[static_cast<std::size_t>(seed)] = mine;
+  std::vector<Index> ranks;  // of the seeds, where these are not in the cloud's order
+  if (params.seeds_by_curvature) {
+    ranks.resize(n);
+    const Indices order = seed_order<S>(n, true, curvatures);
+    for (std::size_t r = 0; r < n; ++r) ranks[static_cast<std::size_t>(order[r])] = static_cast<Index>(r);
   }
-  drop_small_regions(labels, regions, params.min_size);
+  const Labels stored = number_sets(
+      sets, grid.stored(), static_cast<std::size_t>(params.min_size), threads,
+      [&](std::size_t j) { return !std::isnan(nx[j]); },
+      [&](std::size_t j) { return ranks.empty() ? grid.ids()[j] : ranks[id(j)]; });
+  Labels labels(n, 0);
+  parallel_for(grid.stored(), threads, [&](std::size_t j) { labels[id(j)] = stored[j]; }, 4096);
   return labels;
 }
 

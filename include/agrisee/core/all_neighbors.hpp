@@ -36,26 +36,31 @@ namespace detail {
 /// Median, over a few points of the cloud, of the distance (m) to the k-th nearest, judged by a share of the points;
 /// points with that many duplicates do not count. 1 where there are no others.
 template <typename C>
-scalar_t<C> typical_distance(const C& cloud, std::size_t k) {
+scalar_t<C> typical_distance(const C& cloud, std::size_t k, int threads = 1) {
   using S = scalar_t<C>;
   constexpr std::size_t kSamples = 16;
   const std::size_t n = agrisee::size(cloud), share = std::max<std::size_t>(1, k / 4);
   std::vector<Vector3<S>> some;
   for (std::size_t i = 0; i < n; i += share)
     if (is_finite(point(cloud, i))) some.push_back(point(cloud, i));
-  std::vector<S> typical, distances(some.size());
   const auto nth = [](std::vector<S>& values, std::size_t rank) {
     const auto at = values.begin() + static_cast<std::ptrdiff_t>(std::min(rank, values.size() - 1));
     std::nth_element(values.begin(), at, values.end());
     return *at;
   };
-  for (std::size_t s = 0; s < std::min(kSamples, some.size()); ++s) {
-    throw_if_cancelled();
-    const Vector3<S> q = some[s * some.size() / kSamples];
-    for (std::size_t i = 0; i < some.size(); ++i) distances[i] = distance_sq<S>(some[i], q);
-    const S d = std::sqrt(nth(distances, k / share));
+  std::vector<S> found(std::min(kSamples, some.size()));
+  parallel_chunks(found.size(), threads, kSamples / 4, [&](std::size_t begin, std::size_t end) {
+    std::vector<S> distances(some.size());
+    for (std::size_t s = begin; s < end; ++s) {
+      throw_if_cancelled();
+      const Vector3<S> q = some[s * some.size() / kSamples];
+      for (std::size_t i = 0; i < some.size(); ++i) distances[i] = distance_sq<S>(some[i], q);
+      found[s] = std::sqrt(nth(distances, k / share));
+    }
+  });
+  std::vector<S> typical;
+  for (const S d : found)
     if (d > 0 && std::isfinite(d)) typical.push_back(d);
-  }
   return typical.empty() ? S(1) : nth(typical, typical.size() / 2);
 }
 
@@ -330,9 +335,9 @@ Left near_neighborhoods(const Grid<S>& grid, std::size_t k, S radius, S typical,
 template <typename C, typename Body>
 void for_each_neighborhood(const C& cloud, std::size_t k, scalar_t<C> radius, int threads, const Body& body) {
   using S = scalar_t<C>;
-  const S typical = detail::typical_distance(cloud, k);
+  const S typical = detail::typical_distance(cloud, k, agrisee::size(cloud) < 50000 ? 1 : threads);
   const S nearby = S(1.25) * typical;
-  const Grid<S> grid(cloud, radius > 0 ? std::min(nearby, S(1.00001) * radius) : nearby);
+  const Grid<S> grid(cloud, radius > 0 ? std::min(nearby, S(1.00001) * radius) : nearby, threads);
   const detail::Left left = detail::near_neighborhoods(grid, k, radius, typical, threads, body);
   if (!left.far.empty()) {
     const detail::FarCells<S> cells(grid);

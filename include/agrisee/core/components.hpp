@@ -7,6 +7,8 @@
 #include <agrisee/core/tiles.hpp>
 
 #include <atomic>
+#include <limits>
+#include <utility>
 
 namespace agrisee {
 
@@ -96,6 +98,44 @@ void join_neighbors(const Grid<S>& grid, const Stencil& stencil, int threads, Di
       }
     };
   });
+}
+
+/// Number the sets of at least `min_size` members from 1, in the order of their members' least ranks.
+/// @param sets who belongs together
+/// @param n how many indices
+/// @param min_size sets with fewer members get no number
+/// @param threads the result does not depend on it
+/// @param member whether index j counts; members and others are never in one set
+/// @param rank rank(j), from 0, no two alike
+/// @return the number of its set an index, 0 for none
+template <typename Member, typename Rank>
+Labels number_sets(DisjointSets& sets, std::size_t n, std::size_t min_size, int threads, const Member& member,
+                   const Rank& rank) {
+  struct Set {
+    Index least = std::numeric_limits<Index>::max();  // rank of its members
+    std::uint32_t size = 0;
+  };
+  std::vector<Set> by_root(n);
+  std::vector<std::pair<Index, Index>> numbered;  // least rank, root
+  for (std::size_t j = 0; j < n; ++j) {
+    if (!member(j)) continue;
+    Set& set = by_root[static_cast<std::size_t>(sets.root(static_cast<Index>(j)))];
+    set.least = std::min(set.least, static_cast<Index>(rank(j)));
+    ++set.size;
+  }
+  for (std::size_t j = 0; j < n; ++j)
+    if (by_root[j].size > 0 && by_root[j].size >= min_size) numbered.emplace_back(by_root[j].least, static_cast<Index>(j));
+  std::sort(numbered.begin(), numbered.end());
+  Labels labels(n, 0);
+  for (std::size_t c = 0; c < numbered.size(); ++c)
+    labels[static_cast<std::size_t>(numbered[c].second)] = static_cast<int>(c) + 1;
+  const auto label = [&](std::size_t j) {
+    if (!member(j)) return;
+    const auto root = static_cast<std::size_t>(sets.root(static_cast<Index>(j)));
+    if (root != j) labels[j] = labels[root];
+  };
+  parallel_for(n, threads, label, 4096);
+  return labels;
 }
 
 }  // namespace agrisee

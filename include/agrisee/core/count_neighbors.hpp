@@ -52,9 +52,11 @@ template <typename S>
 struct CountingGrid {
   /// Of a cloud, to count within r (m).
   template <typename C>
-  CountingGrid(const C& cloud, S r)
+  CountingGrid(const C& cloud, S r, int threads = 1)
       : radius(r),
-        grid(cloud, S(1.00001) * std::max(r, std::numeric_limits<S>::min()) / static_cast<S>(detail::cells_a_radius(cloud, r))),
+        grid(cloud,
+             S(1.00001) * std::max(r, std::numeric_limits<S>::min()) / static_cast<S>(detail::cells_a_radius(cloud, r)),
+             threads),
         stencil(ball_stencil(double(r) / grid.cell())) {}
 
   S radius;         ///< m
@@ -80,7 +82,7 @@ template <typename C>
 std::vector<int> count_neighbors(const C& cloud, scalar_t<C> r, int threads = 1) {
   check_parameter(std::isfinite(r) && r >= 0, "radius", "not negative and finite", r);
   std::vector<int> counts(agrisee::size(cloud), 0);
-  const CountingGrid<scalar_t<C>> counting(cloud, r);
+  const CountingGrid<scalar_t<C>> counting(cloud, r, threads);
   counting.count(threads, [&](std::size_t j, std::size_t in) {
     counts[static_cast<std::size_t>(counting.grid.ids()[j])] = static_cast<int>(in);
   });

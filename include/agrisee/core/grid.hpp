@@ -9,10 +9,12 @@
 #include <agrisee/core/cancellation.hpp>
 #include <agrisee/core/cloud.hpp>
 #include <agrisee/core/neighbors.hpp>
+#include <agrisee/core/parallel.hpp>
 #include <agrisee/core/stencil.hpp>
 
 #include <array>
 #include <cmath>
+#include <utility>
 
 namespace agrisee {
 
@@ -22,33 +24,27 @@ class Grid {
  public:
   /// @param cloud points (m), any cloud type
   /// @param cell edge length of a cell (m), > 0; half to one times the usual query radius serves best
+  /// @param threads the result does not depend on it
   /// @throws ParameterError when `cell` is not positive and finite; Cancelled
   template <typename C>
-  Grid(const C& cloud, S cell) : size_(agrisee::size(cloud)) {
+  Grid(const C& cloud, S cell, int threads = 1) : size_(agrisee::size(cloud)) {
     check_parameter(std::isfinite(cell) && cell > 0, "grid cell", "positive and finite", cell);
-    min_.setConstant(std::numeric_limits<double>::infinity());
-    Eigen::Vector3d max = -min_;
+    const std::vector<std::size_t> parts = split(threads);
+    std::vector<Extent> extents(parts.size() - 1);
+    parallel_for(extents.size(), threads, [&](std::size_t t) { extents[t] = extent(cloud, parts[t], parts[t + 1]); }, 1);
+    Extent all = extents[0];
+    for (const Extent& e : extents) all.min = all.min.cwiseMin(e.min), all.max = all.max.cwiseMax(e.max);
     std::size_t n = 0;
-    for (std::size_t i = 0; i < size_; ++i) {
-      look_up(i);
-      const Vector3<S> p = point(cloud, i);
-      if (!is_finite(p)) continue;
-      const Eigen::Vector3d d = p.template cast<double>();
-      min_ = min_.cwiseMin(d);
-      max = max.cwiseMax(d);
-      ++n;
-    }
-    if (n == 0) {
-      min_.setZero();
-      max.setZero();
-    }
-    const double longest = (max - min_).maxCoeff();
+    for (const Extent& e : extents) n += e.count;
+    if (n == 0) all.min.setZero(), all.max.setZero();
+    min_ = all.min;
+    const double longest = (all.max - min_).maxCoeff();
     cell_ = std::max(static_cast<double>(cell), longest / kMaxCells);
     inverse_ = 1.0 / cell_;
-    for (int a = 0; a < 3; ++a) dims_[a] = static_cast<int>((max[a] - min_[a]) * inverse_) + 1;
+    for (int a = 0; a < 3; ++a) dims_[a] = static_cast<int>((all.max[a] - min_[a]) * inverse_) + 1;
     const double cells = double(dims_[0]) * double(dims_[1]) * double(dims_[2]);
     dense_ = cells <= 16.0 * static_cast<double>(n) + 262144.0;
-    dense_ ? build_dense(cloud, n, static_cast<std::size_t>(cells)) : build_sparse(cloud, n);
+    dense_ ? build_dense(cloud, n, static_cast<std::size_t>(cells), parts, threads) : build_sparse(cloud, n);
   }
 
   /// Number of points of the cloud.
@@ -200,29 +196,96 @@ class Grid {
   std::size_t key(int x, int y, int z) const {
     return (std::size_t(z) * std::size_t(dims_[1]) + std::size_t(y)) * std::size_t(dims_[0]) + std::size_t(x);
   }
+  std::uint32_t key_of(const Vector3<S>& p) const {
+    const Cell c = cell_of(p);
+    return static_cast<std::uint32_t>(key(c[2], c[1], c[0]));
+  }
 
+  struct Extent {
+    Eigen::Vector3d min = Eigen::Vector3d::Constant(std::numeric_limits<double>::infinity()), max = -min;
+    std::size_t count = 0;  // finite points
+  };
   template <typename C>
-  void build_dense(const C& cloud, std::size_t n, std::size_t cells) {
-    starts_.assign(cells + 1, 0);
+  Extent extent(const C& cloud, std::size_t begin, std::size_t end) const {
+    Extent out;
+    for (std::size_t i = begin; i < end; ++i) {
+      look_up(i);
+      const Vector3<S> p = point(cloud, i);
+      if (!is_finite(p)) continue;
+      const Eigen::Vector3d d = p.template cast<double>();
+      out.min = out.min.cwiseMin(d);
+      out.max = out.max.cwiseMax(d);
+      ++out.count;
+    }
+    return out;
+  }
+
+  /// Where the cloud is divided for the threads: the first point of each part, and the end.
+  std::vector<std::size_t> split(int threads) const {
+    constexpr std::size_t kWorthIt = 20000;
+    const std::size_t most = static_cast<std::size_t>(std::max(threads, 1));
+    const std::size_t parts = std::clamp<std::size_t>(size_ / kWorthIt, 1, most);
+    std::vector<std::size_t> out;
+    for (std::size_t t = 0; t <= parts; ++t) out.push_back(t * size_ / parts);
+    return out;
+  }
+
+  /// Points are brought to buckets of consecutive cells, then each bucket's to their cells, in the order of their
+  /// indices: what is written at a time fits into the caches.
+  template <typename C>
+  void build_dense(const C& cloud, std::size_t n, std::size_t cells, const std::vector<std::size_t>& parts,
+                   int threads) {
+    constexpr std::size_t kBuckets = 1024;
+    constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
+    unsigned shift = 0;
+    while ((cells - 1) >> shift >= kBuckets) ++shift;
+    const std::size_t buckets = ((cells - 1) >> shift) + 1, count = parts.size() - 1;
     std::vector<std::uint32_t> keys(size_);
-    for (std::size_t i = 0; i < size_; ++i) {
-      look_up(i);
-      const Vector3<S> p = point(cloud, i);
-      if (!is_finite(p)) continue;
-      const Cell c = cell_of(p);
-      keys[i] = static_cast<std::uint32_t>(key(c[2], c[1], c[0]));
-      ++starts_[keys[i] + 1];
+    std::vector<std::uint32_t> at(count * buckets, 0);  // per part and bucket: points, then where the next one goes
+    parallel_for(count, threads, [&](std::size_t t) {
+      for (std::size_t i = parts[t]; i < parts[t + 1]; ++i) {
+        look_up(i);
+        const Vector3<S> p = point(cloud, i);
+        keys[i] = is_finite(p) ? key_of(p) : kNone;
+        if (keys[i] != kNone) ++at[t * buckets + (keys[i] >> shift)];
+      }
+    }, 1);
+    std::vector<std::uint32_t> begins(buckets + 1, 0);  // of the buckets
+    std::uint32_t sum = 0;
+    for (std::size_t b = 0; b < buckets; ++b) {
+      begins[b] = sum;
+      for (std::size_t t = 0; t < count; ++t) sum += std::exchange(at[t * buckets + b], sum);
     }
-    for (std::size_t c = 0; c < cells; ++c) starts_[c + 1] += starts_[c];
-    throw_if_cancelled();
+    begins[buckets] = sum;
     reserve(n);
-    std::vector<std::uint32_t> at(starts_.begin(), starts_.end() - 1);
-    for (std::size_t i = 0; i < size_; ++i) {
-      look_up(i);
-      const Vector3<S> p = point(cloud, i);
-      if (!is_finite(p)) continue;
-      store(at[keys[i]]++, p, i);
-    }
+    parallel_for(count, threads, [&](std::size_t t) {
+      for (std::size_t i = parts[t]; i < parts[t + 1]; ++i) {
+        look_up(i);
+        if (keys[i] != kNone) store(at[t * buckets + (keys[i] >> shift)]++, point(cloud, i), i);
+      }
+    }, 1);
+    keys = {};
+    starts_.resize(cells + 1);
+    starts_[cells] = static_cast<std::uint32_t>(n);
+    parallel_chunks(buckets, threads, 16, [&](std::size_t first, std::size_t last) {
+      std::vector<std::pair<Vector3<S>, Index>> points;
+      for (std::size_t b = first; b < last; ++b) {
+        const std::size_t begin = begins[b], end = begins[b + 1];
+        const std::size_t low = b << shift, high = std::min(low + (std::size_t(1) << shift), cells);
+        points.clear();
+        std::fill(starts_.begin() + std::ptrdiff_t(low), starts_.begin() + std::ptrdiff_t(high), 0u);
+        for (std::size_t j = begin; j < end; ++j) {
+          look_up(j);
+          points.emplace_back(stored_point(j), ids_[j]);
+          ++starts_[key_of(points.back().first)];
+        }
+        auto next = static_cast<std::uint32_t>(begin);
+        for (std::size_t c = low; c < high; ++c) next += std::exchange(starts_[c], next);
+        for (const auto& [p, i] : points) store(starts_[key_of(p)]++, p, static_cast<std::size_t>(i));
+        for (std::size_t c = high; c-- > low + 1;) starts_[c] = starts_[c - 1];  // each has come to its cell's end
+        starts_[low] = static_cast<std::uint32_t>(begin);
+      }
+    });
   }
 
   template <typename C>
