@@ -8,6 +8,7 @@
 #pragma once
 
 #include <agrisee/cloud/surfels.hpp>
+#include <agrisee/core/cancellation.hpp>
 #include <agrisee/parameters.hpp>
 #include <agrisee/pipeline_stages.hpp>
 #include <agrisee/plan/contradiction.hpp>
@@ -40,11 +41,13 @@ class FusedViews {
   /// @param scan_volume what lies outside is left out (world)
   /// @param parameters of surface, surfels, registration and free space
   /// @param threads the result does not depend on it
-  /// @throws ParameterError
+  /// @throws ParameterError for those of surfels; for the others when they are first used
   FusedViews(const Aabb& scan_volume, const Parameters& parameters, int threads)
       : scan_volume_(scan_volume), parameters_(parameters), threads_(threads), surfels_(parameters.surfels) {}
 
-  /// What a frame shows that was seen from `world_T_optical`; changes nothing.
+  /// What a frame shows; changes nothing.
+  /// @param frame depth z (m)
+  /// @param world_T_optical pose of the sensor as reported
   /// @throws InputError as reconstruct_surface does; Cancelled
   Look look(const sensor::DepthFrame& frame, const Pose& world_T_optical) const {
     Look out;
@@ -64,12 +67,15 @@ class FusedViews {
   }
 
   /// A view that shows nothing to be believed: it counts as discarded, its pose alone is kept.
+  /// @param world_T_optical pose of the sensor as reported
   void skip(const Pose& world_T_optical) { begin(world_T_optical, 0, true); }
 
-  /// What a frame shows becomes part of what is fused, unless it is not believed.
+  /// What a frame shows becomes part of what is fused, unless it is not believed. Not to be cancelled.
   /// @param look as the frame was seen
   /// @param world_T_optical its pose as reported
+  /// @return what is new, and what is left of the old
   Change take(Look look, const Pose& world_T_optical) {
+    const detail::CancellationSwap to_the_end(nullptr);  // half of it would be neither the old nor the new
     const std::size_t id = begin(world_T_optical, look.image.points_in, false);
     Change out;
     if (look.believed) {
@@ -108,7 +114,7 @@ class FusedViews {
 
   /// Number of views.
   std::size_t size() const { return views_.size(); }
-  /// Whether a view is not believed; it may come to be, or cease to be, with a later one.
+  /// Whether a view (its number, below size()) is not believed; it may come to be, or cease to be, with a later one.
   bool discarded(std::size_t view) const { return views_[view].discarded; }
   /// What each view saw; of discarded ones the pose alone.
   const std::vector<sensor::SurfaceImage>& images() const { return images_; }

@@ -86,6 +86,7 @@ class Pipeline {
       const Stopwatch watch(looked);
       look = fused_.look(frame, world_T_optical);
     }
+    throw_if_cancelled();
     // From here on the scan so far changes: to be done to the end.
     const detail::CancellationSwap to_the_end(nullptr);
     seconds_.fuse += looked;
@@ -258,9 +259,10 @@ class Pipeline {
   std::size_t count_inside(const sensor::DepthFrame& frame, const Pose& world_T_optical) const {
     std::size_t count = 0;
     for (int v = 0; v < frame.intrinsics.height; ++v)
-      for (int u = 0; u < frame.intrinsics.width; ++u)
-        count += sensor::DepthFrame::valid(frame.at(u, v)) &&
-                 workcell_.scan_volume.contains(world_T_optical * frame.point(u, v).cast<double>());
+      for (int u = 0; u < frame.intrinsics.width; ++u) {
+        const Eigen::Vector3d p = frame.intrinsics.ray(u, v) * double(frame.at(u, v));
+        count += sensor::DepthFrame::valid(frame.at(u, v)) && workcell_.scan_volume.contains(world_T_optical * p);
+      }
     return count;
   }
 

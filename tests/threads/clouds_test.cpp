@@ -10,6 +10,7 @@
 #include <agrisee/core/cancellation.hpp>
 #include <agrisee/see/density.hpp>
 
+#include <algorithm>
 #include <thread>
 
 #include "catch.hpp"
@@ -38,6 +39,36 @@ const std::vector<Eigen::Vector3f>& fruit() {
 
 TEST_CASE("threads: lists of neighbours") {
   CHECK(nearest_neighbors(fruit(), 12, 1).ids == nearest_neighbors(fruit(), 12, kThreads).ids);
+}
+
+TEST_CASE("threads: grids") {  // large enough to be divided, with gaps and points that are not finite
+  Rng rng(8);
+  std::vector<Eigen::Vector3f> points;
+  for (int i = 0; i < 90000; ++i)
+    points.push_back(i % 7 == 0 && i > 0 ? points.back() : Eigen::Vector3f((0.1 * rng.uniform() * rng.direction()).cast<float>()));
+  for (std::size_t i = 0; i < points.size(); i += 997) points[i].y() = std::nanf("");
+  for (const double cell : {0.002, 0.02, 0.5}) {
+    const Grid one(points, cell);
+    for (const int threads : {2, 3, kThreads}) {
+      INFO("cell " << cell << ", threads " << threads);
+      const Grid more(points, cell, threads);
+      CHECK(one.ids() == more.ids());
+      CHECK(one.x() == more.x());
+      CHECK(one.y() == more.y());
+      CHECK(one.z() == more.z());
+      for (int x = -1; x < 102; ++x)
+        for (int z = 0; z < 100; z += 9) REQUIRE(one.run(x, x + 1, 50, z) == more.run(x, x + 1, 50, z));
+    }
+    // In the order of the cells, and of the indices in a cell.
+    std::size_t seen = 0;
+    one.cells(0, one.stored(), [&](const Grid<float>::Cell&, std::size_t begin, std::size_t end) {
+      CHECK(begin == seen);
+      CHECK(std::is_sorted(one.ids().begin() + std::ptrdiff_t(begin), one.ids().begin() + std::ptrdiff_t(end)));
+      seen = end;
+    });
+    CHECK(seen == points.size() - 91);
+  }
+  CHECK(nearest_neighbors(points, 5, 1).ids == nearest_neighbors(points, 5, kThreads).ids);
 }
 
 TEST_CASE("threads: outlier removal") {

@@ -106,14 +106,14 @@ struct BodyAxis {
 };
 
 /// The axis about which a body is closest to round: that of the semi-axis that stands apart from the other two. Its
-/// variance is that of the fit, and grows as the other two differ; a sphere has none.
+/// variance is that of the fit, and grows as the other two differ; a sphere, and a body of unknown covariance, has none.
 inline BodyAxis symmetry_axis(const EllipsoidFit& fit) {
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(fit.body.A);
   const Eigen::Vector3d& inverse = solver.eigenvalues();  // of the semi-axes, ascending
   const double below = inverse[1] - inverse[0], above = inverse[2] - inverse[1];
   const int apart = above >= below ? 2 : 0;
   const double gap = std::max(below, above);
-  if (!(gap > 1e-9 * inverse[2])) return {};
+  if (!(gap > 1e-9 * inverse[2]) || !(fit.shape_covariance.trace() > 0.0)) return {};  // a sphere, or not measured
   BodyAxis axis;
   axis.direction = solver.eigenvectors().col(apart);
   double tilt = 0.0;  // an eigenvector turns towards another by their entry of A over the gap
@@ -164,7 +164,8 @@ Eigen::Vector3d growth_axis(const PointCloud<S>& cloud, const Labels& labels, co
   constexpr double kLeastVariance = 1e-3;  // rad2: no fruit is round to better than 2 degrees
   if (std::isfinite(round.variance)) {
     const double certainty = 1.0 / (std::max(round.variance, kLeastVariance) * parameters.stem_certainty);
-    axis += (round.direction.dot(axis) < 0.0 ? -certainty : certainty) * round.direction;
+    const double up = axis.norm() > 1e-9 ? round.direction.dot(axis) : round.direction.z();
+    axis += (up < 0.0 ? -certainty : certainty) * round.direction;
   }
   return axis.norm() > 1e-9 ? Eigen::Vector3d(axis.normalized()) : Eigen::Vector3d(Eigen::Vector3d::UnitZ());
 }

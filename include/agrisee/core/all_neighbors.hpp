@@ -4,8 +4,8 @@
 /// cell of a grid; the few whose neighbours are farther than the next cells look further by a kd-tree of the cells, and
 /// those in crowds by a kd-tree of the points. Answers are those of neighbors.hpp, whatever the number of threads.
 ///
-/// Any frame, metres. Cost O(n k) for evenly dense clouds, O(n k log n) for others; memory about 20 bytes a point and
-/// no lists but those returned.
+/// Any frame, metres. Cost O(n k) for evenly dense clouds, O(n k log n) for others; memory some 40 bytes a point and no
+/// lists but those returned.
 #pragma once
 
 #include <agrisee/core/kdtree.hpp>

@@ -100,7 +100,8 @@ void join_neighbors(const Grid<S>& grid, const Stencil& stencil, int threads, Di
   });
 }
 
-/// Number the sets of at least `min_size` members from 1, in the order of their members' least ranks.
+/// Number the sets of at least `min_size` members from 1, in the order of their members' least ranks. O(n) and a sort of
+/// these sets; 12 bytes an index.
 /// @param sets who belongs together
 /// @param n how many indices
 /// @param min_size sets with fewer members get no number
@@ -108,6 +109,7 @@ void join_neighbors(const Grid<S>& grid, const Stencil& stencil, int threads, Di
 /// @param member whether index j counts; members and others are never in one set
 /// @param rank rank(j), from 0, no two alike
 /// @return the number of its set an index, 0 for none
+/// @throws Cancelled
 template <typename Member, typename Rank>
 Labels number_sets(DisjointSets& sets, std::size_t n, std::size_t min_size, int threads, const Member& member,
                    const Rank& rank) {

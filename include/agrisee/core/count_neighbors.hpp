@@ -50,7 +50,7 @@ std::size_t count_within(const Tile<S>& tile, const Vector3<S>& q, S r_sq) {
 /// A grid that serves for counting within `r` (m), and the cells about a cell that matter.
 template <typename S>
 struct CountingGrid {
-  /// Of a cloud, to count within r (m).
+  /// Of a cloud, to count within r (m). It does not depend on `threads`.
   template <typename C>
   CountingGrid(const C& cloud, S r, int threads = 1)
       : radius(r),

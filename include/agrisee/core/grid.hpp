@@ -43,7 +43,7 @@ class Grid {
     inverse_ = 1.0 / cell_;
     for (int a = 0; a < 3; ++a) dims_[a] = static_cast<int>((all.max[a] - min_[a]) * inverse_) + 1;
     const double cells = double(dims_[0]) * double(dims_[1]) * double(dims_[2]);
-    dense_ = cells <= 16.0 * static_cast<double>(n) + 262144.0;
+    dense_ = cells <= 16.0 * static_cast<double>(n) + 262144.0 && cells < double(kNoCell);
     dense_ ? build_dense(cloud, n, static_cast<std::size_t>(cells), parts, threads) : build_sparse(cloud, n);
   }
 
@@ -164,6 +164,7 @@ class Grid {
 
  private:
   static constexpr double kMaxCells = 1 << 30;
+  static constexpr std::uint32_t kNoCell = std::numeric_limits<std::uint32_t>::max();
 
   /// Whether this is to be stopped, asked once in some thousand points.
   static void look_up(std::size_t i) {
@@ -236,7 +237,6 @@ class Grid {
   void build_dense(const C& cloud, std::size_t n, std::size_t cells, const std::vector<std::size_t>& parts,
                    int threads) {
     constexpr std::size_t kBuckets = 1024;
-    constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
     unsigned shift = 0;
     while ((cells - 1) >> shift >= kBuckets) ++shift;
     const std::size_t buckets = ((cells - 1) >> shift) + 1, count = parts.size() - 1;
@@ -246,8 +246,8 @@ class Grid {
       for (std::size_t i = parts[t]; i < parts[t + 1]; ++i) {
         look_up(i);
         const Vector3<S> p = point(cloud, i);
-        keys[i] = is_finite(p) ? key_of(p) : kNone;
-        if (keys[i] != kNone) ++at[t * buckets + (keys[i] >> shift)];
+        keys[i] = is_finite(p) ? key_of(p) : kNoCell;
+        if (keys[i] != kNoCell) ++at[t * buckets + (keys[i] >> shift)];
       }
     }, 1);
     std::vector<std::uint32_t> begins(buckets + 1, 0);  // of the buckets
@@ -261,18 +261,23 @@ class Grid {
     parallel_for(count, threads, [&](std::size_t t) {
       for (std::size_t i = parts[t]; i < parts[t + 1]; ++i) {
         look_up(i);
-        if (keys[i] != kNone) store(at[t * buckets + (keys[i] >> shift)]++, point(cloud, i), i);
+        if (keys[i] != kNoCell) store(at[t * buckets + (keys[i] >> shift)]++, point(cloud, i), i);
       }
     }, 1);
     keys = {};
+    if (shift == 0) {  // a bucket is a cell
+      starts_ = std::move(begins);
+      return;
+    }
     starts_.resize(cells + 1);
     starts_[cells] = static_cast<std::uint32_t>(n);
-    parallel_chunks(buckets, threads, 16, [&](std::size_t first, std::size_t last) {
+    parallel_chunks(buckets, count > 1 ? threads : 1, 16, [&](std::size_t first, std::size_t last) {
       std::vector<std::pair<Vector3<S>, Index>> points;
       for (std::size_t b = first; b < last; ++b) {
         const std::size_t begin = begins[b], end = begins[b + 1];
         const std::size_t low = b << shift, high = std::min(low + (std::size_t(1) << shift), cells);
         points.clear();
+        points.reserve(end - begin);
         std::fill(starts_.begin() + std::ptrdiff_t(low), starts_.begin() + std::ptrdiff_t(high), 0u);
         for (std::size_t j = begin; j < end; ++j) {
           look_up(j);
@@ -371,5 +376,8 @@ class Grid {
 /// The scalar of a grid is that of its cloud.
 template <typename C, typename T>
 Grid(const C&, T) -> Grid<scalar_t<C>>;
+/// The same.
+template <typename C, typename T>
+Grid(const C&, T, int) -> Grid<scalar_t<C>>;
 
 }  // namespace agrisee

@@ -12,7 +12,8 @@ namespace agrisee::plan {
 
 /// Parameters of the free-space tests.
 struct FreeSpaceParameters {
-  double margin = 0.006;       ///< a sight line must end this much behind a place to have gone through it (m)
+  double margin = 0.006;       ///< a sight line must end this much behind a place to have gone through it (m), and three
+                               ///< standard deviations of the cells' depths (SurfaceImage::noise) where these are more
   double min_fill = 0.85;      ///< cells without return are evidence when surfaces return at least this share of pixels
   double max_incidence = deg(50);  ///< bodies are tested where a surface would be seen at less than this (rad)
   int min_refuting = 2;        ///< a surfel goes when this many views looked through it and no more than half saw it

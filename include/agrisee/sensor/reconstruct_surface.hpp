@@ -152,7 +152,7 @@ inline SurfaceImage reconstruct_surface(const DepthFrame& frame, const Pose& wor
   const double block_noise =
       std::max(detail::image_noise(block_z, cells.width, cells.height, 1, 1), 0.02 * parameters.target_sigma);
   constexpr double kOfMedians = 1.2533;  // sqrt(pi / 2): a median's standard deviation over that of a mean
-  out.noise = kOfMedians * block_noise;
+  out.noise = (b > 1 ? kOfMedians : 1.0) * block_noise;
   const double wanted = 4.0 * block_noise * block_noise / (parameters.target_sigma * parameters.target_sigma);
   const int w = std::clamp(static_cast<int>(std::ceil(0.5 * (std::sqrt(wanted) - 1.0))), std::min(2, parameters.max_window),
                            parameters.max_window);
