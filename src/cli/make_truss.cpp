@@ -28,7 +28,7 @@ int run_make_truss(TrussOptions options) {
     throw UsageError(options.output + ": holds a scene already; use --force to overwrite it");
   study::Truss truss = [&] {
     try {
-      return study::make_truss(options.truss);
+      return cli::make_truss(options.truss);
     } catch (const ParameterError& e) {  // the numbers came from the command line
       throw UsageError(e.what());
     }

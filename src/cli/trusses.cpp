@@ -62,6 +62,8 @@ std::vector<std::string> paper_truss_names() {
   return names;
 }
 
+study::Truss make_truss(const study::TrussParameters& parameters) { return study::make_truss(parameters); }
+
 std::optional<study::Truss> truss_by_name(const std::string& name) {
   static const std::regex pattern("(?:truss_)?([0-9]{1,3})_([0-9]{1,3})(?:_s([0-9]{1,18}))?");
   std::smatch part;
@@ -74,7 +76,7 @@ std::optional<study::Truss> truss_by_name(const std::string& name) {
       parameters.total = total;
       parameters.hidden = hidden;
       parameters.seed = std::stoull(part[3]);
-      truss = study::make_truss(parameters);
+      truss = cli::make_truss(parameters);
     } else {
       truss = study::make_paper_truss(total, hidden);
     }

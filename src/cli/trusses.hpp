@@ -19,6 +19,9 @@ std::vector<std::string> paper_truss_names();
 /// @throws UsageError for counts that the paper has no truss of, or that no truss can be made of
 std::optional<study::Truss> truss_by_name(const std::string& name);
 
+/// study::make_truss(), which takes the compiler long.
+study::Truss make_truss(const study::TrussParameters& parameters);
+
 /// Write scene.yaml, ground_truth.json and the meshes. @throws FileError
 void write_truss(const std::filesystem::path& folder, const study::Truss& truss);
 
