@@ -47,7 +47,7 @@ TEST_CASE("threads: grids") {  // large enough to be divided, with gaps and poin
   for (int i = 0; i < 90000; ++i)
     points.push_back(i % 7 == 0 && i > 0 ? points.back() : Eigen::Vector3f((0.1 * rng.uniform() * rng.direction()).cast<float>()));
   for (std::size_t i = 0; i < points.size(); i += 997) points[i].y() = std::nanf("");
-  for (const double cell : {0.002, 0.02, 0.5}) {
+  for (const float cell : {0.002f, 0.02f, 0.5f}) {
     const Grid one(points, cell);
     for (const int threads : {2, 3, kThreads}) {
       INFO("cell " << cell << ", threads " << threads);
