@@ -189,6 +189,7 @@ std::optional<EllipsoidFit> fit_ellipsoid(const PointCloud<S>& cloud, const Indi
   fit.body = start;
   const double size = start.mean_radius();
   double gate = std::max(6.0 * parameters.noise, 0.12 * size);
+  Matrix9 information = Matrix9::Zero();  // of the last step
   for (int iteration = 0; iteration < parameters.iterations; ++iteration) {
     // Unknowns: the centre in units of `size`, and B = A * size - I as (xx, yy, zz, xy, xz, yz). The tenth row and
     // column of the products belong to the residual.
@@ -234,13 +235,14 @@ std::optional<EllipsoidFit> fit_ellipsoid(const PointCloud<S>& cloud, const Indi
     if (!(inverse_axes[0] > 0.2 / size) || !(inverse_axes[2] < 5.0 / size)) return std::nullopt;
     fit.inliers = static_cast<std::size_t>(share * static_cast<double>(inliers));
     fit.rms = inliers ? std::sqrt(squares / static_cast<double>(inliers)) : 0.0;
-    const Matrix9 covariance = solver.solve(Matrix9::Identity());
-    fit.center_covariance = covariance.topLeftCorner<3, 3>() * size * size;
-    fit.shape_covariance = covariance.bottomRightCorner<6, 6>() / (size * size);
+    information = normal_matrix;
     gate = std::max(0.7 * gate, std::max(4.0 * parameters.noise, 0.05 * size));
     if (iteration > 3 && longest < 1e-4) break;
   }
   if (fit.inliers < least / 2) return std::nullopt;
+  const Matrix9 covariance = Eigen::LDLT<Matrix9>(information).solve(Matrix9::Identity());
+  fit.center_covariance = covariance.topLeftCorner<3, 3>() * size * size;
+  fit.shape_covariance = covariance.bottomRightCorner<6, 6>() / (size * size);
   return fit;
 }
 
