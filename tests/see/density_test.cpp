@@ -103,6 +103,10 @@ TEST_CASE("parameters: k, separation, checks", "[see]") {
   for (auto field : {&Parameters::max_updates, &Parameters::max_views}) rejects(field, 0);
   for (auto field : {&Parameters::min_gain, &Parameters::max_shifts, &Parameters::max_pulls}) rejects(field, -1);
   rejects(&Parameters::radius, 1e9);
+  for (double bad : {-1.0, nan, 1e9, std::numeric_limits<double>::infinity()}) {
+    scaled.radius = bad;
+    REQUIRE(scaled.k() == 0);
+  }
   int fields = 0;
   Parameters p;
   Parameters::fields(p, [&](const char*, auto&) { ++fields; });

@@ -52,8 +52,10 @@ struct Parameters {
   }
 
   /// Neighbours within `radius`, the point itself included, that make a core point: ceil(4/3 pi r^3 rho) (SEE++).
+  /// 0 of parameters that check() refuses for being negative, too large or no numbers.
   std::size_t k() const {
-    return static_cast<std::size_t>(std::ceil(4.0 / 3.0 * kPi * radius * radius * radius * rho));
+    const double n = std::ceil(4.0 / 3.0 * kPi * radius * radius * radius * rho);
+    return n > 0.0 && n < 1e9 ? static_cast<std::size_t>(n) : 0;
   }
 
   /// Minimum separation epsilon (m) of the merged cloud's points.
