@@ -162,10 +162,9 @@ Counts our_chain(std::size_t n, int threads) {
   const Cloud& all = peers::cloud(n);
   const Indices kept = remove_statistical_outliers(all, {20, 2.0, true}, threads);
   const auto points = select(peers::bare_cloud(n), kept).points;
-  const NeighborLists lists = nearest_neighbors(points, 25, threads);  // serve normals and regions
   Normals normals;
-  normals.normals = estimate_normals(points, {kWhole, 25}, lists, threads, &normals.curvatures);
-  const Labels labels = grow_regions(points, normals.normals, growing(), lists, normals.curvatures);
+  normals.normals = estimate_normals(points, {kWhole, 25}, threads, &normals.curvatures);
+  const Labels labels = grow_regions(points, normals.normals, growing(), normals.curvatures, threads);
   std::vector<Eigen::Vector3f> rest;
   for (const Index i : residual(labels)) rest.push_back(points[static_cast<std::size_t>(i)]);
   return {kept.size(), labels_in(labels), labels_in(dbscan(rest, {peers::radius_of(n, 20), 10}, threads))};

@@ -63,8 +63,8 @@ RegionGrowingParameters parameters(int mode) {
   RegionGrowingParameters p;
   p.radius = mode % 2 ? 0.006 : 0.01171875;  // the second is three spacings of "gridded": ties at r
   p.smoothness = deg(mode < 4 ? 25.0 : 12.0);
-  p.min_size = mode < 3 ? 5 : 40;
-  p.neighbors = mode >= 4 ? 12 : 0;
+  p.min_size = mode < 3 ? 5 : mode < 6 ? 40 : 1;
+  p.neighbors = mode == 6 ? 5 : mode >= 4 ? 12 : 0;
   p.seeds_by_curvature = mode >= 3;
   p.unsigned_normals = mode >= 2;
   p.max_curvature = mode == 5 ? 0.02 : 1.0;
@@ -76,11 +76,12 @@ void check_brute(const std::string& kind) {
   const auto cloud = cases::cloud_of<S>(kind);
   std::vector<S> curvatures;
   const auto normals = estimate_normals(cloud, {0.008, 20}, 1, &curvatures);
-  for (int mode = 0; mode < 6; ++mode) {
+  for (int mode = 0; mode < 7; ++mode) {
     INFO(mode);
     const auto params = parameters(mode);
     const Labels expected = brute<S>(cloud, normals, params, curvatures);
     CHECK(grow_regions(cloud, normals, params, curvatures) == expected);
+    CHECK(grow_regions(cloud, normals, params, curvatures, 2) == expected);
     CHECK(grow_regions(cloud, normals, params, KdTree<S>(cloud), curvatures) == expected);
     if (params.neighbors == 0) continue;
     const auto lists = nearest_neighbors(cloud, static_cast<std::size_t>(params.neighbors), 2);
@@ -152,6 +153,32 @@ TEST_CASE("a region's limits are strict, and small regions are residual") {
   CHECK(grow_regions(cloud, turning, p) == Labels{1, 1, 0, 0});
   p.unsigned_normals = true;
   CHECK(grow_regions(cloud, turning, p) == Labels{1, 1, 1, 1});
+}
+
+TEST_CASE("regions of nearest neighbours: crowds, strays and one-way edges, on any number of threads") {
+  Rng rng(5);
+  cases::Points<float> cloud, normals;
+  const auto add = [&](const Eigen::Vector3d& p, const Eigen::Vector3d& n) {
+    cloud.push_back(p.cast<float>());
+    normals.push_back(n.normalized().cast<float>());
+  };
+  for (int i = 0; i < 6000; ++i) add(rng.direction(), rng.direction() + 3.0 * Eigen::Vector3d::UnitZ());
+  for (int i = 0; i < 2000; ++i) add({0, 0, 0}, rng.direction() + 2.0 * Eigen::Vector3d::UnitZ());  // at one place
+  for (int i = 0; i < 3000; ++i) add({2.0 + 1e-3 * rng.uniform(), 0, 0}, rng.direction());          // crowded
+  for (int i = 0; i < 200; ++i) add(rng.direction() * (1.0 + 30.0 * rng.uniform()), rng.direction());
+  std::vector<float> curvatures;
+  for (std::size_t i = 0; i < cloud.size(); ++i) curvatures.push_back(float(rng.below(50)));
+  for (const int k : {1, 2, 6, 12})
+    for (const double smoothness : {0.1, 0.3, 1.5})
+      for (const bool by_curvature : {false, true}) {
+        INFO(k << " neighbours, " << smoothness << " rad, by curvature: " << by_curvature);
+        RegionGrowingParameters p;
+        p.neighbors = k, p.smoothness = smoothness, p.min_size = 1, p.seeds_by_curvature = by_curvature;
+        const auto lists = nearest_neighbors(cloud, static_cast<std::size_t>(k));
+        const Labels expected = grow_regions(cloud, normals, p, lists, curvatures);  // from seed to seed
+        CHECK((grow_regions(cloud, normals, p, curvatures) == expected));
+        CHECK((grow_regions(cloud, normals, p, curvatures, 3) == expected));
+      }
 }
 
 TEST_CASE("region growing of next to nothing, and bad input") {

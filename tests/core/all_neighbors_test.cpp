@@ -19,7 +19,7 @@ void check_nearest(const shapes::Points<S>& cloud, std::size_t k, S radius) {
     const auto i = static_cast<std::size_t>(index);
     ++calls[i];
     for (std::size_t j = 0; j < near.size; ++j) {
-      found[i].push_back({near.ids[j], near.distance[j]});
+      found[i].push_back({near.ids[j], std::sqrt(near.distance_sq[j])});
       if (near.point(j) != cloud[static_cast<std::size_t>(near.ids[j])]) calls[i] += 100;
     }
   });

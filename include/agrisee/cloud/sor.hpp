@@ -20,7 +20,8 @@
 namespace agrisee {
 
 /// Mean distance (m) of every point to its `k` nearest others: the paper's d_i. Where there are fewer, the mean of
-/// those there are; 0 for a point alone; NaN for a point that is not finite; infinite where squares of distances overflow.
+/// those there are; 0 for a point alone; NaN for a point that is not finite; infinite where squares of distances
+/// overflow.
 /// @param cloud points (m), any cloud type
 /// @param k how many others
 /// @param search a KdTree or Grid over `cloud`
@@ -76,10 +77,11 @@ template <typename C>
 std::vector<double> mean_neighbor_distances(const C& cloud, int k, int threads = 1) {
   using S = scalar_t<C>;
   std::vector<double> distances(agrisee::size(cloud), std::numeric_limits<double>::quiet_NaN());
-  for_each_neighborhood(cloud, static_cast<std::size_t>(std::max(k, 0)) + 1, std::numeric_limits<S>::infinity(), threads,
-                        [&](Index i, const Neighborhood<S>& near) {
+  for_each_neighborhood(cloud, static_cast<std::size_t>(std::max(k, 0)) + 1, std::numeric_limits<S>::infinity(),
+                        threads, [&](Index i, const Neighborhood<S>& near) {
                           double sum = 0.0;
-                          for (std::size_t j = 0; j < near.size; ++j) sum += static_cast<double>(near.distance[j]);
+                          for (std::size_t j = 0; j < near.size; ++j)
+                            sum += static_cast<double>(std::sqrt(near.distance_sq[j]));
                           distances[static_cast<std::size_t>(i)] =
                               near.size > 1 ? sum / static_cast<double>(near.size - 1) : 0.0;
                         });

@@ -4,7 +4,7 @@
 /// cell of a grid; the few whose neighbours are farther than the next cells look further by a kd-tree of the cells, and
 /// those in crowds by a kd-tree of the points. Answers are those of neighbors.hpp, whatever the number of threads.
 ///
-/// Any frame, metres. Cost O(n k) for evenly dense clouds, O(n k log n) for others; memory some 40 bytes a point and no
+/// Any frame, metres. Cost O(n k) for evenly dense clouds, O(n k log n) for others; memory some 20 bytes a point and no
 /// lists but those returned.
 #pragma once
 
@@ -19,12 +19,12 @@ namespace agrisee {
 /// The neighbours of one point, nearest first, ties by index; itself included.
 template <typename S>
 struct Neighborhood {
-  std::size_t size = 0;          ///< number of neighbours
-  const S* distance = nullptr;   ///< m
-  const Index* ids = nullptr;    ///< in the cloud
-  const S* x = nullptr;          ///< x of neighbour i is x[at[i]] (m)
-  const S* y = nullptr;          ///< y likewise
-  const S* z = nullptr;          ///< and z
+  std::size_t size = 0;               ///< number of neighbours
+  const S* distance_sq = nullptr;     ///< m2
+  const Index* ids = nullptr;         ///< in the cloud
+  const S* x = nullptr;               ///< x of neighbour i is x[at[i]] (m)
+  const S* y = nullptr;               ///< y likewise
+  const S* z = nullptr;               ///< and z
   const std::uint32_t* at = nullptr;  ///< where neighbour i is among them
 
   /// Neighbour number i (m).
@@ -76,19 +76,12 @@ class TileNearest {
   const Neighborhood<S>& operator()(const Tile<S>& tile, const Vector3<S>& q, S reach) {
     resize(tile.size + kLanes);
     tile.distances_sq(q, all_.data());
-    const S limit_sq = limit(tile.size, reach * reach);
-    kept_ = 0;
-    for (std::size_t j = 0; j < tile.size; ++j) {  // no branch: half of the candidates pass
-      kept_at_[kept_] = static_cast<std::uint32_t>(j);
-      kept_ += all_[j] <= limit_sq ? 1u : 0u;
-    }
-    for (std::size_t i = 0; i < kept_; ++i) kept_sq_[i] = all_[kept_at_[i]];
+    keep(tile.size, limit(tile.size, reach * reach));
     rank(tile);
     near_.size = std::min(k_, kept_);
     for (std::size_t i = 0; i < near_.size; ++i) ids_[i] = grid_.ids()[tile.at[at_[i]]];
     if (near_.size == k_ && sorted_[k_ - 1] > 0) trial_sq_ = S(1.3) * sorted_[k_ - 1];
-    for (std::size_t i = 0; i < near_.size; ++i) sorted_[i] = std::sqrt(sorted_[i]);
-    near_.distance = sorted_.data(), near_.ids = ids_.data(), near_.at = at_.data();
+    near_.distance_sq = sorted_.data(), near_.ids = ids_.data(), near_.at = at_.data();
     near_.x = tile.x.data(), near_.y = tile.y.data(), near_.z = tile.z.data();
     return near_;
   }
@@ -108,6 +101,19 @@ class TileNearest {
     std::uint32_t in = 0;
     for (std::size_t j = 0; j < n; ++j) in += all_[j] <= limit_sq ? 1u : 0u;
     return in;
+  }
+
+  /// Keep those of n candidates whose squared distance is at most `limit_sq`.
+  void keep(std::size_t n, S limit_sq) {
+    const S* const all = all_.data();
+    std::uint32_t* const at = kept_at_.data();
+    std::size_t kept = 0;
+    for (std::size_t j = 0; j < n; ++j) {  // no branch: a third of the candidates pass
+      at[kept] = static_cast<std::uint32_t>(j);
+      kept += all[j] <= limit_sq ? 1u : 0u;
+    }
+    for (std::size_t i = 0; i < kept; ++i) kept_sq_[i] = all[at[i]];
+    kept_ = kept;
   }
 
   /// A squared distance, at most `reach_sq`, within which there are k of the n candidates, but few more.
@@ -193,14 +199,11 @@ class FarCells {
 
   /// Gather a tile that holds the k nearest points to q, or all those within `radius` (m).
   void gather(const Vector3<S>& q, std::size_t k, S radius, Neighbors<S>& cells, Tile<S>& tile) const {
-    S reach = radius;  // no neighbour is farther
-    for (std::size_t m = 4;; m *= 2) {
-      tree_->knn(q, m, cells);
-      std::size_t points = 0, c = 0;
-      for (; c < cells.size() && points < k; ++c) points += size(cells[c].index);
-      if (points >= k) reach = std::min(reach, cells[c - 1].distance + half_diagonal_);
-      if (points >= k || m >= runs_.size() || cells.empty() || cells.back().distance > radius + half_diagonal_) break;
-    }
+    S reach = radius;         // no neighbour is farther
+    tree_->knn(q, k, cells);  // hold k points or more
+    std::size_t points = 0, enough = 0;
+    for (; enough < cells.size() && points < k; ++enough) points += size(cells[enough].index);
+    if (points >= k) reach = std::min(reach, cells[enough - 1].distance + half_diagonal_);
     if (!std::isfinite(reach * reach)) {  // all are wanted, or too far for S to tell how far
       tile.clear();
       tile.append(grid_, 0, grid_.stored());
@@ -236,27 +239,27 @@ class SearchNearest {
                                     S radius) {
     search.knn(q, k, found_);
     while (!found_.empty() && !(found_.back().distance <= radius)) found_.pop_back();
-    distance_.clear(), x_.clear(), y_.clear(), z_.clear(), ids_.clear(), at_.clear();
+    distance_sq_.clear(), x_.clear(), y_.clear(), z_.clear(), ids_.clear(), at_.clear();
     for (const Neighbor<S>& n : found_) {
       const Vector3<S> p = point(cloud, static_cast<std::size_t>(n.index));
       at_.push_back(static_cast<std::uint32_t>(at_.size()));
       ids_.push_back(n.index);
-      distance_.push_back(n.distance);
+      distance_sq_.push_back(distance_sq<S>(p, q));
       x_.push_back(p.x()), y_.push_back(p.y()), z_.push_back(p.z());
     }
-    near_ = {ids_.size(), distance_.data(), ids_.data(), x_.data(), y_.data(), z_.data(), at_.data()};
+    near_ = {ids_.size(), distance_sq_.data(), ids_.data(), x_.data(), y_.data(), z_.data(), at_.data()};
     return near_;
   }
 
  private:
   Neighbors<S> found_;
-  std::vector<S> distance_, x_, y_, z_;
+  std::vector<S> distance_sq_, x_, y_, z_;
   Indices ids_;
   std::vector<std::uint32_t> at_;
   Neighborhood<S> near_;
 };
 
-/// body(i, neighbourhood) for those of the stored points [begin, end) of a cell that coincide with k - 1 others or
+/// body(j, neighbourhood) for those of the stored points [begin, end) of a cell that coincide with k - 1 others or
 /// more: all that lie at one place have the same neighbours. Sensors that write missing points as zeros make many of
 /// them.
 template <typename S, typename Body>
@@ -275,7 +278,7 @@ void coinciding_neighborhoods(const Grid<S>& grid, std::size_t begin, std::size_
       const Neighborhood<S> near{k,      zeros.data(), ids.data(), grid.x().data(), grid.y().data(), grid.z().data(),
                                  &*group};
       for (; group != next; ++group) {
-        body(grid.ids()[*group], near);
+        body(*group, near);
         done[*group] = 1;
       }
     }
@@ -289,7 +292,8 @@ struct Left {
   Indices crowded;  ///< more points in the next cells than are worth reading
 };
 
-/// body(i, neighbourhood) for the points of which all neighbours are found within two rings of cells.
+/// body(j, neighbourhood, rings) for the stored points j of which all neighbours are found within so many rings of
+/// cells, 1 or 2; 0 where there are so many that these were found otherwise.
 template <typename S, typename Body>
 Left near_neighborhoods(const Grid<S>& grid, std::size_t k, S radius, S typical, int threads, const Body& body) {
   constexpr char kFar = 0, kDone = 1, kCrowded = 2;
@@ -303,7 +307,9 @@ Left near_neighborhoods(const Grid<S>& grid, std::size_t k, S radius, S typical,
       for (int r = 1; r <= 2 && left > 0; ++r) {
         tile.gather(grid, cell, rings[r - 1]);
         if (tile.size > crowd) {
-          if (r == 1 && left > k) coinciding_neighborhoods(grid, begin, end, k, state, body);
+          if (r == 1 && left > k)
+            coinciding_neighborhoods(grid, begin, end, k, state,
+                                     [&](std::size_t j, const Neighborhood<S>& near) { body(j, near, 0); });
           for (std::size_t j = begin; j < end; ++j)
             if (state[j] != kDone) state[j] = kCrowded;
           return;
@@ -314,7 +320,7 @@ Left near_neighborhoods(const Grid<S>& grid, std::size_t k, S radius, S typical,
           const S reach = std::min(radius, static_cast<S>(grid.clearance(q, cell, r)));
           const Neighborhood<S>& near = nearest(tile, q, reach);
           if (near.size < k && reach < radius) continue;
-          body(grid.ids()[j], near);
+          body(j, near, r);
           state[j] = kDone;
           --left;
         }
@@ -327,6 +333,53 @@ Left near_neighborhoods(const Grid<S>& grid, std::size_t k, S radius, S typical,
   return out;
 }
 
+/// The finite points of a cloud on a grid in which most neighbourhoods of k points lie within a ring of cells.
+template <typename S>
+struct NeighborhoodGrid {
+  /// @param cloud points (m)  @param k neighbours, at least 1  @param radius no neighbour is farther (m)
+  template <typename C>
+  NeighborhoodGrid(const C& cloud, std::size_t k, S radius, int threads)
+      : typical(typical_distance(cloud, k, agrisee::size(cloud) < 50000 ? 1 : threads)),
+        grid(cloud, radius > 0 ? std::min(S(1.25) * typical, S(1.00001) * radius) : S(1.25) * typical, threads) {}
+
+  S typical;     ///< distance of the k-th nearest (m)
+  Grid<S> grid;  ///< of the cloud
+};
+
+/// As for_each_neighborhood, but body(j, neighbourhood, rings) for the stored points j of the grid, see
+/// near_neighborhoods; rings is 0 for those whose neighbours are not found within two rings.
+template <typename C, typename Body>
+void for_stored_neighborhoods(const C& cloud, const NeighborhoodGrid<scalar_t<C>>& near, std::size_t k,
+                              scalar_t<C> radius, int threads, const Body& body) {
+  using S = scalar_t<C>;
+  const Grid<S>& grid = near.grid;
+  const Left left = near_neighborhoods(grid, k, radius, near.typical, threads, body);
+  if (!left.far.empty()) {
+    const FarCells<S> cells(grid);
+    parallel_chunks(left.far.size(), threads, 64, [&](std::size_t begin, std::size_t end) {
+      Tile<S> tile;
+      Neighbors<S> scratch;
+      TileNearest<S> nearest(grid, k, near.typical);
+      for (std::size_t f = begin; f < end; ++f) {
+        const auto j = static_cast<std::size_t>(left.far[f]);
+        const Vector3<S> q = grid.stored_point(j);
+        cells.gather(q, k, radius, scratch, tile);
+        body(j, nearest(tile, q, radius), 0);
+      }
+    });
+  }
+  if (!left.crowded.empty()) {
+    const KdTree<S> tree(cloud);
+    parallel_chunks(left.crowded.size(), threads, 64, [&](std::size_t begin, std::size_t end) {
+      SearchNearest<S> nearest;
+      for (std::size_t c = begin; c < end; ++c) {
+        const auto j = static_cast<std::size_t>(left.crowded[c]);
+        body(j, nearest(cloud, tree, grid.stored_point(j), k, radius), 0);
+      }
+    });
+  }
+}
+
 }  // namespace detail
 
 /// body(i, neighbourhood) for every finite point i of a cloud, in no particular order: its k >= 1 nearest points
@@ -335,40 +388,16 @@ Left near_neighborhoods(const Grid<S>& grid, std::size_t k, S radius, S typical,
 template <typename C, typename Body>
 void for_each_neighborhood(const C& cloud, std::size_t k, scalar_t<C> radius, int threads, const Body& body) {
   using S = scalar_t<C>;
-  const S typical = detail::typical_distance(cloud, k, agrisee::size(cloud) < 50000 ? 1 : threads);
-  const S nearby = S(1.25) * typical;
-  const Grid<S> grid(cloud, radius > 0 ? std::min(nearby, S(1.00001) * radius) : nearby, threads);
-  const detail::Left left = detail::near_neighborhoods(grid, k, radius, typical, threads, body);
-  if (!left.far.empty()) {
-    const detail::FarCells<S> cells(grid);
-    parallel_chunks(left.far.size(), threads, 64, [&](std::size_t begin, std::size_t end) {
-      Tile<S> tile;
-      Neighbors<S> scratch;
-      detail::TileNearest<S> nearest(grid, k, typical);
-      for (std::size_t f = begin; f < end; ++f) {
-        const auto j = static_cast<std::size_t>(left.far[f]);
-        const Vector3<S> q = grid.stored_point(j);
-        cells.gather(q, k, radius, scratch, tile);
-        body(grid.ids()[j], nearest(tile, q, radius));
-      }
-    });
-  }
-  if (!left.crowded.empty()) {
-    const KdTree<S> tree(cloud);
-    parallel_chunks(left.crowded.size(), threads, 64, [&](std::size_t begin, std::size_t end) {
-      detail::SearchNearest<S> nearest;
-      for (std::size_t c = begin; c < end; ++c) {
-        const auto j = static_cast<std::size_t>(left.crowded[c]);
-        body(grid.ids()[j], nearest(cloud, tree, grid.stored_point(j), k, radius));
-      }
-    });
-  }
+  const detail::NeighborhoodGrid<S> near(cloud, k, radius, threads);
+  detail::for_stored_neighborhoods(
+      cloud, near, k, radius, threads,
+      [&](std::size_t j, const Neighborhood<S>& neighborhood, int) { body(near.grid.ids()[j], neighborhood); });
 }
 
 /// The k nearest points of every point of a cloud, computed once for several stages.
 struct NeighborLists {
   std::size_t k = 0;  ///< neighbours a point
-  Indices ids;  ///< k a point, nearest first, itself included; -1 where there are fewer and for points not finite
+  Indices ids;        ///< k a point, nearest first, itself included; -1 where there are fewer and for points not finite
 
   /// Number of points.
   std::size_t size() const { return k == 0 ? 0 : ids.size() / k; }

@@ -2,11 +2,12 @@
 /// @file
 /// Neighbour search by a uniform grid (cell list): points sorted by cell, x fastest, so that the cells of a row lie
 /// side by side in memory and a query reads a few runs. Fastest for radii near the cell size. Build O(n), or
-/// O(n log n) where the cells are too many for a table (far outliers); memory about 20 bytes a point and the table.
+/// O(n log n) where the cells are too many for a table (far outliers); memory about 16 bytes a point and 2 bits a cell.
 /// Queries for all points at once are several times as fast through tiles.hpp.
 #pragma once
 
 #include <agrisee/core/cancellation.hpp>
+#include <agrisee/core/cell_starts.hpp>
 #include <agrisee/core/cloud.hpp>
 #include <agrisee/core/neighbors.hpp>
 #include <agrisee/core/parallel.hpp>
@@ -31,7 +32,8 @@ class Grid {
     check_parameter(std::isfinite(cell) && cell > 0, "grid cell", "positive and finite", cell);
     const std::vector<std::size_t> parts = split(threads);
     std::vector<Extent> extents(parts.size() - 1);
-    parallel_for(extents.size(), threads, [&](std::size_t t) { extents[t] = extent(cloud, parts[t], parts[t + 1]); }, 1);
+    parallel_for(
+        extents.size(), threads, [&](std::size_t t) { extents[t] = extent(cloud, parts[t], parts[t + 1]); }, 1);
     Extent all = extents[0];
     for (const Extent& e : extents) all.min = all.min.cwiseMin(e.min), all.max = all.max.cwiseMax(e.max);
     std::size_t n = 0;
@@ -43,7 +45,7 @@ class Grid {
     inverse_ = 1.0 / cell_;
     for (int a = 0; a < 3; ++a) dims_[a] = static_cast<int>((all.max[a] - min_[a]) * inverse_) + 1;
     const double cells = double(dims_[0]) * double(dims_[1]) * double(dims_[2]);
-    dense_ = cells <= 16.0 * static_cast<double>(n) + 262144.0 && cells < double(kNoCell);
+    dense_ = cells <= 32.0 * static_cast<double>(n) + 1048576.0 && cells < 4294967295.0;  // keys have 32 bits
     dense_ ? build_dense(cloud, n, static_cast<std::size_t>(cells), parts, threads) : build_sparse(cloud, n);
   }
 
@@ -116,12 +118,13 @@ class Grid {
   std::size_t stored() const { return ids_.size(); }
   /// Their index in the cloud and their coordinates.
   const std::vector<Index>& ids() const { return ids_; }
-  /// Coordinates of the stored points (m).
+  /// Coordinates of the stored points (m), and kBlock numbers of no meaning, that all can be copied block by block.
   const std::vector<S>& x() const { return x_; }
-  /// Coordinates of the stored points (m).
+  /// Likewise.
   const std::vector<S>& y() const { return y_; }
-  /// Coordinates of the stored points (m).
+  /// Likewise.
   const std::vector<S>& z() const { return z_; }
+  static constexpr std::size_t kBlock = 8;  ///< coordinates a block
   /// Stored point j (m).
   Vector3<S> stored_point(std::size_t j) const { return {x_[j], y_[j], z_[j]}; }
   /// Edge length of a cell (m); longer than asked for where the cloud is wider than 2^30 cells.
@@ -164,7 +167,6 @@ class Grid {
 
  private:
   static constexpr double kMaxCells = 1 << 30;
-  static constexpr std::uint32_t kNoCell = std::numeric_limits<std::uint32_t>::max();
 
   /// Whether this is to be stopped, asked once in some thousand points.
   static void look_up(std::size_t i) {
@@ -177,7 +179,7 @@ class Grid {
   }
 
   void reserve(std::size_t n) {
-    x_.resize(n), y_.resize(n), z_.resize(n);
+    x_.resize(n + kBlock), y_.resize(n + kBlock), z_.resize(n + kBlock);
     ids_.resize(n);
   }
   void store(std::size_t j, const Vector3<S>& p, std::size_t i) {
@@ -188,7 +190,7 @@ class Grid {
   Eigen::Vector3d dims_vector() const { return dims_.cast<double>(); }
 
   int clamp_cell(double x, int axis) const {
-    const double c = std::floor((x - min_[axis]) * inverse_);
+    const double c = (x - min_[axis]) * inverse_;  // rounded down by the cast
     return c <= 0.0 ? 0 : c >= double(dims_[axis]) ? dims_[axis] - 1 : static_cast<int>(c);
   }
   Cell cell_of(const Vector3<S>& p) const {
@@ -237,19 +239,20 @@ class Grid {
   void build_dense(const C& cloud, std::size_t n, std::size_t cells, const std::vector<std::size_t>& parts,
                    int threads) {
     constexpr std::size_t kBuckets = 1024;
-    unsigned shift = 0;
+    unsigned shift = CellStarts::kShift;
     while ((cells - 1) >> shift >= kBuckets) ++shift;
     const std::size_t buckets = ((cells - 1) >> shift) + 1, count = parts.size() - 1;
-    std::vector<std::uint32_t> keys(size_);
-    std::vector<std::uint32_t> at(count * buckets, 0);  // per part and bucket: points, then where the next one goes
-    parallel_for(count, threads, [&](std::size_t t) {
+    std::vector<std::uint32_t> at(count * buckets, 0);    // per part and bucket: points, then where the next one goes
+    const auto for_part = [&](std::size_t t, auto&& f) {  // f(bucket's entry, point, index)
       for (std::size_t i = parts[t]; i < parts[t + 1]; ++i) {
         look_up(i);
         const Vector3<S> p = point(cloud, i);
-        keys[i] = is_finite(p) ? key_of(p) : kNoCell;
-        if (keys[i] != kNoCell) ++at[t * buckets + (keys[i] >> shift)];
+        if (is_finite(p)) f(at[t * buckets + (key_of(p) >> shift)], p, i);
       }
-    }, 1);
+    };
+    const auto count_in = [](std::uint32_t& points, const Vector3<S>&, std::size_t) { ++points; };
+    parallel_for(
+        count, threads, [&](std::size_t t) { for_part(t, count_in); }, 1);
     std::vector<std::uint32_t> begins(buckets + 1, 0);  // of the buckets
     std::uint32_t sum = 0;
     for (std::size_t b = 0; b < buckets; ++b) {
@@ -258,39 +261,36 @@ class Grid {
     }
     begins[buckets] = sum;
     reserve(n);
-    parallel_for(count, threads, [&](std::size_t t) {
-      for (std::size_t i = parts[t]; i < parts[t + 1]; ++i) {
-        look_up(i);
-        if (keys[i] != kNoCell) store(at[t * buckets + (keys[i] >> shift)]++, point(cloud, i), i);
-      }
-    }, 1);
-    keys = {};
-    if (shift == 0) {  // a bucket is a cell
-      starts_ = std::move(begins);
-      return;
-    }
-    starts_.resize(cells + 1);
-    starts_[cells] = static_cast<std::uint32_t>(n);
+    const auto bring = [this](std::uint32_t& next, const Vector3<S>& p, std::size_t i) { store(next++, p, i); };
+    parallel_for(
+        count, threads, [&](std::size_t t) { for_part(t, bring); }, 1);
+    table_.reset(cells);
+    std::vector<std::vector<std::uint32_t>> cell_begins(buckets);  // of the occupied cells
     parallel_chunks(buckets, count > 1 ? threads : 1, 16, [&](std::size_t first, std::size_t last) {
       std::vector<std::pair<Vector3<S>, Index>> points;
+      std::vector<std::uint32_t> next;  // per cell of a bucket: points, then where the next one goes
       for (std::size_t b = first; b < last; ++b) {
-        const std::size_t begin = begins[b], end = begins[b + 1];
-        const std::size_t low = b << shift, high = std::min(low + (std::size_t(1) << shift), cells);
+        const std::size_t begin = begins[b], end = begins[b + 1], low = b << shift;
         points.clear();
         points.reserve(end - begin);
-        std::fill(starts_.begin() + std::ptrdiff_t(low), starts_.begin() + std::ptrdiff_t(high), 0u);
+        next.assign(std::size_t(1) << shift, 0u);
         for (std::size_t j = begin; j < end; ++j) {
           look_up(j);
           points.emplace_back(stored_point(j), ids_[j]);
-          ++starts_[key_of(points.back().first)];
+          ++next[key_of(points.back().first) - low];
         }
-        auto next = static_cast<std::uint32_t>(begin);
-        for (std::size_t c = low; c < high; ++c) next += std::exchange(starts_[c], next);
-        for (const auto& [p, i] : points) store(starts_[key_of(p)]++, p, static_cast<std::size_t>(i));
-        for (std::size_t c = high; c-- > low + 1;) starts_[c] = starts_[c - 1];  // each has come to its cell's end
-        starts_[low] = static_cast<std::uint32_t>(begin);
+        auto cell_begin = static_cast<std::uint32_t>(begin);
+        for (std::size_t c = 0; c < next.size(); ++c) {
+          if (next[c] == 0) continue;
+          table_.mark(low + c);
+          cell_begins[b].push_back(cell_begin);
+          cell_begin += std::exchange(next[c], cell_begin);
+        }
+        for (const auto& [p, i] : points) store(next[key_of(p) - low]++, p, static_cast<std::size_t>(i));
       }
     });
+    for (const auto& some : cell_begins) table_.append(some);
+    table_.finish(n);
   }
 
   template <typename C>
@@ -355,7 +355,7 @@ class Grid {
   }
 
   std::pair<std::size_t, std::size_t> row(int x0, int x1, int y, int z) const {
-    if (dense_) return {starts_[key(x0, y, z)], starts_[key(x1, y, z) + 1]};
+    if (dense_) return {table_[key(x0, y, z)], table_[key(x1, y, z) + 1]};
     const auto first = std::lower_bound(cells_.begin(), cells_.end(), Cell{z, y, x0});
     const auto last = std::upper_bound(first, cells_.end(), Cell{z, y, x1});
     return {starts_[static_cast<std::size_t>(first - cells_.begin())],
@@ -364,8 +364,9 @@ class Grid {
 
   std::vector<S> x_, y_, z_;           // the points, sorted by cell, then by index
   std::vector<Index> ids_;             // their index in the cloud
-  std::vector<std::uint32_t> starts_;  // first stored point of each cell, and the end
-  std::vector<Cell> cells_;            // the occupied cells, where there is no table
+  CellStarts table_;                   // where the cells begin,
+  std::vector<Cell> cells_;            // or, where these are too many, the occupied cells
+  std::vector<std::uint32_t> starts_;  // and where they begin, and the end
   Eigen::Vector3d min_;
   double cell_ = 1.0, inverse_ = 1.0;
   Eigen::Vector3i dims_ = Eigen::Vector3i::Ones();

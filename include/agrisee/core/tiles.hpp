@@ -7,6 +7,7 @@
 #include <agrisee/core/grid.hpp>
 #include <agrisee/core/parallel.hpp>
 
+#include <cstring>
 #include <numeric>
 
 namespace agrisee {
@@ -18,8 +19,8 @@ struct Tile {
   std::vector<S> y;               ///< likewise
   std::vector<S> z;               ///< likewise
   std::vector<std::uint32_t> at;  ///< position among the grid's stored points
-  std::size_t size = 0;         ///< candidates
-  std::size_t inside = 0;       ///< points that are not listed because they lie within reach of the whole cell
+  std::size_t size = 0;           ///< candidates
+  std::size_t inside = 0;         ///< points that are not listed because they lie within reach of the whole cell
 
   /// The points of the stencil's cells about `c`.
   void gather(const Grid<S>& grid, const typename Grid<S>::Cell& c, const Stencil& stencil) {
@@ -54,15 +55,18 @@ struct Tile {
 
   /// Add stored points [begin, end).
   void append(const Grid<S>& grid, std::size_t begin, std::size_t end) {
+    constexpr std::size_t kBlock = Grid<S>::kBlock;
     const std::size_t more = end - begin;
-    if (size + more > x.size()) {
+    if (size + more + kBlock > x.size()) {
       const std::size_t room = 2 * (size + more) + 64;
       x.resize(room), y.resize(room), z.resize(room), at.resize(room);
     }
-    std::copy_n(grid.x().data() + begin, more, x.data() + size);
-    std::copy_n(grid.y().data() + begin, more, y.data() + size);
-    std::copy_n(grid.z().data() + begin, more, z.data() + size);
-    std::iota(at.data() + size, at.data() + size + more, static_cast<std::uint32_t>(begin));
+    for (std::size_t i = 0; i < more; i += kBlock) {  // runs are short: blocks are faster than copies of a length
+      std::memcpy(x.data() + size + i, grid.x().data() + begin + i, kBlock * sizeof(S));
+      std::memcpy(y.data() + size + i, grid.y().data() + begin + i, kBlock * sizeof(S));
+      std::memcpy(z.data() + size + i, grid.z().data() + begin + i, kBlock * sizeof(S));
+      for (std::size_t l = 0; l < kBlock; ++l) at[size + i + l] = static_cast<std::uint32_t>(begin + i + l);
+    }
     size += more;
   }
 };

@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// @file
+/// Where the points of each cell of a box begin, in two bits a cell: a bit tells whether a cell is occupied, a count
+/// per word how many occupied cells come before (rank; Jacobson, FOCS 1989), and only these have an entry. A table of
+/// all cells is tens of bytes a point for a surface in space, and a cache miss a look.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace agrisee {
+
+/// The first stored point of cells that are numbered by keys from 0. Fill it in this order: reset, mark, append,
+/// finish.
+class CellStarts {
+ public:
+  /// Cells 2^kShift k to 2^kShift (k + 1) - 1 share a word: threads that mark cells keep to words of their own.
+  static constexpr unsigned kShift = 5;
+
+  /// So many cells, all empty.
+  void reset(std::size_t cells) { words_.assign((cells >> kShift) + 1, {}); }
+  /// Cell `key` is occupied.
+  void mark(std::size_t key) { words_[key >> kShift].occupied |= bit(key); }
+  /// Where the points of the occupied cells begin, of more and more of them in the order of their keys.
+  void append(const std::vector<std::uint32_t>& starts) { starts_.insert(starts_.end(), starts.begin(), starts.end()); }
+  /// All cells are marked and have their starts.
+  /// @param points where the last cell's points end
+  void finish(std::size_t points) {
+    starts_.push_back(static_cast<std::uint32_t>(points));
+    std::uint32_t sum = 0;
+    for (Word& word : words_) {
+      word.before = sum;
+      sum += ones(word.occupied);
+    }
+  }
+
+  /// Where the points of cell `key` begin or, where there are none, those of the next occupied cell; the number of
+  /// cells is a key, too.
+  std::uint32_t operator[](std::size_t key) const { return starts_[place(key)]; }
+
+ private:
+  struct Word {
+    std::uint32_t occupied = 0;  // a bit a cell
+    std::uint32_t before = 0;    // occupied cells in the words before
+  };
+
+  static std::uint32_t bit(std::size_t key) { return std::uint32_t(1) << (key & ((1u << kShift) - 1)); }
+  /// Bits that are set; processors without an instruction for it are the rule in what compilers target.
+  static std::uint32_t ones(std::uint32_t x) {
+    x -= (x >> 1) & 0x55555555u;
+    x = (x & 0x33333333u) + ((x >> 2) & 0x33333333u);
+    return (((x + (x >> 4)) & 0x0F0F0F0Fu) * 0x01010101u) >> 24;
+  }
+  std::size_t place(std::size_t key) const {
+    const Word& word = words_[key >> kShift];
+    return word.before + ones(word.occupied & (bit(key) - 1));
+  }
+
+  std::vector<Word> words_;
+  std::vector<std::uint32_t> starts_;  // of the occupied cells, and the end
+};
+
+}  // namespace agrisee
