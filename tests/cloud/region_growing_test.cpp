@@ -137,6 +137,9 @@ TEST_CASE("a region's limits are strict, and small regions are residual") {
   p.min_size = 1;
   p.radius = 1.0;
   CHECK(grow_regions(cloud, up, p) == Labels{1, 2, 3, 4});
+  p.radius = 1e-200;  // its square is 0
+  CHECK(grow_regions(cases::Points<double>(4, {1, 1, 1}), up, p) == Labels{1, 2, 3, 4});
+  p.radius = 1.0;
   p.radius = 1.001;
   CHECK(grow_regions(cloud, up, p) == Labels{1, 1, 1, 1});
   p.min_size = 5;
@@ -179,6 +182,29 @@ TEST_CASE("regions of nearest neighbours: crowds, strays and one-way edges, on a
         CHECK((grow_regions(cloud, normals, p, curvatures) == expected));
         CHECK((grow_regions(cloud, normals, p, curvatures, 3) == expected));
       }
+}
+
+TEST_CASE("regions of nearest neighbours whose squared distances overflow, of points without a curvature or a normal") {
+  for (const double scale : {1.0, 1e19, 1e20, 4e20}) {
+    Rng rng(6);
+    cases::Points<float> cloud, normals;
+    std::vector<float> curvatures;
+    for (int i = 0; i < 600; ++i) {
+      cloud.push_back((scale * Eigen::Vector3d(rng.uniform(), rng.uniform(), rng.uniform())).cast<float>());
+      normals.push_back((rng.direction() + 2.0 * Eigen::Vector3d::UnitZ()).normalized().cast<float>());
+      curvatures.push_back(float(rng.uniform()));
+    }
+    for (std::size_t i = 0; i < cloud.size(); i += 17) normals[i].setConstant(std::nanf(""));
+    for (std::size_t i = 5; i < cloud.size(); i += 23) curvatures[i] = std::nanf("");
+    RegionGrowingParameters p;
+    p.min_size = 1, p.seeds_by_curvature = true;
+    for (const int k : {1, 12, 599, 2500, 2000000000}) {
+      INFO(k << " neighbours, scale " << scale);
+      p.neighbors = k;
+      const auto lists = nearest_neighbors(cloud, std::min<std::size_t>(static_cast<std::size_t>(k), cloud.size()));
+      CHECK((grow_regions(cloud, normals, p, curvatures, 2) == grow_regions(cloud, normals, p, lists, curvatures)));
+    }
+  }
 }
 
 TEST_CASE("region growing of next to nothing, and bad input") {

@@ -89,6 +89,19 @@ void check_all(const std::string& kind) {
 
 }  // namespace
 
+TEST_CASE("neighbours whose squared distances overflow are taken in the order of their indices") {
+  for (const double scale : {1e18, 6e18, 1e19, 3e19, 1e20, 4e20}) {
+    Rng rng(11);
+    shapes::Points<float> cloud;
+    for (int i = 0; i < 400; ++i)
+      cloud.push_back((scale * Eigen::Vector3d(rng.uniform(), rng.uniform(), rng.uniform())).cast<float>());
+    for (const std::size_t k : {1u, 5u, 12u, 399u, 500u}) {
+      INFO("scale " << scale);
+      check_nearest<float>(cloud, k, std::numeric_limits<float>::infinity());
+    }
+  }
+}
+
 TEST_CASE("all neighbourhoods at once equal brute force") {
   const std::string kind = GENERATE(from_range(shapes::cloud_kinds()));
   INFO(kind);

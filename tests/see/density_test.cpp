@@ -107,6 +107,10 @@ TEST_CASE("parameters: k, separation, checks", "[see]") {
     scaled.radius = bad;
     REQUIRE(scaled.k() == 0);
   }
+  scaled.radius = -0.04, scaled.rho = -2e6;
+  REQUIRE(scaled.k() == 0);
+  scaled.radius = 1.0, scaled.rho = 2e8;
+  REQUIRE(scaled.k() == 0);
   int fields = 0;
   Parameters p;
   Parameters::fields(p, [&](const char*, auto&) { ++fields; });

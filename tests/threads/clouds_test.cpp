@@ -81,6 +81,23 @@ TEST_CASE("threads: normals, their orientation, regions") {
   const auto normals = orient_normals_consistently(axes, fruit(), {}, 1);
   CHECK(normals == orient_normals_consistently(axes, fruit(), {}, kThreads));
   CHECK(grow_regions(fruit(), normals, {}, {}, 1) == grow_regions(fruit(), normals, {}, {}, kThreads));
+  RegionGrowingParameters nearest;
+  nearest.neighbors = 12;
+  CHECK(grow_regions(fruit(), normals, nearest, {}, 1) == grow_regions(fruit(), normals, nearest, {}, kThreads));
+}
+
+TEST_CASE("threads: regions of points that are crowded, at one place, astray") {
+  auto points = fruit();
+  Rng rng(4);
+  for (int i = 0; i < 3000; ++i) points.push_back({0, 0, 0});
+  for (int i = 0; i < 3000; ++i) points.push_back({1.0f + 1e-4f * float(rng.uniform()), 0, 0});
+  for (int i = 0; i < 500; ++i) points.push_back((3.0 * rng.uniform() * rng.direction()).cast<float>());
+  std::vector<Eigen::Vector3f> normals;
+  for (std::size_t i = 0; i < points.size(); ++i)
+    normals.push_back((rng.direction() + 3.0 * Eigen::Vector3d::UnitZ()).normalized().cast<float>());
+  RegionGrowingParameters p;
+  p.neighbors = 8, p.min_size = 1;
+  CHECK(grow_regions(points, normals, p, {}, 1) == grow_regions(points, normals, p, {}, kThreads));
 }
 
 TEST_CASE("threads: clusters") {

@@ -19,7 +19,6 @@ Labels connected_regions(const C& cloud, const std::vector<Vector3<scalar_t<C>>>
   using S = scalar_t<C>;
   const std::size_t n = agrisee::size(cloud);
   const S radius = static_cast<S>(params.radius);
-  const S below_sq = std::nextafter(radius * radius, S(0));  // nearer than the radius
   const Grid<S> grid(cloud, S(1.00001) * radius, threads);
   const OrientedPoints<S> points(grid, normals, params, threads);
   const auto id = [&](std::size_t j) { return static_cast<std::size_t>(grid.ids()[j]); };
@@ -27,7 +26,7 @@ Labels connected_regions(const C& cloud, const std::vector<Vector3<scalar_t<C>>>
   DisjointSets sets(grid.stored());
   join_neighbors(grid, box_stencil(1), threads, sets, member,
                  [&](std::size_t j, std::size_t begin, std::size_t end, std::uint8_t* is) {
-                   points.smooth_within(j, below_sq, begin, end, is);
+                   points.smooth_within(j, radius * radius, begin, end, is);
                  });
   const std::vector<Index> ranks = seed_ranks<S>(n, params.seeds_by_curvature, curvatures);
   const Labels numbers = number_sets(sets, grid.stored(), static_cast<std::size_t>(params.min_size), threads, member,

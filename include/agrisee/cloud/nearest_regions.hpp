@@ -10,34 +10,39 @@
 #include <agrisee/core/all_neighbors.hpp>
 #include <agrisee/core/components.hpp>
 
+#include <algorithm>
 #include <mutex>
+#include <utility>
 
 namespace agrisee {
 
 namespace detail {
 
-/// The k nearest of each stored point of a grid: the places of those that are in the cells next to its own, in two
-/// bytes each, and how far the last one is.
+/// The k nearest of each stored point of a grid, most of them in two bytes: their places among the points of the cells
+/// within a ring or two.
 template <typename S>
-struct NearbyLists {
+struct NearestLists {
   static constexpr std::uint16_t kEnd = std::numeric_limits<std::uint16_t>::max();
 
   /// Lists of k of n points, all empty.
-  NearbyLists(std::size_t n, std::size_t k) : places(n * k, kEnd), sq(n), last(n) {}
+  NearestLists(std::size_t n, std::size_t k) : rings(n), places(n * k, kEnd), sq(n), last(n) {}
   /// Whether the point `id`, `d_sq` (m2) away, is one of the k nearest of stored point j.
   bool holds(std::size_t j, S d_sq, Index id) const { return d_sq < sq[j] || (d_sq == sq[j] && id <= last[j]); }
 
-  std::vector<std::uint16_t> places;  ///< k a point, among the points of the cells next to its own; ends with kEnd
+  std::vector<char> rings;            ///< of cells in which the k are found, 1 or 2; 0: see `far`
+  std::vector<std::uint16_t> places;  ///< k a point, among the points of these cells (list_places), or less and kEnd
   std::vector<S> sq;                  ///< squared distance (m2) of the k-th nearest; infinite where there are fewer
   std::vector<Index> last;            ///< its index; of those at that distance, greater ones are none of the k
+  Indices far;                        ///< k + 1 a point: its place, then the indices of its neighbours or -1
 };
 
 /// Edges of one direction between stored points.
 using Edges = std::vector<std::pair<Index, Index>>;
 
-/// Which sets are reached from which seeds.
-/// @param sets points that reach one another; roots are their least indices
-/// @param edges stored points; sorted on return
+/// Which sets are reached from which seeds. O(n + m log m) for m sets and edges.
+/// @param sets points that reach one another
+/// @param n how many points
+/// @param edges between stored points; on return between the roots of sets, each once
 /// @param member whether stored point j can join
 /// @param earlier earlier(i, j): whether stored point i becomes a seed before j
 /// @return the region of each root, from 1 in the order of the seeds; 0 elsewhere. How many there are.
@@ -45,19 +50,22 @@ template <typename Member, typename Earlier>
 std::pair<Labels, int> reached_sets(DisjointSets& sets, std::size_t n, Edges& edges, const Member& member,
                                     const Earlier& earlier) {
   constexpr Index kNone = -1;
-  const auto root = [&](std::size_t j) { return static_cast<std::size_t>(sets.root(static_cast<Index>(j))); };
   std::vector<Index> seeds(n, kNone);  // of each root
   Indices roots;
   for (std::size_t j = 0; j < n; ++j) {
+    if ((j & 0x3FFF) == 0) throw_if_cancelled();
     if (!member(j)) continue;
-    Index& seed = seeds[root(j)];
-    if (seed == kNone) roots.push_back(static_cast<Index>(root(j)));
+    const Index root = sets.root(static_cast<Index>(j));
+    Index& seed = seeds[static_cast<std::size_t>(root)];
+    if (seed == kNone) roots.push_back(root);
     if (seed == kNone || earlier(j, static_cast<std::size_t>(seed))) seed = static_cast<Index>(j);
   }
   const auto seed = [&](Index r) { return static_cast<std::size_t>(seeds[static_cast<std::size_t>(r)]); };
-  std::sort(roots.begin(), roots.end(), [&](Index a, Index b) { return a != b && earlier(seed(a), seed(b)); });
+  sort_cancellably(roots.begin(), roots.end(), [&](Index a, Index b) { return a != b && earlier(seed(a), seed(b)); });
   for (auto& [from, to] : edges) from = sets.root(from), to = sets.root(to);
-  std::sort(edges.begin(), edges.end());
+  edges.erase(std::remove_if(edges.begin(), edges.end(), [](const auto& e) { return e.first == e.second; }),
+              edges.end());
+  sort_cancellably(edges.begin(), edges.end());
   edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
 
   Labels regions(n, 0);
@@ -82,92 +90,101 @@ std::pair<Labels, int> reached_sets(DisjointSets& sets, std::size_t n, Edges& ed
   return {std::move(regions), created};
 }
 
-/// The regions where the k nearest neighbours grow. O(n k); 2 k bytes a point and some 40 with the grid.
+/// The lists of the points of a grid; see there.
+template <typename C>
+NearestLists<scalar_t<C>> nearest_lists(const C& cloud, const NeighborhoodGrid<scalar_t<C>>& near, std::size_t k,
+                                        int threads) {
+  using S = scalar_t<C>;
+  constexpr S kInfinity = std::numeric_limits<S>::infinity();
+  NearestLists<S> lists(near.grid.stored(), k);
+  std::mutex far_mutex;
+  const auto keep = [&](std::size_t j, const Neighborhood<S>& found, int rings) {
+    const bool all = found.size < k;  // there are no more points
+    lists.sq[j] = all ? kInfinity : found.distance_sq[k - 1];
+    lists.last[j] = all ? std::numeric_limits<Index>::max() : found.ids[k - 1];
+    if (rings > 0 && *std::max_element(found.at, found.at + found.size) < NearestLists<S>::kEnd) {
+      lists.rings[j] = static_cast<char>(rings);
+      std::transform(found.at, found.at + found.size, lists.places.begin() + static_cast<std::ptrdiff_t>(j * k),
+                     [](std::uint32_t at) { return static_cast<std::uint16_t>(at); });
+      return;
+    }
+    const std::lock_guard<std::mutex> lock(far_mutex);
+    lists.far.push_back(static_cast<Index>(j));
+    lists.far.insert(lists.far.end(), found.ids, found.ids + found.size);
+    lists.far.resize(lists.far.size() + (k - found.size), -1);
+  };
+  for_stored_neighborhoods(cloud, near, k, kInfinity, threads, keep);
+  return lists;
+}
+
+/// The regions where the k nearest neighbours grow. O(n k), and a sort of the edges of one direction between points
+/// that are not neighbours of each other; some 2 k + 40 bytes a point, 4 k for points that are crowded or astray.
 template <typename C>
 Labels nearest_regions(const C& cloud, const std::vector<Vector3<scalar_t<C>>>& normals,
                        const RegionGrowingParameters& params, const std::vector<scalar_t<C>>& curvatures, int threads) {
   using S = scalar_t<C>;
-  constexpr S kInfinity = std::numeric_limits<S>::infinity();
-  const auto k = static_cast<std::size_t>(params.neighbors);
-  const NeighborhoodGrid<S> near(cloud, k, kInfinity, threads);
+  const std::size_t size = agrisee::size(cloud);
+  const std::size_t k = std::min(static_cast<std::size_t>(params.neighbors), std::max<std::size_t>(size, 1));
+  const NeighborhoodGrid<S> near(cloud, k, std::numeric_limits<S>::infinity(), threads);
   const Grid<S>& grid = near.grid;
   const std::size_t n = grid.stored();
+  const Indices& ids = grid.ids();
+  NearestLists<S> lists = nearest_lists(cloud, near, k, threads);
   const OrientedPoints<S> points(grid, normals, params, threads);
   const auto member = [&](std::size_t j) { return points.member(j); };
-  const S *x = grid.x().data(), *y = grid.y().data(), *z = grid.z().data();
-  const Index* ids = grid.ids().data();
-  const auto distance_sq = [&](std::size_t i, std::size_t j) {
-    const S dx = x[i] - x[j], dy = y[i] - y[j], dz = z[i] - z[j];
-    return dx * dx + dy * dy + dz * dz;
-  };
 
-  NearbyLists<S> lists(n, k);
+  DisjointSets sets(n);
   std::mutex edges_mutex;
-  Edges edges;      // stored points
-  Edges far_edges;  // a stored point and the index in the cloud of one that is not beside it
-  const auto keep = [&](std::size_t j, const Neighborhood<S>& neighbors, int rings) {
-    const std::size_t last = neighbors.size - 1;
-    lists.sq[j] = neighbors.size < k ? kInfinity : neighbors.distance_sq[last];
-    lists.last[j] = neighbors.ids[last];
-    if (!member(j)) return;
-    if (rings == 1 && *std::max_element(neighbors.at, neighbors.at + neighbors.size) < NearbyLists<S>::kEnd) {
-      for (std::size_t i = 0; i < neighbors.size; ++i)
-        lists.places[j * k + i] = static_cast<std::uint16_t>(neighbors.at[i]);
+  Edges edges;
+  const auto join_smooth = [&](std::size_t i, std::size_t j) {  // j is a neighbour of i
+    const Index a = sets.root(static_cast<Index>(i)), b = sets.root(static_cast<Index>(j));
+    if (a == b || !points.smooth(i, j)) return;
+    if (lists.holds(j, distance_sq<S>(grid.stored_point(i), grid.stored_point(j)), ids[i])) {
+      sets.join(a, b);
       return;
     }
     const std::lock_guard<std::mutex> lock(edges_mutex);
-    for (std::size_t i = 0; i < neighbors.size; ++i)
-      if (neighbors.ids[i] != ids[j]) far_edges.emplace_back(static_cast<Index>(j), neighbors.ids[i]);
+    if (edges.empty() || edges.back() != std::make_pair(a, b)) edges.emplace_back(a, b);
   };
-  for_stored_neighborhoods(cloud, near, k, kInfinity, threads, keep);
-
-  DisjointSets sets(n);
-  const auto join_smooth = [&](std::size_t i, std::size_t j) {  // j is a neighbour of the member i
-    const auto a = static_cast<Index>(i), b = static_cast<Index>(j);
-    if (sets.root(a) == sets.root(b) || !points.smooth(i, j)) return;
-    if (lists.holds(j, distance_sq(i, j), ids[i])) {
-      sets.join(a, b);
-    } else {
-      const std::lock_guard<std::mutex> lock(edges_mutex);
-      edges.emplace_back(a, b);
-    }
-  };
-  const Stencil ring = box_stencil(1);
+  const Stencil stencils[] = {box_stencil(1), box_stencil(2)};
   for_cells(grid, threads, [&] {
     return [&, around = std::vector<std::uint32_t>()](const typename Grid<S>::Cell& cell, std::size_t first,
                                                       std::size_t last) mutable {
-      const auto listed = [&](std::size_t i) { return lists.places[i * k] != NearbyLists<S>::kEnd; };
-      while (first < last && !listed(first)) ++first;
-      if (first == last) return;
-      around.clear();
-      for (const StencilRow& row : ring) {
-        const auto [begin, end] =
-            grid.run(cell[2] - row.outer, cell[2] + row.outer, cell[1] + row.dy, cell[0] + row.dz);
-        around.resize(around.size() + (end - begin));
-        std::iota(around.end() - static_cast<std::ptrdiff_t>(end - begin), around.end(),
-                  static_cast<std::uint32_t>(begin));
+      for (int rings = 1; rings <= 2; ++rings) {
+        const auto grows = [&](std::size_t i) { return lists.rings[i] == rings && member(i); };
+        std::size_t i = first;
+        while (i < last && !grows(i)) ++i;
+        if (i == last) continue;
+        list_places(grid, cell, stencils[rings - 1], around);
+        for (; i < last; ++i) {
+          if (!grows(i)) continue;
+          for (std::size_t at = i * k; at < (i + 1) * k && lists.places[at] != NearestLists<S>::kEnd; ++at)
+            join_smooth(i, around[lists.places[at]]);
+        }
       }
-      for (std::size_t i = first; i < last; ++i)
-        for (std::size_t at = i * k; at < (i + 1) * k && lists.places[at] != NearbyLists<S>::kEnd; ++at)
-          join_smooth(i, around[lists.places[at]]);
     };
   });
-  if (!far_edges.empty()) {
-    std::vector<Index> place(agrisee::size(cloud), 0);  // of the cloud's points among the stored ones
+  if (!lists.far.empty()) {
+    std::vector<Index> place(size, 0);  // of the cloud's points among the stored ones
     for (std::size_t j = 0; j < n; ++j) place[static_cast<std::size_t>(ids[j])] = static_cast<Index>(j);
-    for (const auto& [i, id] : far_edges)
-      join_smooth(static_cast<std::size_t>(i), static_cast<std::size_t>(place[static_cast<std::size_t>(id)]));
+    const auto join_far = [&](std::size_t f) {
+      const auto i = static_cast<std::size_t>(lists.far[f * (k + 1)]);
+      if (!member(i)) return;
+      for (std::size_t at = f * (k + 1) + 1; at < (f + 1) * (k + 1) && lists.far[at] >= 0; ++at)
+        join_smooth(i, static_cast<std::size_t>(place[static_cast<std::size_t>(lists.far[at])]));
+    };
+    parallel_for(lists.far.size() / (k + 1), threads, join_far, 256);
   }
-
-  lists = {0, 0};
+  lists = {0, 0};  // its memory
 
   const auto earlier = [&](std::size_t i, std::size_t j) {
     const auto a = static_cast<std::size_t>(ids[i]), b = static_cast<std::size_t>(ids[j]);
-    if (!params.seeds_by_curvature || curvatures[a] == curvatures[b]) return a < b;
-    return curvatures[a] < curvatures[b];
+    if (!params.seeds_by_curvature) return a < b;
+    const S first = seed_key(curvatures[a]), second = seed_key(curvatures[b]);
+    return first < second || (first == second && a < b);
   };
   const auto [regions, created] = reached_sets(sets, n, edges, member, earlier);
-  Labels labels(agrisee::size(cloud), 0);
+  Labels labels(size, 0);
   const auto label = [&, &of_roots = regions](std::size_t j) {
     if (member(j))
       labels[static_cast<std::size_t>(ids[j])] = of_roots[static_cast<std::size_t>(sets.root(static_cast<Index>(j)))];

@@ -46,8 +46,10 @@ Labels grow_from_seeds(const C& cloud, const std::vector<Vector3<scalar_t<C>>>& 
       neighbors(i, [&](Index index) {
         const auto j = static_cast<std::size_t>(index);
         if (labels[j] != kFree) return;
-        const S cosine = normal.dot(normals[j]);
-        if (!((params.unsigned_normals ? std::abs(cosine) : cosine) > cos_min)) return;
+        const Vector3<S>& other = normals[j];
+        if (!(cosine(normal.x(), normal.y(), normal.z(), other.x(), other.y(), other.z(), params.unsigned_normals) >
+              cos_min))
+          return;
         labels[j] = regions;
         if (!gated || static_cast<double>(curvatures[j]) <= params.max_curvature) queue.push_back(index);
       });

@@ -6,7 +6,10 @@
 #include <agrisee/cloud/parameters.hpp>
 #include <agrisee/core/cloud.hpp>
 #include <agrisee/core/grid.hpp>
+#include <agrisee/core/parallel.hpp>
 
+#include <algorithm>
+#include <cmath>
 #include <limits>
 #include <numeric>
 
@@ -24,6 +27,12 @@ inline void drop_small_regions(Labels& labels, int regions, int min_size) {
   for (int& label : labels) label = renumbered[static_cast<std::size_t>(label)];
 }
 
+/// What seeds are ordered by: their curvature, those of none last.
+template <typename S>
+S seed_key(S curvature) {
+  return std::isnan(curvature) ? std::numeric_limits<S>::infinity() : curvature;
+}
+
 /// The points in the order in which they may become seeds.
 template <typename S>
 Indices seed_order(std::size_t n, bool by_curvature, const std::vector<S>& curvatures) {
@@ -31,7 +40,7 @@ Indices seed_order(std::size_t n, bool by_curvature, const std::vector<S>& curva
   std::iota(order.begin(), order.end(), Index(0));
   if (by_curvature)
     std::stable_sort(order.begin(), order.end(), [&](Index a, Index b) {
-      return curvatures[static_cast<std::size_t>(a)] < curvatures[static_cast<std::size_t>(b)];
+      return seed_key(curvatures[static_cast<std::size_t>(a)]) < seed_key(curvatures[static_cast<std::size_t>(b)]);
     });
   return order;
 }
@@ -62,11 +71,21 @@ bool can_join(const Vector3<S>& p, const Vector3<S>& normal) {
   return is_finite(p) && is_finite(normal) && normal.squaredNorm() > 0;
 }
 
+/// How alike two normals are, the first's coordinates u, v, w: cosine > cos_min for those that differ by less than a
+/// limit. One order of summation for all ways of growing.
+template <typename S>
+S cosine(S u, S v, S w, S other_u, S other_v, S other_w, bool without_sign) {
+  const S sum = u * other_u + (v * other_v + w * other_w);
+  return without_sign ? std::abs(sum) : sum;
+}
+
 /// The points of a grid with their normals, coordinate by coordinate.
 template <typename S>
 class OrientedPoints {
  public:
   /// @param grid points  @param normals one a point of its cloud
+  /// @param params limit of the angle between normals, and whether their sign counts
+  /// @param threads the result does not depend on it
   OrientedPoints(const Grid<S>& grid, const std::vector<Vector3<S>>& normals, const RegionGrowingParameters& params,
                  int threads)
       : grid_(grid),
@@ -87,28 +106,24 @@ class OrientedPoints {
   bool member(std::size_t j) const { return !std::isnan(u_[j]); }
   /// Whether stored points i and j are members and their normals differ by less than the limit.
   bool smooth(std::size_t i, std::size_t j) const {
-    const S cosine = u_[i] * u_[j] + (v_[i] * v_[j] + w_[i] * w_[j]);
-    return (unsigned_ ? std::abs(cosine) : cosine) > cos_min_;
+    return cosine(u_[i], v_[i], w_[i], u_[j], v_[j], w_[j], unsigned_) > cos_min_;
   }
-  /// is[i - begin] = 1 for the members i of [begin, end) at most sqrt(limit_sq) (m) from j, a member, whose normals
+  /// is[i - begin] = 1 for the members i of [begin, end) less than sqrt(limit_sq) (m) from j, a member, whose normals
   /// differ from its normal by less than the limit; 0 for others.
   void smooth_within(std::size_t j, S limit_sq, std::size_t begin, std::size_t end, std::uint8_t* is) const {
-    if (unsigned_)
-      test(j, limit_sq, begin, end, is, [](S c) { return std::abs(c); });
-    else
-      test(j, limit_sq, begin, end, is, [](S c) { return c; });
+    unsigned_ ? test<true>(j, limit_sq, begin, end, is) : test<false>(j, limit_sq, begin, end, is);
   }
 
  private:
-  template <typename F>
-  void test(std::size_t j, S limit_sq, std::size_t begin, std::size_t end, std::uint8_t* is, const F& sided) const {
+  template <bool kUnsigned>
+  void test(std::size_t j, S limit_sq, std::size_t begin, std::size_t end, std::uint8_t* is) const {
     const S *x = grid_.x().data(), *y = grid_.y().data(), *z = grid_.z().data();
     const S *u = u_.data(), *v = v_.data(), *w = w_.data(), cos_min = cos_min_;
     const S qx = x[j], qy = y[j], qz = z[j], qu = u[j], qv = v[j], qw = w[j];
     for (std::size_t i = begin; i < end; ++i) {
       const S dx = x[i] - qx, dy = y[i] - qy, dz = z[i] - qz;
-      const bool near = dx * dx + dy * dy + dz * dz <= limit_sq;
-      is[i - begin] = static_cast<std::uint8_t>(near & (sided(u[i] * qu + (v[i] * qv + w[i] * qw)) > cos_min));
+      const bool near = dx * dx + dy * dy + dz * dz < limit_sq;
+      is[i - begin] = static_cast<std::uint8_t>(near & (cosine(u[i], v[i], w[i], qu, qv, qw, kUnsigned) > cos_min));
     }
   }
 

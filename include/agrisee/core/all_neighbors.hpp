@@ -140,7 +140,7 @@ class TileNearest {
   /// Sort what is kept, each to the place that the number of nearer ones gives it.
   void rank(const Tile<S>& tile) {
     const std::size_t n = kept_;
-    if (n > 4 * k_ + 64) return sort(tile);
+    if (n > std::min<std::size_t>(4 * k_ + 64, 384)) return sort(tile);
     for (std::size_t i = n; i < n + kLanes; ++i) kept_sq_[i] = std::numeric_limits<S>::infinity();
     std::size_t sum = 0;
     for (std::size_t i = 0; i < n; i += kLanes) {
@@ -204,14 +204,14 @@ class FarCells {
     std::size_t points = 0, enough = 0;
     for (; enough < cells.size() && points < k; ++enough) points += size(cells[enough].index);
     if (points >= k) reach = std::min(reach, cells[enough - 1].distance + half_diagonal_);
-    if (!std::isfinite(reach * reach)) {  // all are wanted, or too far for S to tell how far
-      tile.clear();
+    const S rounding = S(8) * std::numeric_limits<S>::epsilon() * (q.cwiseAbs().maxCoeff() + half_diagonal_);
+    const S far = S(1.001) * (reach + half_diagonal_) + rounding;
+    tile.clear();
+    if (!std::isfinite(S(4) * far * far)) {  // all are wanted, or too far for S to tell how far
       tile.append(grid_, 0, grid_.stored());
       return;
     }
-    const S rounding = S(8) * std::numeric_limits<S>::epsilon() * (q.cwiseAbs().maxCoeff() + half_diagonal_);
-    tile.clear();
-    tree_->visit(q, S(1.001) * (reach + half_diagonal_) + rounding, [&](Index c, S) {
+    tree_->visit(q, far, [&](Index c, S) {
       const auto& run = runs_[static_cast<std::size_t>(c)];
       tile.append(grid_, run.first, run.second);
     });
@@ -319,7 +319,7 @@ Left near_neighborhoods(const Grid<S>& grid, std::size_t k, S radius, S typical,
           const Vector3<S> q = grid.stored_point(j);
           const S reach = std::min(radius, static_cast<S>(grid.clearance(q, cell, r)));
           const Neighborhood<S>& near = nearest(tile, q, reach);
-          if (near.size < k && reach < radius) continue;
+          if (reach < radius && (near.size < k || !std::isfinite(reach * reach))) continue;
           body(j, near, r);
           state[j] = kDone;
           --left;
@@ -337,6 +337,7 @@ Left near_neighborhoods(const Grid<S>& grid, std::size_t k, S radius, S typical,
 template <typename S>
 struct NeighborhoodGrid {
   /// @param cloud points (m)  @param k neighbours, at least 1  @param radius no neighbour is farther (m)
+  /// @param threads the result does not depend on it
   template <typename C>
   NeighborhoodGrid(const C& cloud, std::size_t k, S radius, int threads)
       : typical(typical_distance(cloud, k, agrisee::size(cloud) < 50000 ? 1 : threads)),
@@ -347,7 +348,8 @@ struct NeighborhoodGrid {
 };
 
 /// As for_each_neighborhood, but body(j, neighbourhood, rings) for the stored points j of the grid, see
-/// near_neighborhoods; rings is 0 for those whose neighbours are not found within two rings.
+/// near_neighborhoods; rings is 0 for those whose neighbours are not found within two rings or are too many to look
+/// through.
 template <typename C, typename Body>
 void for_stored_neighborhoods(const C& cloud, const NeighborhoodGrid<scalar_t<C>>& near, std::size_t k,
                               scalar_t<C> radius, int threads, const Body& body) {

@@ -19,10 +19,13 @@ class CellStarts {
   static constexpr unsigned kShift = 5;
 
   /// So many cells, all empty.
-  void reset(std::size_t cells) { words_.assign((cells >> kShift) + 1, {}); }
+  void reset(std::size_t cells) {
+    words_.assign((cells >> kShift) + 1, {});
+    starts_.clear();
+  }
   /// Cell `key` is occupied.
   void mark(std::size_t key) { words_[key >> kShift].occupied |= bit(key); }
-  /// Where the points of the occupied cells begin, of more and more of them in the order of their keys.
+  /// Where the points of occupied cells begin. May be called again and again, in the order of the cells' keys.
   void append(const std::vector<std::uint32_t>& starts) { starts_.insert(starts_.end(), starts.begin(), starts.end()); }
   /// All cells are marked and have their starts.
   /// @param points where the last cell's points end

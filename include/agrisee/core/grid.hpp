@@ -2,7 +2,8 @@
 /// @file
 /// Neighbour search by a uniform grid (cell list): points sorted by cell, x fastest, so that the cells of a row lie
 /// side by side in memory and a query reads a few runs. Fastest for radii near the cell size. Build O(n), or
-/// O(n log n) where the cells are too many for a table (far outliers); memory about 16 bytes a point and 2 bits a cell.
+/// O(n log n) where the cells are too many for a table (far outliers); memory the coordinates and an index a point,
+/// four bytes an occupied cell and two bits a cell.
 /// Queries for all points at once are several times as fast through tiles.hpp.
 #pragma once
 
@@ -45,7 +46,7 @@ class Grid {
     inverse_ = 1.0 / cell_;
     for (int a = 0; a < 3; ++a) dims_[a] = static_cast<int>((all.max[a] - min_[a]) * inverse_) + 1;
     const double cells = double(dims_[0]) * double(dims_[1]) * double(dims_[2]);
-    dense_ = cells <= 32.0 * static_cast<double>(n) + 1048576.0 && cells < 4294967295.0;  // keys have 32 bits
+    dense_ = cells <= 32.0 * static_cast<double>(n) + 262144.0 && cells < 4294967295.0;  // keys have 32 bits
     dense_ ? build_dense(cloud, n, static_cast<std::size_t>(cells), parts, threads) : build_sparse(cloud, n);
   }
 
@@ -271,6 +272,7 @@ class Grid {
       std::vector<std::uint32_t> next;  // per cell of a bucket: points, then where the next one goes
       for (std::size_t b = first; b < last; ++b) {
         const std::size_t begin = begins[b], end = begins[b + 1], low = b << shift;
+        if (begin == end) continue;
         points.clear();
         points.reserve(end - begin);
         next.assign(std::size_t(1) << shift, 0u);

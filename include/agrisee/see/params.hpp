@@ -52,10 +52,10 @@ struct Parameters {
   }
 
   /// Neighbours within `radius`, the point itself included, that make a core point: ceil(4/3 pi r^3 rho) (SEE++).
-  /// 0 of parameters that check() refuses for being negative, too large or no numbers.
+  /// 0 of a radius and rho that check() refuses.
   std::size_t k() const {
-    const double n = std::ceil(4.0 / 3.0 * kPi * radius * radius * radius * rho);
-    return n > 0.0 && n < 1e9 ? static_cast<std::size_t>(n) : 0;
+    const bool valid = radius > 0.0 && rho > 0.0 && radius * radius * radius * rho < 1e8;
+    return valid ? static_cast<std::size_t>(std::ceil(4.0 / 3.0 * kPi * radius * radius * radius * rho)) : 0;
   }
 
   /// Minimum separation epsilon (m) of the merged cloud's points.
@@ -64,6 +64,7 @@ struct Parameters {
   /// only. Derived here instead: a saturated surface has kSaturation (r / epsilon)^2 neighbours inside and half of them
   /// at a straight edge. With k at two thirds the one is core and the other is not, and a fifth of the points may be
   /// missing: epsilon = r sqrt(2/3 kSaturation / k), which is 2.08 mm here and keeps its meaning for every rho and r.
+  /// Not finite where k() is 0.
   double min_separation() const {
     return separation > 0.0 ? separation : radius * std::sqrt(2.0 / 3.0 * kSaturation / static_cast<double>(k()));
   }
