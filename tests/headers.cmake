@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: BSD-3-Clause
 # Every header compiles alone: those that no source begins with get a translation unit of their own. Two units that
-# include all of them, and twice, link into one program.
+# include all of them, and twice, link into one program; the first begins with agrisee.hpp.
 file(GLOB_RECURSE headers RELATIVE ${PROJECT_SOURCE_DIR}/include CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/include/agrisee/*.hpp)
 list(FILTER headers EXCLUDE REGEX "agrisee/interop/")
 file(GLOB_RECURSE sources ${PROJECT_SOURCE_DIR}/src/*.cpp ${CMAKE_CURRENT_SOURCE_DIR}/*_test.cpp)
-set(begun "")
+set(begun agrisee/agrisee.hpp)
 foreach(source ${sources})
   file(STRINGS ${source} first REGEX "^#include" LIMIT_COUNT 1)
   if(first MATCHES "^#include <(agrisee/.*)>")
