@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <agrisee/cloud/split.hpp>
 
+#include <numeric>
+
 #include "catch.hpp"
 #include "spheres.hpp"
 

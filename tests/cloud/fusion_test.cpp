@@ -6,6 +6,8 @@
 #include <agrisee/cloud/surfels.hpp>
 #include <agrisee/cloud/voxel.hpp>
 
+#include <numeric>
+
 #include "catch.hpp"
 #include "spheres.hpp"
 

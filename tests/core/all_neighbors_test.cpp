@@ -4,6 +4,8 @@
 #include <agrisee/core/components.hpp>
 #include <agrisee/core/count_neighbors.hpp>
 
+#include <numeric>
+
 #include "catch.hpp"
 #include "support/clouds.hpp"
 

@@ -5,6 +5,7 @@
 #include <agrisee/plan/picking.hpp>
 
 #include <limits>
+#include <numeric>
 
 #include "catch.hpp"
 

@@ -3,6 +3,8 @@
 #include <agrisee/core/random.hpp>
 #include <agrisee/study/joint_path.hpp>
 
+#include <numeric>
+
 #include "catch.hpp"
 
 using namespace agrisee;

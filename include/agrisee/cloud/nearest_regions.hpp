@@ -178,10 +178,8 @@ Labels nearest_regions(const C& cloud, const std::vector<Vector3<scalar_t<C>>>& 
   lists = {0, 0};  // its memory
 
   const auto earlier = [&](std::size_t i, std::size_t j) {
-    const auto a = static_cast<std::size_t>(ids[i]), b = static_cast<std::size_t>(ids[j]);
-    if (!params.seeds_by_curvature) return a < b;
-    const S first = seed_key(curvatures[a]), second = seed_key(curvatures[b]);
-    return first < second || (first == second && a < b);
+    return earlier_seed(static_cast<std::size_t>(ids[i]), static_cast<std::size_t>(ids[j]), params.seeds_by_curvature,
+                        curvatures);
   };
   const auto [regions, created] = reached_sets(sets, n, edges, member, earlier);
   Labels labels(size, 0);

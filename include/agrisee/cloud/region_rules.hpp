@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 #include <numeric>
 
@@ -27,10 +28,14 @@ inline void drop_small_regions(Labels& labels, int regions, int min_size) {
   for (int& label : labels) label = renumbered[static_cast<std::size_t>(label)];
 }
 
-/// What seeds are ordered by: their curvature, those of none last.
+/// Whether point a may become a seed before point b: by rising curvature, points of none last, then by index.
 template <typename S>
-S seed_key(S curvature) {
-  return std::isnan(curvature) ? std::numeric_limits<S>::infinity() : curvature;
+bool earlier_seed(std::size_t a, std::size_t b, bool by_curvature, const std::vector<S>& curvatures) {
+  if (!by_curvature) return a < b;
+  const auto key = [&](std::size_t i) {
+    return std::isnan(curvatures[i]) ? std::numeric_limits<S>::infinity() : curvatures[i];
+  };
+  return key(a) < key(b) || (key(a) == key(b) && a < b);
 }
 
 /// The points in the order in which they may become seeds.
@@ -40,7 +45,7 @@ Indices seed_order(std::size_t n, bool by_curvature, const std::vector<S>& curva
   std::iota(order.begin(), order.end(), Index(0));
   if (by_curvature)
     std::stable_sort(order.begin(), order.end(), [&](Index a, Index b) {
-      return seed_key(curvatures[static_cast<std::size_t>(a)]) < seed_key(curvatures[static_cast<std::size_t>(b)]);
+      return earlier_seed(static_cast<std::size_t>(a), static_cast<std::size_t>(b), true, curvatures);
     });
   return order;
 }

@@ -8,7 +8,6 @@
 #include <agrisee/core/parallel.hpp>
 
 #include <cstring>
-#include <numeric>
 
 namespace agrisee {
 
