@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Neighbours of all points: how many within a radius, and the k nearest; against nanoflann, trees included.
-#include <agrisee/core/all_neighbors.hpp>
 #include <agrisee/core/count_neighbors.hpp>
+#include <agrisee/core/neighbor_lists.hpp>
 #include <agrisee/core/parallel.hpp>
 
 #include <nanoflann.hpp>
@@ -64,28 +64,30 @@ void counts(const char* stage, std::size_t n, int threads, double neighbors) {
   const float r = peers::radius_of(n, neighbors);
   const auto ours = [=](int t) { return count_neighbors(peers::cloud(n), r, t); };
   peers::add(stage, "ours", n, threads, ours, peers::Unchecked());
-  peers::add(stage, "nanoflann", n, threads, [=](int t) { return nanoflann_counts(peers::cloud(n), r, t); },
-             [=](const auto& theirs) {  // its bounds carry rounding errors, which costs it a few points at the very radius
-               const auto mine = ours(1);
-               std::size_t different = 0;
-               for (std::size_t i = 0; i < n; ++i) different += mine[i] != theirs[i];
-               peers::require(different <= n / 1000, std::string(stage) + " of nanoflann");
-             });
+  peers::add(
+      stage, "nanoflann", n, threads, [=](int t) { return nanoflann_counts(peers::cloud(n), r, t); },
+      [=](const auto& theirs) {  // its bounds carry rounding errors, which costs it a few points at the very radius
+        const auto mine = ours(1);
+        std::size_t different = 0;
+        for (std::size_t i = 0; i < n; ++i) different += mine[i] != theirs[i];
+        peers::require(different <= n / 1000, std::string(stage) + " of nanoflann");
+      });
 }
 
 void nearest(std::size_t n, int threads) {
   constexpr std::size_t k = 20;
   const auto ours = [=](int t) { return nearest_neighbors(peers::cloud(n), k, t).ids; };
   peers::add("knn", "ours", n, threads, ours, peers::Unchecked());
-  peers::add("knn", "nanoflann", n, threads, [=](int t) { return nanoflann_nearest(peers::cloud(n), k, t); },
-             [=](const Indices& theirs) {
-               const Indices mine = ours(1);
-               const auto& p = peers::cloud(n).points;
-               const auto at = [&](Index i) { return p[static_cast<std::size_t>(i)]; };
-               for (std::size_t i = 0; i < mine.size(); ++i)  // ties may be ordered otherwise
-                 peers::require(distance_sq<float>(at(mine[i]), p[i / k]) == distance_sq<float>(at(theirs[i]), p[i / k]),
-                                "nearest neighbours of nanoflann");
-             });
+  peers::add(
+      "knn", "nanoflann", n, threads, [=](int t) { return nanoflann_nearest(peers::cloud(n), k, t); },
+      [=](const Indices& theirs) {
+        const Indices mine = ours(1);
+        const auto& p = peers::cloud(n).points;
+        const auto at = [&](Index i) { return p[static_cast<std::size_t>(i)]; };
+        for (std::size_t i = 0; i < mine.size(); ++i)  // ties may be ordered otherwise
+          peers::require(distance_sq<float>(at(mine[i]), p[i / k]) == distance_sq<float>(at(theirs[i]), p[i / k]),
+                         "nearest neighbours of nanoflann");
+      });
 }
 
 }  // namespace

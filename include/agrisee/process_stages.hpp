@@ -9,6 +9,7 @@
 #include <agrisee/cloud/split.hpp>
 #include <agrisee/cloud/voxel.hpp>
 #include <agrisee/cloud_origin.hpp>
+#include <agrisee/core/neighbor_lists.hpp>
 #include <agrisee/core/stopwatch.hpp>
 #include <agrisee/locate.hpp>
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Neighbourhoods, counts and components of all points at once equal brute force, on friendly and on awkward clouds.
-#include <agrisee/core/all_neighbors.hpp>
 #include <agrisee/core/components.hpp>
 #include <agrisee/core/count_neighbors.hpp>
+#include <agrisee/core/neighbor_lists.hpp>
 
 #include <numeric>
 

@@ -49,6 +49,7 @@ void check_all(const std::string& kind) {
   check_search<S>(cloud, KdTree<S>(cloud), S(0.02));
   check_search<S>(cloud, Grid<S>(cloud, S(0.02)), S(0.02));
   check_search<S>(cloud, Grid<S>(cloud, S(0.005)), S(0.02));
+  check_search<S>(cloud, Grid<S>(cloud, S(0.0005)), S(0.002));
   check_search<S>(cloud, Grid<S>(cloud, S(3)), S(0.02));
 }
 
@@ -59,6 +60,26 @@ TEST_CASE("neighbour searches equal brute force") {
   INFO(kind);
   check_all<float>(kind);
   check_all<double>(kind);
+}
+
+TEST_CASE("a kd-tree comes by all points within a limit, and by the nearest when the limit shrinks") {
+  const auto cloud = cloud_of<float>("random", 3000);
+  const KdTree<float> tree(cloud);
+  for (std::size_t i = 0; i < cloud.size(); i += 97) {
+    const Eigen::Vector3f q = cloud[i] + Eigen::Vector3f(0.01f, 0.0f, 0.002f);
+    float limit_sq = 0.0009f;
+    std::size_t within = 0, seen = 0;
+    tree.approach(q, limit_sq, [&](Index, float d_sq) { within += d_sq <= limit_sq ? 1u : 0u; });
+    CHECK(within == brute<float>(cloud, q, limit_sq).size());
+    limit_sq = std::numeric_limits<float>::infinity();
+    Index nearest = -1;
+    tree.approach(q, limit_sq, [&](Index j, float d_sq) {
+      ++seen;
+      if (d_sq < limit_sq) limit_sq = d_sq, nearest = j;
+    });
+    CHECK(nearest == brute<float>(cloud, q, 1.0f).front().index);
+    CHECK(seen < 300);
+  }
 }
 
 TEST_CASE("searches take any cloud that meets the traits") {

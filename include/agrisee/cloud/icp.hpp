@@ -15,10 +15,10 @@
 #pragma once
 
 #include <agrisee/cloud/icp_parameters.hpp>
-#include <agrisee/core/all_neighbors.hpp>
 #include <agrisee/core/grid.hpp>
 #include <agrisee/core/parallel.hpp>
 #include <agrisee/core/pose.hpp>
+#include <agrisee/core/typical_distance.hpp>
 #include <agrisee/geometry/aabb.hpp>
 
 #include <Eigen/Eigenvalues>

@@ -11,6 +11,7 @@
 #include <agrisee/core/components.hpp>
 
 #include <algorithm>
+#include <iterator>
 #include <mutex>
 #include <utility>
 
@@ -33,7 +34,7 @@ struct NearestLists {
   std::vector<std::uint16_t> places;  ///< k a point, among the points of these cells (list_places), or less and kEnd
   std::vector<S> sq;                  ///< squared distance (m2) of the k-th nearest; infinite where there are fewer
   std::vector<Index> last;            ///< its index; of those at that distance, greater ones are none of the k
-  Indices far;                        ///< k + 1 a point: its place, then the indices of its neighbours or -1
+  Indices far;                        ///< k + 1 a stored point: itself, then its neighbours, stored points, or -1
 };
 
 /// Edges of one direction between stored points.
@@ -44,34 +45,41 @@ using Edges = std::vector<std::pair<Index, Index>>;
 /// @param n how many points
 /// @param edges between stored points; on return between the roots of sets, each once
 /// @param member whether stored point j can join
-/// @param earlier earlier(i, j): whether stored point i becomes a seed before j
+/// @param key_of what seeds are sorted by, seed_key of stored point j
 /// @return the region of each root, from 1 in the order of the seeds; 0 elsewhere. How many there are.
-template <typename Member, typename Earlier>
+template <typename Member, typename KeyOf>
 std::pair<Labels, int> reached_sets(DisjointSets& sets, std::size_t n, Edges& edges, const Member& member,
-                                    const Earlier& earlier) {
-  constexpr Index kNone = -1;
-  std::vector<Index> seeds(n, kNone);  // of each root
-  Indices roots;
+                                    const KeyOf& key_of) {
+  struct Seed {
+    decltype(key_of(n)) key;
+    Index root;
+  };
+  std::vector<Seed> seeds;  // the earliest member of each set
+  Indices seed_of(n, -1);   // of each root
   for (std::size_t j = 0; j < n; ++j) {
     if ((j & 0x3FFF) == 0) throw_if_cancelled();
     if (!member(j)) continue;
     const Index root = sets.root(static_cast<Index>(j));
-    Index& seed = seeds[static_cast<std::size_t>(root)];
-    if (seed == kNone) roots.push_back(root);
-    if (seed == kNone || earlier(j, static_cast<std::size_t>(seed))) seed = static_cast<Index>(j);
+    Index& seed = seed_of[static_cast<std::size_t>(root)];
+    if (seed < 0) {
+      seed = static_cast<Index>(seeds.size());
+      seeds.push_back({key_of(j), root});
+    } else if (auto& best = seeds[static_cast<std::size_t>(seed)].key; key_of(j) < best) {
+      best = key_of(j);
+    }
   }
-  const auto seed = [&](Index r) { return static_cast<std::size_t>(seeds[static_cast<std::size_t>(r)]); };
-  sort_cancellably(roots.begin(), roots.end(), [&](Index a, Index b) { return a != b && earlier(seed(a), seed(b)); });
+  sort_cancellably(seeds.begin(), seeds.end(), [](const Seed& a, const Seed& b) { return a.key < b.key; });
   for (auto& [from, to] : edges) from = sets.root(from), to = sets.root(to);
   edges.erase(std::remove_if(edges.begin(), edges.end(), [](const auto& e) { return e.first == e.second; }),
               edges.end());
   sort_cancellably(edges.begin(), edges.end());
   edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
 
-  Labels regions(n, 0);
+  Labels& regions = seed_of;
+  regions.assign(n, 0);
   int created = 0;
   Indices queue;
-  for (const Index first : roots) {
+  for (const auto& [ignored, first] : seeds) {
     if (regions[static_cast<std::size_t>(first)] != 0) continue;
     regions[static_cast<std::size_t>(first)] = ++created;
     queue.assign(1, first);
@@ -96,8 +104,10 @@ NearestLists<scalar_t<C>> nearest_lists(const C& cloud, const NeighborhoodGrid<s
                                         int threads) {
   using S = scalar_t<C>;
   constexpr S kInfinity = std::numeric_limits<S>::infinity();
-  NearestLists<S> lists(near.grid.stored(), k);
+  const Grid<S>& grid = near.grid;
+  NearestLists<S> lists(grid.stored(), k);
   std::mutex far_mutex;
+  Indices stored;  // of the cloud's points, once there are crowds
   const auto keep = [&](std::size_t j, const Neighborhood<S>& found, int rings) {
     const bool all = found.size < k;  // there are no more points
     lists.sq[j] = all ? kInfinity : found.distance_sq[k - 1];
@@ -110,7 +120,17 @@ NearestLists<scalar_t<C>> nearest_lists(const C& cloud, const NeighborhoodGrid<s
     }
     const std::lock_guard<std::mutex> lock(far_mutex);
     lists.far.push_back(static_cast<Index>(j));
-    lists.far.insert(lists.far.end(), found.ids, found.ids + found.size);
+    if (found.x == grid.x().data()) {
+      lists.far.insert(lists.far.end(), found.at, found.at + found.size);
+    } else {  // found in the cloud
+      if (stored.empty()) {
+        stored.resize(agrisee::size(cloud));
+        for (std::size_t i = 0; i < grid.stored(); ++i)
+          stored[static_cast<std::size_t>(grid.ids()[i])] = static_cast<Index>(i);
+      }
+      std::transform(found.ids, found.ids + found.size, std::back_inserter(lists.far),
+                     [&](Index id) { return stored[static_cast<std::size_t>(id)]; });
+    }
     lists.far.resize(lists.far.size() + (k - found.size), -1);
   };
   for_stored_neighborhoods(cloud, near, k, kInfinity, threads, keep);
@@ -165,23 +185,23 @@ Labels nearest_regions(const C& cloud, const std::vector<Vector3<scalar_t<C>>>& 
     };
   });
   if (!lists.far.empty()) {
-    std::vector<Index> place(size, 0);  // of the cloud's points among the stored ones
-    for (std::size_t j = 0; j < n; ++j) place[static_cast<std::size_t>(ids[j])] = static_cast<Index>(j);
     const auto join_far = [&](std::size_t f) {
       const auto i = static_cast<std::size_t>(lists.far[f * (k + 1)]);
       if (!member(i)) return;
       for (std::size_t at = f * (k + 1) + 1; at < (f + 1) * (k + 1) && lists.far[at] >= 0; ++at)
-        join_smooth(i, static_cast<std::size_t>(place[static_cast<std::size_t>(lists.far[at])]));
+        join_smooth(i, static_cast<std::size_t>(lists.far[at]));
     };
     parallel_for(lists.far.size() / (k + 1), threads, join_far, 256);
   }
   lists = {0, 0};  // its memory
 
-  const auto earlier = [&](std::size_t i, std::size_t j) {
-    return earlier_seed(static_cast<std::size_t>(ids[i]), static_cast<std::size_t>(ids[j]), params.seeds_by_curvature,
-                        curvatures);
+  std::vector<S> curvature(params.seeds_by_curvature ? n : 0);  // of the stored points
+  const auto gather = [&](std::size_t j) { curvature[j] = curvatures[static_cast<std::size_t>(ids[j])]; };
+  parallel_for(curvature.size(), threads, gather, 4096);
+  const auto key_of = [&](std::size_t j) {
+    return std::make_pair(seed_key(j, params.seeds_by_curvature, curvature).first, ids[j]);
   };
-  const auto [regions, created] = reached_sets(sets, n, edges, member, earlier);
+  const auto [regions, created] = reached_sets(sets, n, edges, member, key_of);
   Labels labels(size, 0);
   const auto label = [&, &of_roots = regions](std::size_t j) {
     if (member(j))

@@ -8,7 +8,7 @@
 #pragma once
 
 #include <agrisee/cloud/parameters.hpp>
-#include <agrisee/core/all_neighbors.hpp>
+#include <agrisee/core/neighbor_lists.hpp>
 #include <agrisee/geometry/pca.hpp>
 
 namespace agrisee {

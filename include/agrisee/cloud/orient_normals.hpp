@@ -11,7 +11,7 @@
 /// bytes a point.
 #pragma once
 
-#include <agrisee/core/all_neighbors.hpp>
+#include <agrisee/core/neighbor_lists.hpp>
 
 #include <cmath>
 

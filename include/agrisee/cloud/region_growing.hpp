@@ -12,6 +12,7 @@
 
 #include <agrisee/cloud/connected_regions.hpp>
 #include <agrisee/cloud/nearest_regions.hpp>
+#include <agrisee/core/neighbor_lists.hpp>
 
 namespace agrisee {
 

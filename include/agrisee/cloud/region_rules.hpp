@@ -13,6 +13,7 @@
 #include <cstdint>
 #include <limits>
 #include <numeric>
+#include <utility>
 
 namespace agrisee {
 namespace detail {
@@ -28,14 +29,11 @@ inline void drop_small_regions(Labels& labels, int regions, int min_size) {
   for (int& label : labels) label = renumbered[static_cast<std::size_t>(label)];
 }
 
-/// Whether point a may become a seed before point b: by rising curvature, points of none last, then by index.
+/// What seeds are sorted by: rising curvature where that is asked for, points of none last, then the index i.
 template <typename S>
-bool earlier_seed(std::size_t a, std::size_t b, bool by_curvature, const std::vector<S>& curvatures) {
-  if (!by_curvature) return a < b;
-  const auto key = [&](std::size_t i) {
-    return std::isnan(curvatures[i]) ? std::numeric_limits<S>::infinity() : curvatures[i];
-  };
-  return key(a) < key(b) || (key(a) == key(b) && a < b);
+std::pair<S, Index> seed_key(std::size_t i, bool by_curvature, const std::vector<S>& curvatures) {
+  const S curvature = by_curvature ? curvatures[i] : S(0);
+  return {std::isnan(curvature) ? std::numeric_limits<S>::infinity() : curvature, static_cast<Index>(i)};
 }
 
 /// The points in the order in which they may become seeds.
@@ -45,7 +43,8 @@ Indices seed_order(std::size_t n, bool by_curvature, const std::vector<S>& curva
   std::iota(order.begin(), order.end(), Index(0));
   if (by_curvature)
     std::stable_sort(order.begin(), order.end(), [&](Index a, Index b) {
-      return earlier_seed(static_cast<std::size_t>(a), static_cast<std::size_t>(b), true, curvatures);
+      return seed_key(static_cast<std::size_t>(a), true, curvatures) <
+             seed_key(static_cast<std::size_t>(b), true, curvatures);
     });
   return order;
 }

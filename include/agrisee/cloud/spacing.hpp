@@ -4,7 +4,8 @@
 /// fixed millimetres.
 #pragma once
 
-#include <agrisee/core/all_neighbors.hpp>
+#include <agrisee/core/grid.hpp>
+#include <agrisee/core/typical_distance.hpp>
 #include <agrisee/geometry/pca.hpp>
 
 #include <algorithm>

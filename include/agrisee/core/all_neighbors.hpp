@@ -8,94 +8,16 @@
 /// lists but those returned.
 #pragma once
 
-#include <agrisee/core/kdtree.hpp>
-#include <agrisee/core/neighborhood.hpp>
+#include <agrisee/core/far_neighbors.hpp>
 #include <agrisee/core/tiles.hpp>
+#include <agrisee/core/typical_distance.hpp>
 
 #include <numeric>
-#include <optional>
 #include <tuple>
 
 namespace agrisee {
 
 namespace detail {
-
-/// Median, over a few points of the cloud, of the distance (m) to the k-th nearest, judged by a share of the points;
-/// points with that many duplicates do not count. 1 where there are no others.
-template <typename C>
-scalar_t<C> typical_distance(const C& cloud, std::size_t k, int threads = 1) {
-  using S = scalar_t<C>;
-  constexpr std::size_t kSamples = 16;
-  const std::size_t n = agrisee::size(cloud), share = std::max<std::size_t>(1, k / 4);
-  std::vector<Vector3<S>> some;
-  for (std::size_t i = 0; i < n; i += share)
-    if (is_finite(point(cloud, i))) some.push_back(point(cloud, i));
-  const auto nth = [](std::vector<S>& values, std::size_t rank) {
-    const auto at = values.begin() + static_cast<std::ptrdiff_t>(std::min(rank, values.size() - 1));
-    std::nth_element(values.begin(), at, values.end());
-    return *at;
-  };
-  std::vector<S> found(std::min(kSamples, some.size()));
-  parallel_chunks(found.size(), threads, kSamples / 4, [&](std::size_t begin, std::size_t end) {
-    std::vector<S> distances(some.size());
-    for (std::size_t s = begin; s < end; ++s) {
-      throw_if_cancelled();
-      const Vector3<S> q = some[s * some.size() / kSamples];
-      for (std::size_t i = 0; i < some.size(); ++i) distances[i] = distance_sq<S>(some[i], q);
-      found[s] = std::sqrt(nth(distances, k / share));
-    }
-  });
-  std::vector<S> typical;
-  for (const S d : found)
-    if (d > 0 && std::isfinite(d)) typical.push_back(d);
-  return typical.empty() ? S(1) : nth(typical, typical.size() / 2);
-}
-
-/// Candidates for points whose neighbours are not in the next cells: a kd-tree of the occupied cells finds enough of
-/// them to hold k points, and all that might hold nearer ones.
-template <typename S>
-class FarCells {
- public:
-  explicit FarCells(const Grid<S>& grid) : grid_(grid), half_diagonal_(S(0.8661) * static_cast<S>(grid.cell())) {
-    grid.cells(0, grid.stored(), [&](const typename Grid<S>::Cell& c, std::size_t begin, std::size_t end) {
-      runs_.emplace_back(begin, end);
-      centers_.push_back(grid.center(c));
-    });
-    tree_.emplace(centers_);
-  }
-
-  /// Gather a tile that holds the k nearest points to q, or all those within `radius` (m).
-  void gather(const Vector3<S>& q, std::size_t k, S radius, Neighbors<S>& cells, Tile<S>& tile) const {
-    S reach = radius;         // no neighbour is farther
-    tree_->knn(q, k, cells);  // hold k points or more
-    std::size_t points = 0, enough = 0;
-    for (; enough < cells.size() && points < k; ++enough) points += size(cells[enough].index);
-    if (points >= k) reach = std::min(reach, cells[enough - 1].distance + half_diagonal_);
-    const S rounding = S(8) * std::numeric_limits<S>::epsilon() * (q.cwiseAbs().maxCoeff() + half_diagonal_);
-    const S far = S(1.001) * (reach + half_diagonal_) + rounding;
-    tile.clear();
-    if (!std::isfinite(S(4) * far * far)) {  // all are wanted, or too far for S to tell how far
-      tile.append(grid_, 0, grid_.stored());
-      return;
-    }
-    tree_->visit(q, far, [&](Index c, S) {
-      const auto& run = runs_[static_cast<std::size_t>(c)];
-      tile.append(grid_, run.first, run.second);
-    });
-  }
-
- private:
-  std::size_t size(Index c) const {
-    const auto& run = runs_[static_cast<std::size_t>(c)];
-    return run.second - run.first;
-  }
-
-  const Grid<S>& grid_;
-  S half_diagonal_;
-  std::vector<std::pair<std::size_t, std::size_t>> runs_;  // stored points of each occupied cell
-  std::vector<Vector3<S>> centers_;
-  std::optional<KdTree<S>> tree_;
-};
 
 /// body(j, neighbourhood) for those of the stored points [begin, end) of a cell that coincide with k - 1 others or
 /// more: all that lie at one place have the same neighbours. Sensors that write missing points as zeros make many of
@@ -106,7 +28,10 @@ void coinciding_neighborhoods(const Grid<S>& grid, std::size_t begin, std::size_
   std::vector<std::uint32_t> order(end - begin);
   std::iota(order.begin(), order.end(), static_cast<std::uint32_t>(begin));
   const auto place = [&](std::uint32_t j) { return std::make_tuple(grid.x()[j], grid.y()[j], grid.z()[j]); };
-  std::stable_sort(order.begin(), order.end(), [&](auto a, auto b) { return place(a) < place(b); });
+  sort_cancellably(order.begin(), order.end(), [&](auto a, auto b) {
+    const auto p = place(a), q = place(b);
+    return p < q || (p == q && a < b);
+  });
   const std::vector<S> zeros(k, S(0));
   Indices ids(k);
   for (auto group = order.begin(); group != order.end();) {
@@ -116,6 +41,7 @@ void coinciding_neighborhoods(const Grid<S>& grid, std::size_t begin, std::size_
       const Neighborhood<S> near{k,      zeros.data(), ids.data(), grid.x().data(), grid.y().data(), grid.z().data(),
                                  &*group};
       for (; group != next; ++group) {
+        if ((*group & 0xFFF) == 0) throw_if_cancelled();
         body(*group, near);
         done[*group] = 1;
       }
@@ -178,7 +104,7 @@ struct NeighborhoodGrid {
   /// @param threads the result does not depend on it
   template <typename C>
   NeighborhoodGrid(const C& cloud, std::size_t k, S radius, int threads)
-      : typical(typical_distance(cloud, k, agrisee::size(cloud) < 50000 ? 1 : threads)),
+      : typical(typical_distance(cloud, k, agrisee::size(cloud) < 500000 ? 1 : threads)),
         grid(cloud, radius > 0 ? std::min(S(1.25) * typical, S(1.00001) * radius) : S(1.25) * typical, threads) {}
 
   S typical;     ///< distance of the k-th nearest (m)
@@ -197,14 +123,10 @@ void for_stored_neighborhoods(const C& cloud, const NeighborhoodGrid<scalar_t<C>
   if (!left.far.empty()) {
     const FarCells<S> cells(grid);
     parallel_chunks(left.far.size(), threads, 64, [&](std::size_t begin, std::size_t end) {
-      Tile<S> tile;
-      Neighbors<S> scratch;
-      TileNearest<S> nearest(grid, k, near.typical);
+      FarNearest<S> nearest(cells, k);
       for (std::size_t f = begin; f < end; ++f) {
         const auto j = static_cast<std::size_t>(left.far[f]);
-        const Vector3<S> q = grid.stored_point(j);
-        cells.gather(q, k, radius, scratch, tile);
-        body(j, nearest(tile, q, radius), 0);
+        body(j, nearest(grid.stored_point(j), radius), 0);
       }
     });
   }
@@ -232,33 +154,6 @@ void for_each_neighborhood(const C& cloud, std::size_t k, scalar_t<C> radius, in
   detail::for_stored_neighborhoods(
       cloud, near, k, radius, threads,
       [&](std::size_t j, const Neighborhood<S>& neighborhood, int) { body(near.grid.ids()[j], neighborhood); });
-}
-
-/// The k nearest points of every point of a cloud, computed once for several stages.
-struct NeighborLists {
-  std::size_t k = 0;  ///< neighbours a point
-  Indices ids;        ///< k a point, nearest first, itself included; -1 where there are fewer and for points not finite
-
-  /// Number of points.
-  std::size_t size() const { return k == 0 ? 0 : ids.size() / k; }
-  /// f(j) for the neighbours j of point i, nearest first.
-  template <typename F>
-  void visit(std::size_t i, F&& f) const {
-    for (std::size_t j = i * k; j < (i + 1) * k && ids[j] >= 0; ++j) f(ids[j]);
-  }
-};
-
-/// The neighbour lists of a cloud, for k >= 1. 4 k bytes a point.
-template <typename C>
-NeighborLists nearest_neighbors(const C& cloud, std::size_t k, int threads = 1) {
-  using S = scalar_t<C>;
-  NeighborLists out{k, Indices(agrisee::size(cloud) * k, -1)};
-  for_each_neighborhood(cloud, k, std::numeric_limits<S>::infinity(), threads,
-                        [&](Index i, const Neighborhood<S>& near) {
-                          std::copy_n(near.ids, near.size,
-                                      out.ids.begin() + static_cast<std::ptrdiff_t>(static_cast<std::size_t>(i) * k));
-                        });
-  return out;
 }
 
 }  // namespace agrisee

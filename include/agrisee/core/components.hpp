@@ -29,6 +29,8 @@ class DisjointSets {
     }
     return i;
   }
+  /// Whether i is known to belong to `root`, at one look; false says nothing.
+  bool points_to(Index i, Index root) const { return parent(i) == root; }
   /// Join the sets of a and b; the root of both, unless another thread joins more at the same time.
   Index join(Index a, Index b) {
     for (;;) {
@@ -57,11 +59,20 @@ class DisjointSets {
 template <typename S, typename Member, typename Test>
 void join_neighbors(const Grid<S>& grid, const Stencil& stencil, int threads, DisjointSets& sets, const Member& member,
                     const Test& test) {
+  Stencil half;  // the cell's own row, then the others of one side: from the other side the rest is seen
+  for (const StencilRow& row : stencil)
+    if (row.dz < 0 || (row.dz == 0 && row.dy <= 0)) half.insert(half.begin(), row);
   for_cells(grid, threads, [&] {
     return [&, is = std::vector<std::uint8_t>(), hits = std::vector<std::uint32_t>()](
                const typename Grid<S>::Cell& cell, std::size_t first, std::size_t last) mutable {
       while (first < last && !member(first)) ++first;
       if (first == last) return;
+      const auto joined = [&](std::size_t begin, std::size_t end, Index root) {  // whether all members are, with `root`
+        for (std::size_t i = begin; i < end; ++i)
+          if (!sets.points_to(static_cast<Index>(i), root) && member(i) && sets.root(static_cast<Index>(i)) != root)
+            return false;
+        return true;
+      };
       const auto join_near = [&](std::size_t j, std::size_t begin, std::size_t end) {
         if (begin >= end) return;
         if (is.size() < end - begin) is.resize(end - begin), hits.resize(end - begin);
@@ -75,14 +86,15 @@ void join_neighbors(const Grid<S>& grid, const Stencil& stencil, int threads, Di
         Index mine = sets.root(static_cast<Index>(j));
         for (std::size_t i = 0; i < found; ++i) mine = sets.join(mine, static_cast<Index>(hits[i]));
       };
-      for (const StencilRow& row : stencil) {  // the other half of the pairs is seen from the other side
-        if (row.dz > 0 || (row.dz == 0 && row.dy > 0)) continue;
+      bool together = false;  // all members of the cell
+      for (const StencilRow& row : half) {
         const bool own = row.dz == 0 && row.dy == 0;
         const auto cells = [&](int reach) {
           return grid.run(cell[2] - reach, cell[2] + (own ? 0 : reach), cell[1] + row.dy, cell[0] + row.dz);
         };
         const auto [begin, end] = cells(row.outer);
         if (begin == end) continue;
+        if (together && joined(begin, end, sets.root(static_cast<Index>(first)))) continue;  // nothing is left to test
         auto inside = std::make_pair(end, end);
         if (row.inner >= 0) inside = cells(row.inner);
         if (inside.first == inside.second) inside = {end, end};
@@ -95,13 +107,14 @@ void join_neighbors(const Grid<S>& grid, const Stencil& stencil, int threads, Di
           join_near(j, begin, std::min(until, inside.first));
           join_near(j, inside.second, until);
         }
+        if (own) together = joined(first, last, sets.root(static_cast<Index>(first)));
       }
     };
   });
 }
 
-/// Number the sets of at least `min_size` members from 1, in the order of their members' least ranks. O(n) and a sort of
-/// these sets; 12 bytes an index.
+/// Number the sets of at least `min_size` members from 1, in the order of their members' least ranks. O(n) and a sort
+/// of these sets; 12 bytes an index.
 /// @param sets who belongs together
 /// @param n how many indices
 /// @param min_size sets with fewer members get no number
@@ -126,7 +139,8 @@ Labels number_sets(DisjointSets& sets, std::size_t n, std::size_t min_size, int 
     ++set.size;
   }
   for (std::size_t j = 0; j < n; ++j)
-    if (by_root[j].size > 0 && by_root[j].size >= min_size) numbered.emplace_back(by_root[j].least, static_cast<Index>(j));
+    if (by_root[j].size > 0 && by_root[j].size >= min_size)
+      numbered.emplace_back(by_root[j].least, static_cast<Index>(j));
   std::sort(numbered.begin(), numbered.end());
   Labels labels(n, 0);
   for (std::size_t c = 0; c < numbered.size(); ++c)

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// Neighbour search by a uniform grid (cell list): points sorted by cell, x fastest, so that the cells of a row lie
-/// side by side in memory and a query reads a few runs. Fastest for radii near the cell size. Build O(n), or
-/// O(n log n) where the cells are too many for a table (far outliers); memory the coordinates and an index a point,
-/// four bytes an occupied cell and two bits a cell.
+/// side by side in memory and a query reads a few runs. Fastest for radii near the cell size. Build O(n), by
+/// a table of cells or, where these are too many for one (far outliers), by a sort and hashing; memory the coordinates
+/// and an index a point, four bytes an occupied cell and two bits a cell.
 /// Queries for all points at once are several times as fast through tiles.hpp.
 #pragma once
 
@@ -12,6 +12,8 @@
 #include <agrisee/core/cloud.hpp>
 #include <agrisee/core/neighbors.hpp>
 #include <agrisee/core/parallel.hpp>
+#include <agrisee/core/radix_sort.hpp>
+#include <agrisee/core/sparse_cells.hpp>
 #include <agrisee/core/stencil.hpp>
 
 #include <array>
@@ -46,7 +48,7 @@ class Grid {
     inverse_ = 1.0 / cell_;
     for (int a = 0; a < 3; ++a) dims_[a] = static_cast<int>((all.max[a] - min_[a]) * inverse_) + 1;
     const double cells = double(dims_[0]) * double(dims_[1]) * double(dims_[2]);
-    dense_ = cells <= 32.0 * static_cast<double>(n) + 262144.0 && cells < 4294967295.0;  // keys have 32 bits
+    dense_ = cells <= 128.0 * static_cast<double>(n) + 262144.0 && cells < 4294967295.0;  // keys have 32 bits
     dense_ ? build_dense(cloud, n, static_cast<std::size_t>(cells), parts, threads) : build_sparse(cloud, n);
   }
 
@@ -113,7 +115,7 @@ class Grid {
 
   // What tiles.hpp reads: the finite points in the order in which they are stored, cell by cell.
 
-  using Cell = std::array<int, 3>;  ///< z, y, x: the order of the points
+  using Cell = SparseCells::Cell;  ///< z, y, x: the order of the points
 
   /// Number of stored points.
   std::size_t stored() const { return ids_.size(); }
@@ -226,7 +228,7 @@ class Grid {
 
   /// Where the cloud is divided for the threads: the first point of each part, and the end.
   std::vector<std::size_t> split(int threads) const {
-    constexpr std::size_t kWorthIt = 20000;
+    constexpr std::size_t kWorthIt = 10000;
     const std::size_t most = static_cast<std::size_t>(std::max(threads, 1));
     const std::size_t parts = std::clamp<std::size_t>(size_ / kWorthIt, 1, most);
     std::vector<std::size_t> out;
@@ -295,26 +297,42 @@ class Grid {
     table_.finish(n);
   }
 
+  /// The finite points in the order of their cells, then of their indices.
   template <typename C>
   void build_sparse(const C& cloud, std::size_t n) {
-    std::vector<std::pair<Cell, Index>> order;
-    order.reserve(n);
-    for (std::size_t i = 0; i < size_; ++i) {
-      const Vector3<S> p = point(cloud, i);
-      if (is_finite(p)) order.emplace_back(cell_of(p), static_cast<Index>(i));
-    }
-    detail::sort_cancellably(order.begin(), order.end());
     reserve(n);
-    for (std::size_t j = 0; j < n; ++j) {
+    std::size_t j = 0;
+    Cell last{-1, -1, -1};
+    const auto next = [&](Index index) {
       look_up(j);
-      const auto& [cell, i] = order[j];
-      if (cells_.empty() || cells_.back() != cell) {
-        cells_.push_back(cell);
-        starts_.push_back(static_cast<std::uint32_t>(j));
+      const auto i = static_cast<std::size_t>(index);
+      const Vector3<S> p = point(cloud, i);
+      const Cell cell = cell_of(p);
+      if (cell != last) sparse_.append(last = cell, static_cast<std::uint32_t>(j));
+      store(j++, p, i);
+    };
+    if (dims_.cast<double>().prod() < 9e18) {  // a number tells a cell
+      std::vector<Keyed> order;
+      order.reserve(n);
+      for (std::size_t i = 0; i < size_; ++i) {
+        look_up(i);
+        const Vector3<S> p = point(cloud, i);
+        const Cell c = cell_of(p);
+        if (is_finite(p)) order.push_back({key(c[2], c[1], c[0]), static_cast<Index>(i)});
       }
-      store(j, point(cloud, static_cast<std::size_t>(i)), static_cast<std::size_t>(i));
+      radix_sort(order);
+      for (const Keyed& one : order) next(one.index);
+    } else {
+      std::vector<std::pair<Cell, Index>> order;
+      order.reserve(n);
+      for (std::size_t i = 0; i < size_; ++i) {
+        const Vector3<S> p = point(cloud, i);
+        if (is_finite(p)) order.emplace_back(cell_of(p), static_cast<Index>(i));
+      }
+      detail::sort_cancellably(order.begin(), order.end());
+      for (const auto& one : order) next(one.second);
     }
-    starts_.push_back(static_cast<std::uint32_t>(n));
+    sparse_.finish(n);
   }
 
   /// body(begin, end) for each run of stored points that may lie within r of q, until it returns false.
@@ -341,9 +359,8 @@ class Grid {
       const auto [begin, end] = row(lo[0], hi[0], y, z);
       return begin == end || body(begin, end);
     };
-    if (!dense_ && double(hi[1] - lo[1] + 1) * double(hi[2] - lo[2] + 1) > double(cells_.size())) {
-      for (std::size_t c = 0; c < cells_.size(); ++c)  // fewer cells than rows: read them all
-        if (!body(starts_[c], starts_[c + 1])) return;
+    if (!dense_ && double(hi[1] - lo[1] + 1) * double(hi[2] - lo[2] + 1) > double(sparse_.blocks())) {
+      body(std::size_t(0), ids_.size());  // fewer blocks than rows: read them all
       return;
     }
     for (int z = lo[2]; z <= hi[2]; ++z) {
@@ -358,17 +375,13 @@ class Grid {
 
   std::pair<std::size_t, std::size_t> row(int x0, int x1, int y, int z) const {
     if (dense_) return {table_[key(x0, y, z)], table_[key(x1, y, z) + 1]};
-    const auto first = std::lower_bound(cells_.begin(), cells_.end(), Cell{z, y, x0});
-    const auto last = std::upper_bound(first, cells_.end(), Cell{z, y, x1});
-    return {starts_[static_cast<std::size_t>(first - cells_.begin())],
-            starts_[static_cast<std::size_t>(last - cells_.begin())]};
+    return sparse_.run(x0, x1, y, z);
   }
 
-  std::vector<S> x_, y_, z_;           // the points, sorted by cell, then by index
-  std::vector<Index> ids_;             // their index in the cloud
-  CellStarts table_;                   // where the cells begin,
-  std::vector<Cell> cells_;            // or, where these are too many, the occupied cells
-  std::vector<std::uint32_t> starts_;  // and where they begin, and the end
+  std::vector<S> x_, y_, z_;  // the points, sorted by cell, then by index
+  std::vector<Index> ids_;    // their index in the cloud
+  CellStarts table_;          // where the cells begin,
+  SparseCells sparse_;        // or, where these are too many, the occupied ones
   Eigen::Vector3d min_;
   double cell_ = 1.0, inverse_ = 1.0;
   Eigen::Vector3i dims_ = Eigen::Vector3i::Ones();

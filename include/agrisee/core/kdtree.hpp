@@ -48,8 +48,7 @@ class KdTree {
       search(result, q);
       if (!std::isfinite(result.nearest.worst_sq())) {  // squares overflow, and the tree's bounds with them: try all
         out.clear();
-        for (std::size_t i = 0; i < data_->points.size(); ++i)
-          result.addPoint(distance_sq<S>(data_->points[i], q), i);
+        for (std::size_t i = 0; i < data_->points.size(); ++i) result.addPoint(distance_sq<S>(data_->points[i], q), i);
       }
     }
     result.nearest.finish();
@@ -74,8 +73,19 @@ class KdTree {
   /// Calls f for all points within r; see neighbors.hpp.
   template <typename F>
   void visit(const Vector3<S>& q, S r, F&& f) const {
-    if (!(r >= 0) || !searchable(q)) return;
-    VisitResult<F> result{r * r, f, data_->ids, 0};
+    const S r_sq = r * r;
+    const auto inside = [&](Index i, S d_sq) {
+      if (d_sq <= r_sq) f(i, d_sq);
+    };
+    if (r >= 0) approach(q, r_sq, inside);
+  }
+
+  /// f(i, squared distance) for points i, those of near branches first; all whose squared distance is at most
+  /// `limit_sq` (m2) are among them. f may lower the limit.
+  template <typename F>
+  void approach(const Vector3<S>& q, const S& limit_sq, F&& f) const {
+    if (!searchable(q)) return;
+    VisitResult<F> result{limit_sq, f, data_->ids};
     search(result, q);
   }
 
@@ -93,7 +103,9 @@ class KdTree {
   using Tree = nanoflann::KDTreeSingleIndexAdaptor<nanoflann::L2_Simple_Adaptor<S, Data>, Data, 3>;
 
   // nanoflann prunes with bounds that carry rounding errors; a slightly larger "worst" keeps exact ties in.
-  static S padded(S d_sq) { return d_sq * (S(1) + S(64) * std::numeric_limits<S>::epsilon()) + std::numeric_limits<S>::min(); }
+  static S padded(S d_sq) {
+    return d_sq * (S(1) + S(64) * std::numeric_limits<S>::epsilon()) + std::numeric_limits<S>::min();
+  }
 
   // What nanoflann calls result sets; from 1.6 on it asks each for its two types.
   using TreeIndex = std::uint32_t;
@@ -133,21 +145,17 @@ class KdTree {
   struct VisitResult {
     using DistanceType = S;
     using IndexType = TreeIndex;
-    S r_sq;
+    const S& limit_sq;
     F& f;
     const std::vector<Index>& ids;
-    std::size_t found;
     bool full() const { return true; }
-    S worstDist() const { return padded(r_sq); }
-    std::size_t size() const { return found; }
-    bool empty() const { return found == 0; }
+    S worstDist() const { return padded(limit_sq); }
+    std::size_t size() const { return 0; }
+    bool empty() const { return false; }
     void sort() {}
     template <typename I>
     bool addPoint(S d_sq, I i) {
-      if (d_sq <= r_sq) {
-        ++found;
-        f(ids.empty() ? static_cast<Index>(i) : ids[static_cast<std::size_t>(i)], d_sq);
-      }
+      f(ids.empty() ? static_cast<Index>(i) : ids[static_cast<std::size_t>(i)], d_sq);
       return true;
     }
   };

@@ -18,7 +18,7 @@ struct Neighborhood {
   std::size_t size = 0;               ///< number of neighbours
   const S* distance_sq = nullptr;     ///< m2
   const Index* ids = nullptr;         ///< in the cloud
-  const S* x = nullptr;               ///< x of neighbour i is x[at[i]] (m)
+  const S* x = nullptr;               ///< x of neighbour i is x[at[i]] (m); may be the grid's own
   const S* y = nullptr;               ///< y likewise
   const S* z = nullptr;               ///< and z
   const std::uint32_t* at = nullptr;  ///< where neighbour i is among them

@@ -3,6 +3,7 @@
 /// Sorts points by cell in time linear in their number: least significant digits first, 11 bits a pass.
 #pragma once
 
+#include <agrisee/core/cancellation.hpp>
 #include <agrisee/core/types.hpp>
 
 #include <algorithm>
@@ -19,6 +20,7 @@ struct Keyed {
 };
 
 /// Sort by key; equal keys keep their order. Cost O(n) a pass, one pass for each 11 bits of the largest key.
+/// @throws Cancelled
 inline void radix_sort(std::vector<Keyed>& items) {
   constexpr unsigned kBits = 11;
   constexpr std::uint64_t kMask = (1u << kBits) - 1;
@@ -27,6 +29,7 @@ inline void radix_sort(std::vector<Keyed>& items) {
   std::vector<Keyed> sorted(items.size());
   std::array<std::size_t, kMask + 1> starts;
   for (unsigned shift = 0; shift < 64 && largest >> shift != 0; shift += kBits) {
+    throw_if_cancelled();
     starts.fill(0);
     for (const Keyed& item : items) ++starts[item.key >> shift & kMask];
     std::size_t sum = 0;

@@ -7,7 +7,9 @@
 #include <agrisee/core/grid.hpp>
 #include <agrisee/core/parallel.hpp>
 
+#include <algorithm>
 #include <cstring>
+#include <numeric>
 
 namespace agrisee {
 
@@ -78,7 +80,9 @@ void list_places(const Grid<S>& grid, const typename Grid<S>::Cell& c, const Ste
   out.clear();
   for (const StencilRow& row : stencil) {
     const auto [begin, end] = grid.run(c[2] - row.outer, c[2] + row.outer, c[1] + row.dy, c[0] + row.dz);
-    for (std::size_t j = begin; j < end; ++j) out.push_back(static_cast<std::uint32_t>(j));
+    const std::size_t size = out.size();
+    out.resize(size + (end - begin));
+    std::iota(out.begin() + static_cast<std::ptrdiff_t>(size), out.end(), static_cast<std::uint32_t>(begin));
   }
 }
 
@@ -86,7 +90,10 @@ void list_places(const Grid<S>& grid, const typename Grid<S>::Cell& c, const Ste
 /// [begin, end), on up to `threads` threads. A body writes only what belongs to its own points.
 template <typename S, typename Make>
 void for_cells(const Grid<S>& grid, int threads, Make&& make) {
-  parallel_chunks(grid.stored(), threads, 2048, [&](std::size_t begin, std::size_t end) {
+  // Some sixteen chunks a thread: the last ones to end are short.
+  const std::size_t chunk =
+      std::clamp<std::size_t>(grid.stored() / (16 * std::size_t(std::max(threads, 1))), 256, 2048);
+  parallel_chunks(grid.stored(), threads, chunk, [&](std::size_t begin, std::size_t end) {
     auto body = make();
     grid.cells(begin, end, [&](const typename Grid<S>::Cell& cell, std::size_t first, std::size_t last) {
       throw_if_cancelled();  // a cell may be crowded

@@ -94,31 +94,30 @@ class Bvh {
 inline Bvh::Bvh(const Mesh& mesh, int threads) {
   const std::size_t n = mesh.triangles.size();
   check_input(n < std::numeric_limits<std::uint32_t>::max(), "bvh: too many triangles");
-  std::vector<detail::BvhItem> items;
-  items.reserve(n);
   const auto corners = [&](std::size_t i) -> Triangle {
     const auto& t = mesh.triangles[i];
     return {mesh.vertices[t[0]], mesh.vertices[t[1]], mesh.vertices[t[2]]};
   };
-  for (std::size_t i = 0; i < n; ++i) {
+  for (std::size_t i = 0; i < n; ++i)
     for (const std::uint32_t vertex : mesh.triangles[i])
       if (vertex >= mesh.vertices.size())
         throw InputError("bvh: triangle " + std::to_string(i) + " names vertex " + std::to_string(vertex) + " of " +
                          std::to_string(mesh.vertices.size()));
+  constexpr std::size_t kChunk = 4096;
+  std::vector<detail::BvhItem> items(n);
+  const auto make_item = [&](std::size_t i) {
     const Triangle t = corners(i);
-    if (!is_finite(t[0]) || !is_finite(t[1]) || !is_finite(t[2]) || area_normal(t).isZero(0.0)) {
-      ++degenerate_;
-      continue;
-    }
-    items.push_back(detail::BvhItem(t, static_cast<std::uint32_t>(i)));
-  }
+    if (is_finite(t[0]) && is_finite(t[1]) && is_finite(t[2]) && !area_normal(t).isZero(0.0))
+      items[i] = detail::BvhItem(t, static_cast<std::uint32_t>(i));
+  };
+  parallel_for(n, threads, make_item, kChunk);
+  items.erase(std::remove_if(items.begin(), items.end(), [](const auto& item) { return item.empty(); }), items.end());
+  degenerate_ = n - items.size();
   nodes_ = detail::build_bvh(items, threads);
-  triangles_.reserve(items.size());
-  ids_.reserve(items.size());
-  for (const detail::BvhItem& item : items) {
-    triangles_.push_back(corners(item.triangle));
-    ids_.push_back(item.triangle);
-  }
+  triangles_.resize(items.size());
+  ids_.resize(items.size());
+  const auto place = [&](std::size_t i) { triangles_[i] = corners(ids_[i] = items[i].triangle); };
+  parallel_for(items.size(), threads, place, kChunk);
 }
 
 inline Aabb Bvh::bounds() const {

@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <numeric>
 #include <utility>
 #include <vector>
 
@@ -46,13 +47,16 @@ struct BvhBox {
   }
 };
 
-/// A triangle while the tree is built.
+/// A triangle while the tree is built, or none.
 struct BvhItem {
+  static constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
   BvhBox box;
-  std::uint32_t triangle;
+  std::uint32_t triangle = kNone;
+  BvhItem() = default;
   BvhItem(const Triangle& t, std::uint32_t index) : triangle(index) {
     for (const Eigen::Vector3f& p : t) box.extend(Eigen::Array4f(p[0], p[1], p[2], 0.0f));
   }
+  bool empty() const { return triangle == kNone; }
   Eigen::Array4f center() const { return 0.5f * box.min + 0.5f * box.max; }
 };
 
@@ -229,7 +233,8 @@ void grow_bvh(std::vector<BvhNode>& nodes, std::vector<BvhItem>& items, const Bv
 /// The nodes of a tree over `items`, which are put into the order of the leaves. No items: no nodes.
 /// @param threads the result does not depend on it
 inline std::vector<BvhNode> build_bvh(std::vector<BvhItem>& items, int threads) {
-  constexpr std::size_t kSubtree = 8192;  // ranges of at most so many are independent pieces of work
+  // Ranges of at most so many are independent pieces of work: levels above them are on one thread.
+  const std::size_t subtree = std::max<std::size_t>(8192, items.size() / 6);
   std::vector<BvhNode> nodes;
   if (items.empty()) return nodes;
   nodes.reserve(items.size());
@@ -238,7 +243,7 @@ inline std::vector<BvhNode> build_bvh(std::vector<BvhItem>& items, int threads) 
   for (const BvhItem& item : items) whole.range.push(item);
   std::vector<BvhTask> roots;
   grow_bvh(nodes, items, whole, [&](const BvhTask& task) {
-    if (task.range.size() > kSubtree) return false;
+    if (task.range.size() > subtree) return false;
     roots.push_back(task);
     return true;
   });
@@ -248,7 +253,12 @@ inline std::vector<BvhNode> build_bvh(std::vector<BvhItem>& items, int threads) 
     subtrees[r].emplace_back();
     grow_bvh(subtrees[r], items, {roots[r].range, 0, roots[r].depth}, [](const BvhTask&) { return false; });
   };
-  parallel_for(roots.size(), threads, grow, 1);
+  std::vector<std::size_t> order(roots.size());  // the largest first, that all threads end at about the same time
+  std::iota(order.begin(), order.end(), std::size_t(0));
+  std::stable_sort(order.begin(), order.end(),
+                   [&](std::size_t a, std::size_t b) { return roots[a].range.size() > roots[b].range.size(); });
+  parallel_for(
+      roots.size(), threads, [&](std::size_t i) { grow(order[i]); }, 1);
   for (std::size_t r = 0; r < roots.size(); ++r) {
     const auto shift = static_cast<std::uint32_t>(nodes.size() - 1);  // of all but the root, whose place is there
     for (BvhNode& node : subtrees[r])

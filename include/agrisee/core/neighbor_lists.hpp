@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// @file
+/// Lists of the nearest points of all points of a cloud, for stages that read neighbourhoods more than once.
+#pragma once
+
+#include <agrisee/core/all_neighbors.hpp>
+
+namespace agrisee {
+
+/// The k nearest points of every point of a cloud, computed once for several stages.
+struct NeighborLists {
+  std::size_t k = 0;  ///< neighbours a point
+  Indices ids;        ///< k a point, nearest first, itself included; -1 where there are fewer and for points not finite
+
+  /// Number of points.
+  std::size_t size() const { return k == 0 ? 0 : ids.size() / k; }
+  /// f(j) for the neighbours j of point i, nearest first.
+  template <typename F>
+  void visit(std::size_t i, F&& f) const {
+    for (std::size_t j = i * k; j < (i + 1) * k && ids[j] >= 0; ++j) f(ids[j]);
+  }
+};
+
+/// The neighbour lists of a cloud, for k >= 1. 4 k bytes a point.
+template <typename C>
+NeighborLists nearest_neighbors(const C& cloud, std::size_t k, int threads = 1) {
+  using S = scalar_t<C>;
+  constexpr S kInfinity = std::numeric_limits<S>::infinity();
+  NeighborLists out{k, Indices(agrisee::size(cloud) * k, -1)};
+  const detail::NeighborhoodGrid<S> near(cloud, k, kInfinity, threads);
+  const Indices& ids = near.grid.ids();
+  const auto list = [&](std::size_t j) { return out.ids.data() + static_cast<std::size_t>(ids[j]) * k; };
+  detail::for_stored_neighborhoods(
+      cloud, near, k, kInfinity, threads,
+      [&](std::size_t j, const Neighborhood<S>& found, int) { std::copy_n(found.ids, found.size, list(j)); });
+  return out;
+}
+
+}  // namespace agrisee
