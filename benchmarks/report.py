@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Runs the benchmark programs and writes docs/benchmarks.md: report.py BUILD_DIR OUTPUT.md [--large]
 
-Wall time on an otherwise idle machine, medians of five runs that are taken in random order, so that slow spells hit all alike.
+Wall time on an otherwise idle machine, medians of runs that are taken in random order, so that slow spells hit all alike.
 --large adds the peers on 1.5 million points (half an hour); without it only ours are run there.
 """
 import json
@@ -39,7 +39,7 @@ def output_of(*command):
         return ""
 
 
-def run(program, pattern, repetitions=5):
+def run(program, pattern, repetitions):
     """The medians of a program's runs that match: name -> (ms of wall time, peak MB)."""
     done = subprocess.run([str(program), "--benchmark_format=json", f"--benchmark_repetitions={repetitions}",
                            "--benchmark_min_time=0.1", "--benchmark_report_aggregates_only=true",
@@ -116,12 +116,13 @@ def compile_time():
 
 def main():
     build, target, large = pathlib.Path(sys.argv[1]), pathlib.Path(sys.argv[2]), "--large" in sys.argv
+    repetitions = 3 if large else 5
     results = {}
     for program in sorted(build.glob("benchmarks/peers/peers_*")):
         if not program.is_file() or not program.stat().st_mode & 0o100:
             continue
         print(program.name, file=sys.stderr)
-        results.update(run(program, ".*" if large else "-/1500000/"))
+        results.update(run(program, ".*" if large else "-/1500000/", repetitions))
         if not large:
             results.update(run(program, "ours/1500000/", 3))
     own = {}
@@ -133,8 +134,8 @@ def main():
     text = ["# Benchmarks", "", "Written by `make bench`" + (" `LARGE=1`" if large else "") + " at " +
             output_of("git", "-C", str(ROOT), "rev-parse", "--short", "HEAD") + ".", "", machine(), "",
             "All libraries get the very same cloud, a noisy truss, in the same process, and the answers are compared"
-            " before anything is timed; times of one row come from one program. Wall time, medians of five runs (of three at"
-            " 1.5 million points and of our stages alone) in random order. \"Fastest peer\" is the fastest of PCL, Open3D, nanoflann and Embree that has the"
+            " before anything is timed; times of one row come from one program. Wall time in random order, medians of"
+            f" {repetitions} runs (of 3 at 1.5 million points and of our stages alone). \"Fastest peer\" is the fastest of PCL, Open3D, nanoflann and Embree that has the"
             " stage. Only the ratios travel to other machines.", "", comparison(results)]
     text += ["", f"`examples/01_process_cloud.cpp`, the README's ten lines, compiles in {compiled:.1f} s with"
              f" `agrisee::compiled`, in {headers:.1f} s with the headers alone (`-O2`)."]

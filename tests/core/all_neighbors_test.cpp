@@ -104,6 +104,45 @@ TEST_CASE("neighbours whose squared distances overflow are taken in the order of
   }
 }
 
+TEST_CASE("strays are found where the squares of cells nearly overflow") {
+  const auto check = [](double cell, auto scalar) {
+    using S = decltype(scalar);
+    shapes::Points<S> cloud;
+    const auto add = [&](double x, double y, double z) {
+      cloud.push_back(Vector3<S>((Eigen::Vector3d(x, y, z) * cell).cast<S>()));
+    };
+    for (int i = 0; i < 40; ++i) add(0.8 * i, 0, 0);
+    add(9.91555, 2.91555, 3.5);
+    add(9.73777, 2.91555, 3.5);
+    add(10.00444, 3.00444, 3.5);
+    check_nearest<S>(cloud, 2, std::numeric_limits<S>::infinity());
+  };
+  check(2.25e19, 1.0f);
+  check(2.25e154, 1.0);
+}
+
+TEST_CASE("neighbours at distances whose squares vanish or have few digits") {
+  shapes::Points<float> cloud;
+  for (int i = 0; i < 3000; ++i) cloud.emplace_back(i % 2 ? 1e-30f : 0.0f, 0.0f, 0.0f);  // two places, all squares 0
+  check_nearest<float>(cloud, 5, std::numeric_limits<float>::infinity());
+  Rng rng(2);
+  for (const double scale : {3e-22, 1e-21, 1e-20}) {
+    cloud.clear();
+    for (int i = 0; i < 500; ++i)
+      cloud.push_back((scale * Eigen::Vector3d(rng.uniform(), rng.uniform(), rng.uniform())).cast<float>());
+    check_nearest<float>(cloud, 5, std::numeric_limits<float>::infinity());
+  }
+}
+
+TEST_CASE("a radius means the same in a crowd as elsewhere") {
+  const float radius = 0.0145148365f;  // the second point is farther by the last digit of its square
+  shapes::Points<float> cloud{{0.0f, 0.0f, 0.0f}, {0.00614649896f, 0.0131491842f, 0.0f}};
+  Rng rng(1);
+  for (int i = 0; i < 1500; ++i) cloud.push_back((rng.direction() * 1.4 * double(radius)).cast<float>());
+  for (int i = 0; i < 3000; ++i) cloud.emplace_back(5.0f * radius * static_cast<float>(i + 1), 0.0f, 0.0f);
+  check_nearest<float>(cloud, 5, radius);
+}
+
 TEST_CASE("all neighbourhoods at once equal brute force") {
   const std::string kind = GENERATE(from_range(shapes::cloud_kinds()));
   INFO(kind);

@@ -3,6 +3,7 @@
 #include <agrisee/core/random.hpp>
 #include <agrisee/core/sparse_cells.hpp>
 
+#include <algorithm>
 #include <set>
 
 #include "catch.hpp"

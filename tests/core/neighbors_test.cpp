@@ -101,6 +101,43 @@ TEST_CASE("searches take any cloud that meets the traits") {
   CHECK(a == b);
 }
 
+TEST_CASE("a kd-tree finds all where its bounds overflow but the answer does not") {
+  Rng rng(5);
+  for (const double scale : {1e19, 2e19, 3e19}) {
+    Points<float> cloud;
+    for (int i = 0; i < 60; ++i)
+      cloud.push_back((scale * Eigen::Vector3d(rng.uniform(), rng.uniform(), rng.uniform())).cast<float>());
+    const KdTree<float> tree(cloud);
+    Neighbors<float> found;
+    for (const auto& q : cloud) {
+      tree.knn(q, 7, found);
+      auto expected = brute<float>(cloud, q, std::numeric_limits<float>::infinity());
+      expected.resize(7);
+      CHECK(found == expected);
+      for (const float r : {1.5e19f, 1.8e19f, 2e19f}) {
+        expected = brute<float>(cloud, q, r * r);
+        CHECK(tree.count(q, r) == expected.size());
+        CHECK(tree.count(q, r, 3) == std::min<std::size_t>(3, expected.size()));
+        tree.radius(q, r, found);
+        CHECK(found == expected);
+      }
+    }
+  }
+}
+
+TEST_CASE("grids of next to no cells and of clouds as wide as numbers go") {
+  const Points<double> equal(3000, {0.1, 0.2, 0.3});
+  const Grid<double> tiny(equal, std::numeric_limits<double>::min());
+  CHECK(tiny.count(equal[0], 0.0) == 3000);
+  const Points<double> wide{{-1.5e308, 0, 0}, {0, 0, 0}, {1.5e308, 0, 0}};
+  CHECK_THROWS_AS(Grid<double>(wide, 1.0), InputError);
+  Points<float> line;  // far fewer points than cells, one of them no point
+  for (int i = 0; i < 300; ++i) line.emplace_back(0.01f * static_cast<float>(i), 0.0f, 0.0f);
+  line[7].x() = std::nanf("");
+  line.emplace_back(1e3f, 1e3f, 1e3f);
+  check_search<float>(line, Grid<float>(line, 0.01f), 0.02f);
+}
+
 TEST_CASE("a search refuses a cell size that is no size") {
   CHECK_THROWS_AS(Grid<float>(std::vector<Eigen::Vector3f>(3), 0.0f), ParameterError);
   CHECK_THROWS_AS(Grid<float>(std::vector<Eigen::Vector3f>(3), std::nanf("")), ParameterError);

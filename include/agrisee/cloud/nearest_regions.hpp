@@ -138,7 +138,7 @@ NearestLists<scalar_t<C>> nearest_lists(const C& cloud, const NeighborhoodGrid<s
 }
 
 /// The regions where the k nearest neighbours grow. O(n k), and a sort of the edges of one direction between points
-/// that are not neighbours of each other; some 2 k + 40 bytes a point, 4 k for points that are crowded or astray.
+/// that are not neighbours of each other; some 2 k + 50 bytes a point, 4 k for points that are crowded or astray.
 template <typename C>
 Labels nearest_regions(const C& cloud, const std::vector<Vector3<scalar_t<C>>>& normals,
                        const RegionGrowingParameters& params, const std::vector<scalar_t<C>>& curvatures, int threads) {

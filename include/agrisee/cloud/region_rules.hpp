@@ -42,7 +42,7 @@ Indices seed_order(std::size_t n, bool by_curvature, const std::vector<S>& curva
   Indices order(n);
   std::iota(order.begin(), order.end(), Index(0));
   if (by_curvature)
-    std::stable_sort(order.begin(), order.end(), [&](Index a, Index b) {
+    sort_cancellably(order.begin(), order.end(), [&](Index a, Index b) {
       return seed_key(static_cast<std::size_t>(a), true, curvatures) <
              seed_key(static_cast<std::size_t>(b), true, curvatures);
     });

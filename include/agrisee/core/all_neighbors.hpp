@@ -4,8 +4,8 @@
 /// cell of a grid; the few whose neighbours are farther than the next cells look further by a kd-tree of the cells, and
 /// those in crowds by a kd-tree of the points. Answers are those of neighbors.hpp, whatever the number of threads.
 ///
-/// Any frame, metres. Cost O(n k) for evenly dense clouds, O(n k log n) for others; memory some 20 bytes a point and no
-/// lists but those returned.
+/// Any frame, metres. Cost O(n k) for evenly dense clouds, O(n k log n) for others; memory 20 to 50 bytes a
+/// point and no lists but those returned.
 #pragma once
 
 #include <agrisee/core/far_neighbors.hpp>
@@ -18,6 +18,17 @@
 namespace agrisee {
 
 namespace detail {
+
+/// Whether different points of a tile may have a squared distance of 0.
+template <typename S>
+bool squares_vanish(const Tile<S>& tile) {
+  const S tiny = S(4) * std::sqrt(std::numeric_limits<S>::denorm_min()) / std::numeric_limits<S>::epsilon();
+  const auto small = [&](const std::vector<S>& c) {
+    return std::any_of(c.begin(), c.begin() + static_cast<std::ptrdiff_t>(tile.size),
+                       [&](S x) { return x != 0 && std::abs(x) < tiny; });
+  };
+  return small(tile.x) || small(tile.y) || small(tile.z);
+}
 
 /// body(j, neighbourhood) for those of the stored points [begin, end) of a cell that coincide with k - 1 others or
 /// more: all that lie at one place have the same neighbours. Sensors that write missing points as zeros make many of
@@ -71,7 +82,7 @@ Left near_neighborhoods(const Grid<S>& grid, std::size_t k, S radius, S typical,
       for (int r = 1; r <= 2 && left > 0; ++r) {
         tile.gather(grid, cell, rings[r - 1]);
         if (tile.size > crowd) {
-          if (r == 1 && left > k)
+          if (r == 1 && left > k && !squares_vanish(tile))
             coinciding_neighborhoods(grid, begin, end, k, state,
                                      [&](std::size_t j, const Neighborhood<S>& near) { body(j, near, 0); });
           for (std::size_t j = begin; j < end; ++j)
@@ -83,7 +94,10 @@ Left near_neighborhoods(const Grid<S>& grid, std::size_t k, S radius, S typical,
           const Vector3<S> q = grid.stored_point(j);
           const S reach = std::min(radius, static_cast<S>(grid.clearance(q, cell, r)));
           const Neighborhood<S>& near = nearest(tile, q, reach);
-          if (reach < radius && (near.size < k || !std::isfinite(reach * reach))) continue;
+          const S reach_sq = reach * reach;
+          const bool told =
+              std::isfinite(reach_sq) && reach_sq >= std::numeric_limits<S>::min();  // who is within reach
+          if (reach < radius && (near.size < k || !told)) continue;
           body(j, near, r);
           state[j] = kDone;
           --left;
@@ -125,6 +139,7 @@ void for_stored_neighborhoods(const C& cloud, const NeighborhoodGrid<scalar_t<C>
     parallel_chunks(left.far.size(), threads, 64, [&](std::size_t begin, std::size_t end) {
       FarNearest<S> nearest(cells, k);
       for (std::size_t f = begin; f < end; ++f) {
+        throw_if_cancelled();
         const auto j = static_cast<std::size_t>(left.far[f]);
         body(j, nearest(grid.stored_point(j), radius), 0);
       }
@@ -135,6 +150,7 @@ void for_stored_neighborhoods(const C& cloud, const NeighborhoodGrid<scalar_t<C>
     parallel_chunks(left.crowded.size(), threads, 64, [&](std::size_t begin, std::size_t end) {
       SearchNearest<S> nearest;
       for (std::size_t c = begin; c < end; ++c) {
+        throw_if_cancelled();
         const auto j = static_cast<std::size_t>(left.crowded[c]);
         body(j, nearest(cloud, tree, grid.stored_point(j), k, radius), 0);
       }

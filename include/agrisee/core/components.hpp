@@ -6,9 +6,11 @@
 
 #include <agrisee/core/tiles.hpp>
 
+#include <algorithm>
 #include <atomic>
 #include <limits>
 #include <utility>
+#include <vector>
 
 namespace agrisee {
 
@@ -62,8 +64,9 @@ void join_neighbors(const Grid<S>& grid, const Stencil& stencil, int threads, Di
   Stencil half;  // the cell's own row, then the others of one side: from the other side the rest is seen
   for (const StencilRow& row : stencil)
     if (row.dz < 0 || (row.dz == 0 && row.dy <= 0)) half.insert(half.begin(), row);
+  constexpr std::size_t kLook = 1 << 20;  // tests between looks for cancellation
   for_cells(grid, threads, [&] {
-    return [&, is = std::vector<std::uint8_t>(), hits = std::vector<std::uint32_t>()](
+    return [&, is = std::vector<std::uint8_t>(), hits = std::vector<std::uint32_t>(), tested = std::size_t(0)](
                const typename Grid<S>::Cell& cell, std::size_t first, std::size_t last) mutable {
       while (first < last && !member(first)) ++first;
       if (first == last) return;
@@ -75,6 +78,7 @@ void join_neighbors(const Grid<S>& grid, const Stencil& stencil, int threads, Di
       };
       const auto join_near = [&](std::size_t j, std::size_t begin, std::size_t end) {
         if (begin >= end) return;
+        if ((tested += end - begin) > kLook) throw_if_cancelled(), tested = 0;
         if (is.size() < end - begin) is.resize(end - begin), hits.resize(end - begin);
         test(j, begin, end, is.data());
         std::size_t found = 0;
@@ -133,6 +137,7 @@ Labels number_sets(DisjointSets& sets, std::size_t n, std::size_t min_size, int 
   std::vector<Set> by_root(n);
   std::vector<std::pair<Index, Index>> numbered;  // least rank, root
   for (std::size_t j = 0; j < n; ++j) {
+    if ((j & 0x3FFF) == 0) throw_if_cancelled();
     if (!member(j)) continue;
     Set& set = by_root[static_cast<std::size_t>(sets.root(static_cast<Index>(j)))];
     set.least = std::min(set.least, static_cast<Index>(rank(j)));
@@ -141,7 +146,7 @@ Labels number_sets(DisjointSets& sets, std::size_t n, std::size_t min_size, int 
   for (std::size_t j = 0; j < n; ++j)
     if (by_root[j].size > 0 && by_root[j].size >= min_size)
       numbered.emplace_back(by_root[j].least, static_cast<Index>(j));
-  std::sort(numbered.begin(), numbered.end());
+  detail::sort_cancellably(numbered.begin(), numbered.end());
   Labels labels(n, 0);
   for (std::size_t c = 0; c < numbered.size(); ++c)
     labels[static_cast<std::size_t>(numbered[c].second)] = static_cast<int>(c) + 1;

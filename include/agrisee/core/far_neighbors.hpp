@@ -9,6 +9,9 @@
 #include <agrisee/core/neighborhood.hpp>
 
 #include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <limits>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -20,19 +23,21 @@ template <typename S>
 class FarCells {
  public:
   explicit FarCells(const Grid<S>& grid) : grid_(grid), half_diagonal_(S(0.8661) * static_cast<S>(grid.cell())) {
+    std::vector<Vector3<S>> centers;
     grid.cells(0, grid.stored(), [&](const typename Grid<S>::Cell& c, std::size_t begin, std::size_t end) {
       runs_.emplace_back(static_cast<std::uint32_t>(begin), static_cast<std::uint32_t>(end));
-      centers_.push_back(grid.center(c));
+      centers.push_back(grid.center(c));
     });
-    tree_.emplace(centers_);
+    tree_.emplace(centers);
   }
 
   const Grid<S>& grid() const { return grid_; }
 
   /// f(begin, end) for the stored points of cells, near ones first; none that holds a point at most sqrt(`limit_sq`)
   /// (m) from q is left out. f may lower `limit_sq` (m2).
+  /// @return false where the limit, with the cells' size, was too large at last to be squared: any may be left out then
   template <typename F>
-  void approach(const Vector3<S>& q, const S& limit_sq, F&& f) const {
+  bool approach(const Vector3<S>& q, const S& limit_sq, F&& f) const {
     const S rounding = S(8) * std::numeric_limits<S>::epsilon() * (q.cwiseAbs().maxCoeff() + half_diagonal_);
     const auto far_sq = [&] {  // of centers of cells that reach so near
       const S far = S(1.001) * (std::sqrt(limit_sq) + half_diagonal_) + rounding;
@@ -44,13 +49,13 @@ class FarCells {
       f(begin, end);
       if (limit_sq != last_sq) last_sq = limit_sq, center_sq = far_sq();
     });
+    return std::isfinite(S(4) * center_sq);
   }
 
  private:
   const Grid<S>& grid_;
   S half_diagonal_;
   std::vector<std::pair<std::uint32_t, std::uint32_t>> runs_;  // stored points of each occupied cell
-  std::vector<Vector3<S>> centers_;
   std::optional<KdTree<S>> tree_;
 };
 
@@ -64,8 +69,8 @@ class FarNearest {
   const Neighborhood<S>& operator()(const Vector3<S>& q, S radius) {
     const Grid<S>& grid = cells_.grid();
     begin(radius);
-    cells_.approach(q, limit_sq_, [&](std::size_t first, std::size_t last) { offer(q, first, last); });
-    if (!std::isfinite(S(8) * limit_sq_)) {  // all are wanted, or too far for S to tell how far
+    const auto try_cell = [&](std::size_t first, std::size_t last) { offer(q, first, last); };
+    if (!cells_.approach(q, limit_sq_, try_cell)) {  // all are wanted, or too far for S to tell how far
       begin(radius);
       offer(q, 0, grid.stored());
     }

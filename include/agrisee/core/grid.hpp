@@ -29,7 +29,8 @@ class Grid {
   /// @param cloud points (m), any cloud type
   /// @param cell edge length of a cell (m), > 0; half to one times the usual query radius serves best
   /// @param threads the result does not depend on it
-  /// @throws ParameterError when `cell` is not positive and finite; Cancelled
+  /// @throws ParameterError when `cell` is not positive and finite; InputError for finite points more than 1e300 m
+  ///         apart; Cancelled
   template <typename C>
   Grid(const C& cloud, S cell, int threads = 1) : size_(agrisee::size(cloud)) {
     check_parameter(std::isfinite(cell) && cell > 0, "grid cell", "positive and finite", cell);
@@ -43,8 +44,9 @@ class Grid {
     for (const Extent& e : extents) n += e.count;
     if (n == 0) all.min.setZero(), all.max.setZero();
     min_ = all.min;
-    const double longest = (all.max - min_).maxCoeff();
-    cell_ = std::max(static_cast<double>(cell), longest / kMaxCells);
+    const double longest = 2.0 * (0.5 * all.max - 0.5 * min_).maxCoeff();
+    check_input(longest <= kWidest, "a grid takes no cloud wider than 1e300 m");
+    cell_ = std::max({static_cast<double>(cell), longest / kMaxCells, kSmallest});
     inverse_ = 1.0 / cell_;
     for (int a = 0; a < 3; ++a) dims_[a] = static_cast<int>((all.max[a] - min_[a]) * inverse_) + 1;
     const double cells = double(dims_[0]) * double(dims_[1]) * double(dims_[2]);
@@ -165,11 +167,12 @@ class Grid {
       if (i - rings > 0) out = std::min(out, d - cell_ * double(i - rings));
       if (i + rings < dims_[a] - 1) out = std::min(out, cell_ * double(i + rings + 1) - d);
     }
-    return out - 1e-6 * cell_;
+    return out - 4e-6 * cell_;
   }
 
  private:
   static constexpr double kMaxCells = 1 << 30;
+  static constexpr double kWidest = 1e300, kSmallest = 1e-290;  // m, of clouds and cells, that no number overflows
 
   /// Whether this is to be stopped, asked once in some thousand points.
   static void look_up(std::size_t i) {
@@ -317,8 +320,9 @@ class Grid {
       for (std::size_t i = 0; i < size_; ++i) {
         look_up(i);
         const Vector3<S> p = point(cloud, i);
+        if (!is_finite(p)) continue;
         const Cell c = cell_of(p);
-        if (is_finite(p)) order.push_back({key(c[2], c[1], c[0]), static_cast<Index>(i)});
+        order.push_back({key(c[2], c[1], c[0]), static_cast<Index>(i)});
       }
       radix_sort(order);
       for (const Keyed& one : order) next(one.index);
@@ -326,6 +330,7 @@ class Grid {
       std::vector<std::pair<Cell, Index>> order;
       order.reserve(n);
       for (std::size_t i = 0; i < size_; ++i) {
+        look_up(i);
         const Vector3<S> p = point(cloud, i);
         if (is_finite(p)) order.emplace_back(cell_of(p), static_cast<Index>(i));
       }

@@ -46,7 +46,7 @@ class KdTree {
     KnnResult result{detail::Nearest<S>(out, std::min(k, data_->points.size())), data_->ids};
     if (k > 0 && searchable(q)) {
       search(result, q);
-      if (!std::isfinite(result.nearest.worst_sq())) {  // squares overflow, and the tree's bounds with them: try all
+      if (!std::isfinite(S(4) * result.nearest.worst_sq())) {  // the tree's bounds may overflow: try all
         out.clear();
         for (std::size_t i = 0; i < data_->points.size(); ++i) result.addPoint(distance_sq<S>(data_->points[i], q), i);
       }
@@ -66,7 +66,7 @@ class KdTree {
   std::size_t count(const Vector3<S>& q, S r, std::size_t cap = kNoCap) const {
     if (!(r >= 0) || cap == 0 || !searchable(q)) return 0;
     CountResult result{r * r, 0, cap};
-    search(result, q);
+    search_within(result, q, r * r);
     return result.found;
   }
 
@@ -77,11 +77,13 @@ class KdTree {
     const auto inside = [&](Index i, S d_sq) {
       if (d_sq <= r_sq) f(i, d_sq);
     };
-    if (r >= 0) approach(q, r_sq, inside);
+    if (!(r >= 0) || !searchable(q)) return;
+    VisitResult<decltype(inside)> result{r_sq, inside, data_->ids};
+    search_within(result, q, r_sq);
   }
 
   /// f(i, squared distance) for points i, those of near branches first; all whose squared distance is at most
-  /// `limit_sq` (m2) are among them. f may lower the limit.
+  /// `limit_sq` (m2) are among them, if four times that is finite at last. f may lower the limit.
   template <typename F>
   void approach(const Vector3<S>& q, const S& limit_sq, F&& f) const {
     if (!searchable(q)) return;
@@ -159,6 +161,14 @@ class KdTree {
       return true;
     }
   };
+
+  /// Offer all points within sqrt(r_sq) (m) to the result.
+  template <typename Result>
+  void search_within(Result& result, const Vector3<S>& q, S r_sq) const {
+    if (std::isfinite(S(4) * r_sq)) return search(result, q);
+    for (std::size_t i = 0; i < data_->points.size(); ++i)  // the tree's bounds may overflow: try all
+      if (!result.addPoint(distance_sq<S>(data_->points[i], q), i)) return;
+  }
 
   bool searchable(const Vector3<S>& q) const { return !data_->points.empty() && is_finite(q); }
 

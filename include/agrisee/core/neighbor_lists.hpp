@@ -5,6 +5,9 @@
 
 #include <agrisee/core/all_neighbors.hpp>
 
+#include <algorithm>
+#include <limits>
+
 namespace agrisee {
 
 /// The k nearest points of every point of a cloud, computed once for several stages.

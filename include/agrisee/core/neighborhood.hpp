@@ -157,13 +157,14 @@ class SearchNearest {
   const Neighborhood<S>& operator()(const C& cloud, const Search& search, const Vector3<S>& q, std::size_t k,
                                     S radius) {
     search.knn(q, k, found_);
-    while (!found_.empty() && !(found_.back().distance <= radius)) found_.pop_back();
     distance_sq_.clear(), x_.clear(), y_.clear(), z_.clear(), ids_.clear(), at_.clear();
     for (const Neighbor<S>& n : found_) {
       const Vector3<S> p = point(cloud, static_cast<std::size_t>(n.index));
+      const S d_sq = distance_sq<S>(p, q);
+      if (!(d_sq <= radius * radius)) break;
       at_.push_back(static_cast<std::uint32_t>(at_.size()));
       ids_.push_back(n.index);
-      distance_sq_.push_back(distance_sq<S>(p, q));
+      distance_sq_.push_back(d_sq);
       x_.push_back(p.x()), y_.push_back(p.y()), z_.push_back(p.z());
     }
     near_ = {ids_.size(), distance_sq_.data(), ids_.data(), x_.data(), y_.data(), z_.data(), at_.data()};

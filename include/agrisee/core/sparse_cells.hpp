@@ -9,7 +9,9 @@
 
 #include <algorithm>
 #include <array>
+#include <cstdint>
 #include <utility>
+#include <vector>
 
 namespace agrisee {
 
@@ -78,7 +80,7 @@ class SparseCells {
 
   static std::size_t hash(const Cell& name) {
     const auto part = [&](std::size_t i) { return static_cast<std::uint64_t>(static_cast<std::uint32_t>(name[i])); };
-    return static_cast<std::size_t>(mix(part(0) << 32 ^ part(1) << 16 ^ part(2)));
+    return static_cast<std::size_t>(mix(mix(part(0) << 32 | part(1)) ^ part(2)));
   }
   /// The block of that name; the number of blocks where there is none.
   std::size_t find(const Cell& name) const {

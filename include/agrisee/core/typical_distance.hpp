@@ -3,6 +3,7 @@
 /// How far apart the points of a cloud are, judged by a few of them: what cells and first guesses of searches go by.
 #pragma once
 
+#include <agrisee/core/cancellation.hpp>
 #include <agrisee/core/cloud.hpp>
 #include <agrisee/core/neighbors.hpp>
 #include <agrisee/core/parallel.hpp>

@@ -7,12 +7,16 @@
 #pragma once
 
 #include <agrisee/core/cloud.hpp>
+#include <agrisee/core/parallel.hpp>
 #include <agrisee/geometry/aabb.hpp>
 #include <agrisee/geometry/bvh_build.hpp>
 #include <agrisee/geometry/mesh.hpp>
 #include <agrisee/geometry/triangle.hpp>
 
+#include <algorithm>
+#include <limits>
 #include <optional>
+#include <string>
 
 namespace agrisee {
 

@@ -209,6 +209,7 @@ template <typename PutOff>
 void grow_bvh(std::vector<BvhNode>& nodes, std::vector<BvhItem>& items, const BvhTask& whole, PutOff&& put_off) {
   std::vector<BvhTask> tasks{whole};
   while (!tasks.empty()) {
+    throw_if_cancelled();
     const BvhTask task = tasks.back();
     tasks.pop_back();
     if (put_off(task)) continue;
