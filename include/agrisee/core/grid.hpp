@@ -29,8 +29,8 @@ class Grid {
   /// @param cloud points (m), any cloud type
   /// @param cell edge length of a cell (m), > 0; half to one times the usual query radius serves best
   /// @param threads the result does not depend on it
-  /// @throws ParameterError when `cell` is not positive and finite; InputError for finite points more than 1e307 m
-  ///         apart; Cancelled
+  /// @throws ParameterError when `cell` is not positive and finite; InputError for finite points whose distance is no
+  ///         finite number; Cancelled
   template <typename C>
   Grid(const C& cloud, S cell, int threads = 1) : size_(agrisee::size(cloud)) {
     check_parameter(std::isfinite(cell) && cell > 0, "grid cell", "positive and finite", cell);
@@ -45,7 +45,7 @@ class Grid {
     if (n == 0) all.min.setZero(), all.max.setZero();
     min_ = all.min;
     const double longest = 2.0 * (0.5 * all.max - 0.5 * min_).maxCoeff();
-    check_input(longest <= kWidest, "a grid takes no cloud wider than 1e307 m");
+    check_input(std::isfinite(longest), "a grid takes no cloud so wide that its width is no finite number");
     cell_ = std::max({static_cast<double>(cell), longest / kMaxCells, kSmallest});
     inverse_ = 1.0 / cell_;
     for (int a = 0; a < 3; ++a) dims_[a] = static_cast<int>((all.max[a] - min_[a]) * inverse_) + 1;
@@ -172,7 +172,7 @@ class Grid {
 
  private:
   static constexpr double kMaxCells = 1 << 30;
-  static constexpr double kWidest = 1e307, kSmallest = 1e-290;  // m, of clouds and cells, that no number overflows
+  static constexpr double kSmallest = 1e-290;  // m, a cell, that cells a metre are a finite number
 
   /// Whether this is to be stopped, asked once in some thousand points.
   static void look_up(std::size_t i) {
