@@ -116,7 +116,8 @@ def compile_time():
 
 def main():
     build, target, large = pathlib.Path(sys.argv[1]), pathlib.Path(sys.argv[2]), "--large" in sys.argv
-    repetitions = 3 if large else 5
+    few = 3  # runs of what takes long
+    repetitions = few if large else 5
     results = {}
     for program in sorted(build.glob("benchmarks/peers/peers_*")):
         if not program.is_file() or not program.stat().st_mode & 0o100:
@@ -124,19 +125,19 @@ def main():
         print(program.name, file=sys.stderr)
         results.update(run(program, ".*" if large else "-/1500000/", repetitions))
         if not large:
-            results.update(run(program, "ours/1500000/", 3))
+            results.update(run(program, "ours/1500000/", few))
     own = {}
     for program in sorted(build.glob("benchmarks/bench_*")):
         if program.is_file() and program.stat().st_mode & 0o100:
             print(program.name, file=sys.stderr)
-            own.update({f"{program.name[6:]}: {name}": value for name, value in run(program, ".*", 3).items()})
+            own.update({f"{program.name[6:]}: {name}": value for name, value in run(program, ".*", few).items()})
     compiled, headers = compile_time()
     text = ["# Benchmarks", "", "Written by `make bench`" + (" `LARGE=1`" if large else "") + " at " +
             output_of("git", "-C", str(ROOT), "rev-parse", "--short", "HEAD") + ".", "", machine(), "",
             "All libraries get the very same cloud, a noisy truss, in the same process, and the answers are compared"
             " before anything is timed; times of one row come from one program. Wall time in random order, medians of"
-            f" {repetitions} runs (of 3 at 1.5 million points and of our stages alone). \"Fastest peer\" is the fastest of PCL, Open3D, nanoflann and Embree that has the"
-            " stage. Only the ratios travel to other machines.", "", comparison(results)]
+            f" {repetitions} runs (of {few} at 1.5 million points and of our stages alone). \"Fastest peer\" is the fastest of"
+            " PCL, Open3D, nanoflann and Embree that has the stage. Only the ratios travel to other machines.", "", comparison(results)]
     text += ["", f"`examples/01_process_cloud.cpp`, the README's ten lines, compiles in {compiled:.1f} s with"
              f" `agrisee::compiled`, in {headers:.1f} s with the headers alone (`-O2`)."]
     text += ["", pathlib.Path(__file__).with_name("notes.md").read_text().strip()]
