@@ -297,3 +297,21 @@ TEST_CASE("robust weights are the derivatives of the costs") {
   CHECK(robust_scale({0, 0, -1, 0}, {1.0, -2.0, 50.0, 3.0}, 0.1) == Approx(1.4826 * 2.0));
   CHECK(robust_scale({-1}, {1.0}, 0.1) == 0.1);
 }
+
+TEST_CASE("the size of a rank is that of a sort") {
+  Rng rng(5);
+  for (const std::size_t n : {1u, 2u, 7u, 1000u}) {
+    std::vector<double> sizes;
+    for (std::size_t i = 0; i < n; ++i)
+      sizes.push_back(i % 5 == 0   ? 0.25
+                      : i % 7 == 0 ? 0.0
+                      : i % 9 == 0 ? std::numeric_limits<double>::infinity()
+                                   : std::pow(10.0, rng.uniform(-320.0, 300.0)));
+    std::vector<double> sorted = sizes;
+    std::sort(sorted.begin(), sorted.end());
+    for (std::size_t rank = 0; rank < n; rank += n < 10 ? 1 : 37) {
+      std::vector<double> some = sizes;
+      CHECK(detail::nth_size(some, rank) == sorted[rank]);
+    }
+  }
+}

@@ -39,7 +39,8 @@ TEST_CASE("runs of cells, hashed, in a table and counted one by one, are the sam
   std::uint32_t points = 0;
   for (std::size_t i = 0; i < cells.size(); ++i) {
     sparse.append(cells[i], points);
-    table.mark(key(cells[i]));
+    REQUIRE(table.mark(key(cells[i])));
+    REQUIRE_FALSE(table.mark(key(cells[i])));
     starts.push_back(points);
     points += static_cast<std::uint32_t>(i % 4 + 1);
   }
@@ -47,6 +48,12 @@ TEST_CASE("runs of cells, hashed, in a table and counted one by one, are the sam
   sparse.finish(points);
   table.finish(points);
   starts.push_back(points);
+  std::vector<std::size_t> keys, marked;
+  for (const Cell& c : cells) keys.push_back(key(c));
+  const std::size_t middle = 37u << CellStarts::kShift, all = key({2, 3, kLength - 1}) + 1;
+  for (const auto& [first, last] : {std::make_pair(std::size_t(0), middle), std::make_pair(middle, all)})
+    table.marked(first, last, [&](std::size_t cell) { marked.push_back(cell); });
+  CHECK(marked == keys);
   Rng rng(4);
   for (int trial = 0; trial < 20000; ++trial) {
     const int z = trial % 3, y = trial / 3 % 4, x0 = static_cast<int>(rng.below(kLength));

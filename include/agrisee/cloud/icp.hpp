@@ -60,14 +60,14 @@ class IcpProblem {
       : target_(target), target_normals_(target_normals), params_(params), search_(search), threads_(threads) {
     const bool turned = !source_normals.empty() && params.max_normal_angle < kPi;
     cos_min_ = turned ? std::cos(params.max_normal_angle) : -2.0;
-    first_reach_ = std::min(static_cast<S>(params.max_distance), typical_distance(target, kFew));
+    first_reach_ = std::min(static_cast<S>(params.max_distance), typical_distance(target, kFew, threads));
     // In an order that keeps neighbours together, so that one query finds in the cache what the last one read.
-    const Grid<scalar_t<Source>> order(source, static_cast<scalar_t<Source>>(params.max_distance));
-    for (const Index id : order.ids()) {
-      const auto i = static_cast<std::size_t>(id);
-      const Eigen::Vector3d p = point(source, i).template cast<double>();
+    const Grid<scalar_t<Source>> order(source, static_cast<scalar_t<Source>>(params.max_distance), threads);
+    points_.reserve(order.stored());
+    for (std::size_t j = 0; j < order.stored(); ++j) {
+      const auto i = static_cast<std::size_t>(order.ids()[j]);
       if (turned && !(source_normals[i].squaredNorm() > 0)) continue;  // no test is possible
-      points_.push_back(p);
+      points_.push_back(order.stored_point(j).template cast<double>());
       if (turned) normals_.push_back(source_normals[i].template cast<double>());
       centroid_ += points_.back();
     }
@@ -117,13 +117,13 @@ class IcpProblem {
   Pose step(const Pose& target_T_source, double scale, int& constrained) const {
     constexpr std::size_t kChunk = 512;
     struct Sums {
-      Matrix6 h = Matrix6::Zero();
+      Matrix6 h = Matrix6::Zero();  // the lower triangle
       Vector6 g = Vector6::Zero();
     };
     const Eigen::Vector3d pivot = target_T_source * centroid_;
     std::vector<Sums> partial((points_.size() + kChunk - 1) / kChunk);  // added in order, whatever the threads
     parallel_chunks(points_.size(), threads_, kChunk, [&](std::size_t begin, std::size_t end) {
-      Sums& sums = partial[begin / kChunk];
+      Sums sums;  // its own until the end: two threads that write to one line of the cache take turns
       for (std::size_t i = begin; i < end; ++i) {
         if (match_[i] < 0) continue;
         const double weight = robust_weight(params_.kernel, residual_[i], scale);
@@ -131,8 +131,10 @@ class IcpProblem {
         const auto add = [&](const Eigen::Vector3d& direction, double r) {
           Vector6 j;
           j << arm.cross(direction), direction;
-          sums.h += (weight * j).lazyProduct(j.transpose());
-          sums.g += weight * r * j;
+          const Vector6 weighted = weight * j;
+          for (int c = 0; c < 6; ++c)
+            for (int row = c; row < 6; ++row) sums.h(row, c) += weighted[c] * j[row];
+          sums.g += r * weighted;
         };
         if (!params_.point_to_point) {
           add(target_normal(match_[i]), residual_[i]);
@@ -141,6 +143,7 @@ class IcpProblem {
           for (int a = 0; a < 3; ++a) add(Eigen::Vector3d::Unit(a), gap[a]);
         }
       }
+      partial[begin / kChunk] = sums;
     });
     Sums total;
     for (const Sums& sums : partial) {
@@ -235,13 +238,14 @@ class IcpProblem {
 /// Cells (m) of a grid over the target: its own spacing, as most matches are no farther away than that, or as much more
 /// as keeps the cells few.
 template <typename Target>
-scalar_t<Target> icp_cell(const Target& target, const IcpParameters& params) {
+scalar_t<Target> icp_cell(const Target& target, const IcpParameters& params, int threads) {
   using S = scalar_t<Target>;
   Aabb box;
   for (std::size_t i = 0; i < agrisee::size(target); ++i)
     if (is_finite(point(target, i))) box.extend(point(target, i).template cast<double>());
   const double few = box.empty() ? 0.0 : std::cbrt(box.size().prod() / (8.0 * double(agrisee::size(target))));
-  return static_cast<S>(std::min(0.5 * params.max_distance, std::max(few, double(typical_distance(target, kFew)))));
+  return static_cast<S>(
+      std::min(0.5 * params.max_distance, std::max(few, double(typical_distance(target, kFew, threads)))));
 }
 
 }  // namespace detail
@@ -331,7 +335,7 @@ IcpResult register_cloud(const Source& source, const std::vector<Vector3<scalar_
   params.check();
   using S = scalar_t<Target>;
   return register_cloud(source, source_normals, target, target_normals, params,
-                        Grid<S>(target, detail::icp_cell(target, params), threads), initial, threads);
+                        Grid<S>(target, detail::icp_cell(target, params, threads), threads), initial, threads);
 }
 
 }  // namespace agrisee

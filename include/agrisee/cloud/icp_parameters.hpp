@@ -8,6 +8,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <cstring>
 #include <string>
 #include <vector>
 
@@ -30,17 +32,17 @@ inline RobustKernel robust_kernel(const std::string& name) {
 
 /// Parameters of register_cloud.
 struct IcpParameters {
-  bool point_to_point = false;          ///< minimise distances between points instead of to the target's planes
-  double max_distance = 0.005;          ///< matches are at most this far apart (m)
-  double max_normal_angle = deg(30.0);  ///< and their normals differ by at most this (rad); pi = no test
+  bool point_to_point = false;                ///< minimise distances between points instead of to the target's planes
+  double max_distance = 0.005;                ///< matches are at most this far apart (m)
+  double max_normal_angle = deg(30.0);        ///< and their normals differ by at most this (rad); pi = no test
   RobustKernel kernel = RobustKernel::tukey;  ///< how far residuals count
   int max_iterations = 30;                    ///< at most so many steps
-  double translation_tolerance = 1e-6;  ///< it has converged when a step moves the centroid by less than this (m)
-  double rotation_tolerance = 1e-5;     ///< and turns by less than this (rad)
-  double degeneracy = 0.01;             ///< eigenvalues below this share of the largest leave their direction free
-  int min_matches = 20;                 ///< fewer matches say nothing
-  double max_translation = 0.005;       ///< a larger correction (m, at the source's centroid) is not believed
-  double max_rotation = deg(1.0);       ///< nor is a larger turn (rad)
+  double translation_tolerance = 1e-6;        ///< it has converged when a step moves the centroid by less than this (m)
+  double rotation_tolerance = 1e-5;           ///< and turns by less than this (rad)
+  double degeneracy = 0.01;        ///< eigenvalues below this share of the largest leave their direction free
+  int min_matches = 20;            ///< fewer matches say nothing
+  double max_translation = 0.005;  ///< a larger correction (m, at the source's centroid) is not believed
+  double max_rotation = deg(1.0);  ///< nor is a larger turn (rad)
 
   /// What serves the paper's pipeline; the paper gives no values.
   static IcpParameters paper() { return {}; }
@@ -80,6 +82,29 @@ struct IcpParameters {
   }
 };
 
+namespace detail {
+
+/// The value of that rank, from 0, among numbers that are not negative; they are shuffled, and most of them lost. Two
+/// passes: the bits of such numbers are in the order of the numbers, so the first few tell which can be the one.
+inline double nth_size(std::vector<double>& sizes, std::size_t rank) {
+  constexpr unsigned kRest = 48;  // bits
+  const auto bin = [](double size) {
+    std::uint64_t bits;
+    std::memcpy(&bits, &size, sizeof bits);
+    return static_cast<std::size_t>(bits >> kRest);
+  };
+  std::vector<std::uint32_t> counts(std::size_t(1) << (63 - kRest), 0);
+  for (const double size : sizes) ++counts[bin(size)];
+  std::size_t least = 0, before = 0;
+  while (before + counts[least] <= rank) before += counts[least++];
+  sizes.erase(std::remove_if(sizes.begin(), sizes.end(), [&](double size) { return bin(size) != least; }), sizes.end());
+  const auto nth = sizes.begin() + static_cast<std::ptrdiff_t>(rank - before);
+  std::nth_element(sizes.begin(), nth, sizes.end());
+  return *nth;
+}
+
+}  // namespace detail
+
 /// Robust standard deviation of the matched residuals: 1.4826 times the median of |r|, at least `least` (m).
 inline double robust_scale(const std::vector<Index>& matches, const std::vector<double>& residuals, double least) {
   std::vector<double> sizes;
@@ -87,9 +112,7 @@ inline double robust_scale(const std::vector<Index>& matches, const std::vector<
   for (std::size_t i = 0; i < residuals.size(); ++i)
     if (matches[i] >= 0) sizes.push_back(std::abs(residuals[i]));
   if (sizes.empty()) return least;
-  const auto middle = sizes.begin() + static_cast<std::ptrdiff_t>(sizes.size() / 2);
-  std::nth_element(sizes.begin(), middle, sizes.end());
-  return std::max(least, 1.4826 * *middle);
+  return std::max(least, 1.4826 * detail::nth_size(sizes, sizes.size() / 2));
 }
 
 /// rho(r) (m2): r^2 / 2 for small residuals. The tuning constants give 95 % efficiency on Gaussian residuals.

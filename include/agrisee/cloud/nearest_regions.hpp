@@ -19,22 +19,19 @@ namespace agrisee {
 
 namespace detail {
 
-/// The k nearest of each stored point of a grid, most of them in two bytes: their places among the points of the cells
-/// within a ring or two.
+/// Which points are the k nearest of each stored point of a grid: those up to the last of them. Most are told by their
+/// distances once more, which takes less time than writing and reading lists, and a tenth of the memory.
 template <typename S>
-struct NearestLists {
-  static constexpr std::uint16_t kEnd = std::numeric_limits<std::uint16_t>::max();
-
-  /// Lists of k of n points, all empty.
-  NearestLists(std::size_t n, std::size_t k) : rings(n), places(n * k, kEnd), sq(n), last(n) {}
+struct NearestReach {
+  /// Of n points, to be written.
+  explicit NearestReach(std::size_t n) { rings.resize(n), sq.resize(n), last.resize(n); }
   /// Whether the point `id`, `d_sq` (m2) away, is one of the k nearest of stored point j.
   bool holds(std::size_t j, S d_sq, Index id) const { return d_sq < sq[j] || (d_sq == sq[j] && id <= last[j]); }
 
-  std::vector<char> rings;            ///< of cells in which the k are found, 1 or 2; 0: see `far`
-  std::vector<std::uint16_t> places;  ///< k a point, among the points of these cells (list_places), or less and kEnd
-  std::vector<S> sq;                  ///< squared distance (m2) of the k-th nearest; infinite where there are fewer
-  std::vector<Index> last;            ///< its index; of those at that distance, greater ones are none of the k
-  Indices far;                        ///< k + 1 a stored point: itself, then its neighbours, stored points, or -1
+  Uninitialized<char> rings;  ///< of cells in which the k are found, 1 or 2; 0: see `far`
+  Uninitialized<S> sq;        ///< squared distance (m2) of the k-th nearest; infinite where there are fewer
+  Uninitialized<Index> last;  ///< its index; of those at that distance, greater ones are none of the k
+  Indices far;                ///< k + 1 a stored point: itself, then its neighbours, stored points, or -1
 };
 
 /// Edges of one direction between stored points.
@@ -98,47 +95,43 @@ std::pair<Labels, int> reached_sets(DisjointSets& sets, std::size_t n, Edges& ed
   return {std::move(regions), created};
 }
 
-/// The lists of the points of a grid; see there.
+/// The reach of the points of a grid; see there.
 template <typename C>
-NearestLists<scalar_t<C>> nearest_lists(const C& cloud, const NeighborhoodGrid<scalar_t<C>>& near, std::size_t k,
+NearestReach<scalar_t<C>> nearest_reach(const C& cloud, const NeighborhoodGrid<scalar_t<C>>& near, std::size_t k,
                                         int threads) {
   using S = scalar_t<C>;
   constexpr S kInfinity = std::numeric_limits<S>::infinity();
   const Grid<S>& grid = near.grid;
-  NearestLists<S> lists(grid.stored(), k);
+  NearestReach<S> reach(grid.stored());
   std::mutex far_mutex;
   Indices stored;  // of the cloud's points, once there are crowds
   const auto keep = [&](std::size_t j, const Neighborhood<S>& found, int rings) {
     const bool all = found.size < k;  // there are no more points
-    lists.sq[j] = all ? kInfinity : found.distance_sq[k - 1];
-    lists.last[j] = all ? std::numeric_limits<Index>::max() : found.ids[k - 1];
-    if (rings > 0 && *std::max_element(found.at, found.at + found.size) < NearestLists<S>::kEnd) {
-      lists.rings[j] = static_cast<char>(rings);
-      std::transform(found.at, found.at + found.size, lists.places.begin() + static_cast<std::ptrdiff_t>(j * k),
-                     [](std::uint32_t at) { return static_cast<std::uint16_t>(at); });
-      return;
-    }
+    reach.sq[j] = all ? kInfinity : found.distance_sq[k - 1];
+    reach.last[j] = all ? std::numeric_limits<Index>::max() : found.ids[k - 1];
+    reach.rings[j] = static_cast<char>(rings);
+    if (rings > 0) return;
     const std::lock_guard<std::mutex> lock(far_mutex);
-    lists.far.push_back(static_cast<Index>(j));
+    reach.far.push_back(static_cast<Index>(j));
     if (found.x == grid.x().data()) {
-      lists.far.insert(lists.far.end(), found.at, found.at + found.size);
+      reach.far.insert(reach.far.end(), found.at, found.at + found.size);
     } else {  // found in the cloud
       if (stored.empty()) {
         stored.resize(agrisee::size(cloud));
         for (std::size_t i = 0; i < grid.stored(); ++i)
           stored[static_cast<std::size_t>(grid.ids()[i])] = static_cast<Index>(i);
       }
-      std::transform(found.ids, found.ids + found.size, std::back_inserter(lists.far),
+      std::transform(found.ids, found.ids + found.size, std::back_inserter(reach.far),
                      [&](Index id) { return stored[static_cast<std::size_t>(id)]; });
     }
-    lists.far.resize(lists.far.size() + (k - found.size), -1);
+    reach.far.resize(reach.far.size() + (k - found.size), -1);
   };
   for_stored_neighborhoods(cloud, near, k, kInfinity, threads, keep);
-  return lists;
+  return reach;
 }
 
 /// The regions where the k nearest neighbours grow. O(n k), and a sort of the edges of one direction between points
-/// that are not neighbours of each other; some 2 k + 50 bytes a point, 4 k for points that are crowded or astray.
+/// that are not neighbours of each other; some 50 bytes a point, 4 k for points that are crowded or astray.
 template <typename C>
 Labels nearest_regions(const C& cloud, const std::vector<Vector3<scalar_t<C>>>& normals,
                        const RegionGrowingParameters& params, const std::vector<scalar_t<C>>& curvatures, int threads) {
@@ -148,54 +141,74 @@ Labels nearest_regions(const C& cloud, const std::vector<Vector3<scalar_t<C>>>& 
   const NeighborhoodGrid<S> near(cloud, k, std::numeric_limits<S>::infinity(), threads);
   const Grid<S>& grid = near.grid;
   const std::size_t n = grid.stored();
-  const Indices& ids = grid.ids();
-  NearestLists<S> lists = nearest_lists(cloud, near, k, threads);
+  const auto& ids = grid.ids();
+  NearestReach<S> reach = nearest_reach(cloud, near, k, threads);
   const OrientedPoints<S> points(grid, normals, params, threads);
   const auto member = [&](std::size_t j) { return points.member(j); };
 
   DisjointSets sets(n);
   std::mutex edges_mutex;
   Edges edges;
-  const auto join_smooth = [&](std::size_t i, std::size_t j) {  // j is a neighbour of i
+  const auto add = [&](const Edges& some) {
+    if (some.empty()) return;
+    const std::lock_guard<std::mutex> lock(edges_mutex);
+    edges.insert(edges.end(), some.begin(), some.end());
+  };
+  // j, the square root of d_sq (m) away, is a neighbour of i.
+  const auto join_smooth = [&](std::size_t i, std::size_t j, S d_sq, Edges& one_way) {
     const Index a = sets.root(static_cast<Index>(i)), b = sets.root(static_cast<Index>(j));
     if (a == b || !points.smooth(i, j)) return;
-    if (lists.holds(j, distance_sq<S>(grid.stored_point(i), grid.stored_point(j)), ids[i])) {
+    if (reach.holds(j, d_sq, ids[i]))
       sets.join(a, b);
-      return;
-    }
-    const std::lock_guard<std::mutex> lock(edges_mutex);
-    if (edges.empty() || edges.back() != std::make_pair(a, b)) edges.emplace_back(a, b);
+    else if (one_way.empty() || one_way.back() != std::make_pair(a, b))
+      one_way.emplace_back(a, b);
   };
   const Stencil stencils[] = {box_stencil(1), box_stencil(2)};
   for_cells(grid, threads, [&] {
-    return [&, around = std::vector<std::uint32_t>()](const typename Grid<S>::Cell& cell, std::size_t first,
-                                                      std::size_t last) mutable {
+    return [&, tile = Tile<S>(), sq = std::vector<S>(), within = std::vector<std::uint32_t>(), one_way = Edges()](
+               const typename Grid<S>::Cell& cell, std::size_t first, std::size_t last) mutable {
+      one_way.clear();
       for (int rings = 1; rings <= 2; ++rings) {
-        const auto grows = [&](std::size_t i) { return lists.rings[i] == rings && member(i); };
+        const auto grows = [&](std::size_t i) { return reach.rings[i] == rings && member(i); };
         std::size_t i = first;
         while (i < last && !grows(i)) ++i;
         if (i == last) continue;
-        list_places(grid, cell, stencils[rings - 1], around);
+        tile.gather(grid, cell, stencils[rings - 1]);
+        if (sq.size() < tile.size) sq.resize(2 * tile.size), within.resize(2 * tile.size);
         for (; i < last; ++i) {
           if (!grows(i)) continue;
-          for (std::size_t at = i * k; at < (i + 1) * k && lists.places[at] != NearestLists<S>::kEnd; ++at)
-            join_smooth(i, around[lists.places[at]]);
+          tile.distances_sq(grid.stored_point(i), sq.data());
+          std::size_t found = 0;
+          for (std::size_t c = 0; c < tile.size; ++c) {  // no branch: a third of the candidates pass
+            within[found] = static_cast<std::uint32_t>(c);
+            found += sq[c] <= reach.sq[i] ? 1u : 0u;
+          }
+          for (std::size_t f = 0; f < found; ++f) {
+            const S d_sq = sq[within[f]];
+            const std::size_t j = tile.at[within[f]];
+            if (reach.holds(i, d_sq, ids[j])) join_smooth(i, j, d_sq, one_way);
+          }
         }
       }
+      add(one_way);
     };
   });
-  if (!lists.far.empty()) {
-    const auto join_far = [&](std::size_t f) {
-      const auto i = static_cast<std::size_t>(lists.far[f * (k + 1)]);
-      if (!member(i)) return;
-      for (std::size_t at = f * (k + 1) + 1; at < (f + 1) * (k + 1) && lists.far[at] >= 0; ++at)
-        join_smooth(i, static_cast<std::size_t>(lists.far[at]));
-    };
-    parallel_for(lists.far.size() / (k + 1), threads, join_far, 256);
-  }
-  lists = {0, 0};  // its memory
+  const auto join_far = [&](std::size_t begin, std::size_t end) {
+    Edges one_way;
+    for (std::size_t f = begin; f < end; ++f) {
+      const auto i = static_cast<std::size_t>(reach.far[f * (k + 1)]);
+      if (!member(i)) continue;
+      for (std::size_t at = f * (k + 1) + 1; at < (f + 1) * (k + 1) && reach.far[at] >= 0; ++at) {
+        const auto j = static_cast<std::size_t>(reach.far[at]);
+        join_smooth(i, j, distance_sq<S>(grid.stored_point(i), grid.stored_point(j)), one_way);
+      }
+    }
+    add(one_way);
+  };
+  parallel_chunks(reach.far.size() / (k + 1), threads, 256, join_far);
+  reach = NearestReach<S>(0);  // its memory
 
-  std::vector<S> curvature(params.seeds_by_curvature ? n : 0);  // of the stored points
+  Uninitialized<S> curvature(params.seeds_by_curvature ? n : 0);  // of the stored points
   const auto gather = [&](std::size_t j) { curvature[j] = curvatures[static_cast<std::size_t>(ids[j])]; };
   parallel_for(curvature.size(), threads, gather, 4096);
   const auto key_of = [&](std::size_t j) {

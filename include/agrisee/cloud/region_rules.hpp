@@ -7,6 +7,7 @@
 #include <agrisee/core/cloud.hpp>
 #include <agrisee/core/grid.hpp>
 #include <agrisee/core/parallel.hpp>
+#include <agrisee/core/uninitialized.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -30,8 +31,10 @@ inline void drop_small_regions(Labels& labels, int regions, int min_size) {
 }
 
 /// What seeds are sorted by: rising curvature where that is asked for, points of none last, then the index i.
-template <typename S>
-std::pair<S, Index> seed_key(std::size_t i, bool by_curvature, const std::vector<S>& curvatures) {
+template <typename Curvatures>
+std::pair<typename Curvatures::value_type, Index> seed_key(std::size_t i, bool by_curvature,
+                                                           const Curvatures& curvatures) {
+  using S = typename Curvatures::value_type;
   const S curvature = by_curvature ? curvatures[i] : S(0);
   return {std::isnan(curvature) ? std::numeric_limits<S>::infinity() : curvature, static_cast<Index>(i)};
 }
@@ -132,7 +135,7 @@ class OrientedPoints {
   }
 
   const Grid<S>& grid_;
-  std::vector<S> u_, v_, w_;  // of the normals; NaN for points that cannot join
+  Uninitialized<S> u_, v_, w_;  // of the normals; NaN for points that cannot join
   S cos_min_;
   bool unsigned_;
 };

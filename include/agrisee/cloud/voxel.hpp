@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// Thins a cloud: one point, the mean, for each occupied cell of a grid anchored at the origin.
-/// Metres. Cost O(n): a sort of 16 bytes a point, by as many digits as the cloud is wide in cells; O(n log n) for clouds
-/// that reach a million cells from the origin.
+/// Metres. Cost O(n): a sort of 16 bytes a point, by as many digits as the cloud is wide in cells; O(n log n) for
+/// clouds that reach a million cells from the origin.
 #pragma once
 
 #include <agrisee/core/cloud.hpp>
@@ -14,59 +14,63 @@ namespace agrisee {
 
 namespace detail {
 
-/// The finite points in the order of their cells of edge `leaf` (m), by z, then y, then x; equal keys are one cell.
-template <typename S>
-std::vector<Keyed> by_cell(const std::vector<Vector3<S>>& points, double leaf) {
-  const double inverse = 1.0 / leaf;
-  std::vector<Keyed> order;
+/// The finite points in the order of their cells of edge `leaf` (m), by z, then y, then x, where these are numbered
+/// from `least` on with `across` cells a side.
+template <typename Key, typename S>
+Uninitialized<Keyed<Key>> by_number(const std::vector<Vector3<S>>& points, double inverse, const CellIndex& least,
+                                    const Eigen::Matrix<Key, 3, 1>& across) {
+  Uninitialized<Keyed<Key>> order;
   order.reserve(points.size());
-  CellIndex least = CellIndex::Constant(CellTable::kLimit), most = -least;
-  std::vector<CellIndex> cells;
-  cells.reserve(points.size());
   for (std::size_t i = 0; i < points.size(); ++i) {
-    const Vector3<S>& p = points[i];
-    if (!is_finite(p)) continue;
-    order.push_back({0, static_cast<Index>(i)});
-    cells.emplace_back(CellTable::coordinate(double(p.x()), inverse), CellTable::coordinate(double(p.y()), inverse),
-                       CellTable::coordinate(double(p.z()), inverse));
-    least = least.cwiseMin(cells.back());
-    most = most.cwiseMax(cells.back());
+    if (!is_finite(points[i])) continue;
+    const Eigen::Matrix<Key, 3, 1> c = (CellTable::cell(points[i], inverse) - least).template cast<Key>();
+    order.push_back({(c.z() * across.y() + c.y()) * across.x() + c.x(), static_cast<Index>(i)});
   }
-  if (order.empty()) return order;
-  if (least.minCoeff() > -CellTable::kLimit && most.maxCoeff() < CellTable::kLimit) {
-    // Rows of cells one after the other: as few digits as the cloud needs, at most 63 bits.
-    const Eigen::Matrix<std::uint64_t, 3, 1> across = (most - least).cast<std::uint64_t>();
-    for (std::size_t j = 0; j < order.size(); ++j) {
-      const Eigen::Matrix<std::uint64_t, 3, 1> c = (cells[j] - least).cast<std::uint64_t>();
-      order[j].key = (c.z() * (across.y() + 1) + c.y()) * (across.x() + 1) + c.x();
-    }
-    radix_sort(order);
-    return order;
-  }
-  // A cell that far from the origin has no small integers for a name.
-  const auto cell = [&](Index i) {
-    const Eigen::Vector3d c = points[static_cast<std::size_t>(i)].template cast<double>() * inverse;
-    return std::array<double, 3>{std::floor(c.z()), std::floor(c.y()), std::floor(c.x())};
-  };
-  std::stable_sort(order.begin(), order.end(),
-                   [&](const Keyed& a, const Keyed& b) { return cell(a.index) < cell(b.index); });
-  for (std::size_t j = 1; j < order.size(); ++j)
-    order[j].key = order[j - 1].key + (cell(order[j].index) != cell(order[j - 1].index) ? 1u : 0u);
+  radix_sort(order);
   return order;
 }
 
-}  // namespace detail
-
-/// The mean point of every cell of edge `leaf` (m) that holds finite points, cells by z, then y, then x.
-/// Normals, where all points have them, are averaged and made unit; views are dropped.
-/// @param cloud points (m)
-/// @param leaf edge of the voxels (m)
-/// @param members if given, receives the number of points behind each mean
-/// @throws ParameterError when `leaf` is not positive
+/// The same for cells too far from the origin to have small integers for names.
 template <typename S>
-PointCloud<S> average_in_voxels(const PointCloud<S>& cloud, double leaf, std::vector<int>* members = nullptr) {
-  check_parameter(std::isfinite(leaf) && leaf > 0, "leaf", "positive", leaf);
-  const std::vector<Keyed> order = detail::by_cell(cloud.points, leaf);
+Uninitialized<Keyed<std::uint64_t>> by_far_cell(const std::vector<Vector3<S>>& points, double inverse) {
+  Uninitialized<Keyed<std::uint64_t>> order;
+  for (std::size_t i = 0; i < points.size(); ++i)
+    if (is_finite(points[i])) order.push_back({0, static_cast<Index>(i)});
+  const auto cell = [&](const auto& item) {
+    const Eigen::Vector3d c = points[static_cast<std::size_t>(item.index)].template cast<double>() * inverse;
+    return std::array<double, 3>{std::floor(c.z()), std::floor(c.y()), std::floor(c.x())};
+  };
+  std::stable_sort(order.begin(), order.end(), [&](const auto& a, const auto& b) { return cell(a) < cell(b); });
+  for (std::size_t j = 1; j < order.size(); ++j)
+    order[j].key = order[j - 1].key + (cell(order[j]) != cell(order[j - 1]) ? 1u : 0u);
+  return order;
+}
+
+/// f(order) with the finite points in the order of their cells of edge `leaf` (m), by z, then y, then x; equal keys are
+/// one cell.
+template <typename S, typename F>
+void by_cell(const std::vector<Vector3<S>>& points, double leaf, F&& f) {
+  const double inverse = 1.0 / leaf;
+  Vector3<S> min = Vector3<S>::Constant(std::numeric_limits<S>::max()), max = -min;
+  for (const Vector3<S>& p : points) {
+    if (!is_finite(p)) continue;
+    min = min.cwiseMin(p);
+    max = max.cwiseMax(p);
+  }
+  if (!(min.x() <= max.x())) return f(Uninitialized<Keyed<std::uint32_t>>());
+  const CellIndex least = CellTable::cell(min, inverse), most = CellTable::cell(max, inverse);
+  if (least.minCoeff() <= -CellTable::kLimit || most.maxCoeff() >= CellTable::kLimit)
+    return f(by_far_cell(points, inverse));
+  const Eigen::Matrix<std::int64_t, 3, 1> across = (most - least).template cast<std::int64_t>().array() + 1;
+  if (across.template cast<double>().prod() < 4294967296.0)
+    f(by_number<std::uint32_t>(points, inverse, least, across.template cast<std::uint32_t>().eval()));
+  else  // at most 63 bits
+    f(by_number<std::uint64_t>(points, inverse, least, across.template cast<std::uint64_t>().eval()));
+}
+
+/// The mean of each run of equal keys; see average_in_voxels.
+template <typename S, typename Order>
+PointCloud<S> average_runs(const PointCloud<S>& cloud, const Order& order, std::vector<int>* members) {
   const bool with_normals = cloud.normals.size() == cloud.points.size();
   std::size_t occupied = order.empty() ? 0 : 1;
   for (std::size_t j = 1; j < order.size(); ++j) occupied += order[j].key != order[j - 1].key ? 1u : 0u;
@@ -92,6 +96,22 @@ PointCloud<S> average_in_voxels(const PointCloud<S>& cloud, double leaf, std::ve
     if (members) members->push_back(static_cast<int>(end - begin));
     begin = end;
   }
+  return out;
+}
+
+}  // namespace detail
+
+/// The mean point of every cell of edge `leaf` (m) that holds finite points, cells by z, then y, then x.
+/// Normals, where all points have them, are averaged and made unit; views are dropped.
+/// @param cloud points (m)
+/// @param leaf edge of the voxels (m)
+/// @param members if given, receives the number of points behind each mean
+/// @throws ParameterError when `leaf` is not positive
+template <typename S>
+PointCloud<S> average_in_voxels(const PointCloud<S>& cloud, double leaf, std::vector<int>* members = nullptr) {
+  check_parameter(std::isfinite(leaf) && leaf > 0, "leaf", "positive", leaf);
+  PointCloud<S> out;
+  detail::by_cell(cloud.points, leaf, [&](const auto& order) { out = detail::average_runs(cloud, order, members); });
   return out;
 }
 

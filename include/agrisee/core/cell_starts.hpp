@@ -26,6 +26,8 @@ struct CellBlock {
   std::uint32_t rank(std::size_t key) const { return before + ones(occupied & (bit(key) - 1)); }
   /// Occupied cells before the next block.
   std::uint32_t end() const { return before + ones(occupied); }
+  /// The number of the lowest of some bits.
+  static std::uint32_t lowest(std::uint32_t bits) { return ones((bits & (0u - bits)) - 1); }
 
  private:
   /// Bits that are set; processors without an instruction for it are the rule in what compilers target.
@@ -50,8 +52,20 @@ class CellStarts {
     blocks_.assign((cells >> kShift) + 1, {});
     starts_.clear();
   }
-  /// Cell `key` is occupied.
-  void mark(std::size_t key) { blocks_[key >> kShift].occupied |= detail::CellBlock::bit(key); }
+  /// Cell `key` is occupied. @return whether that was not known
+  bool mark(std::size_t key) {
+    std::uint32_t& occupied = blocks_[key >> kShift].occupied;
+    const std::uint32_t before = occupied;
+    return (occupied |= detail::CellBlock::bit(key)) != before;
+  }
+  /// f(key) for the marked cells of [first, last), both multiples of 2^kShift or the number of cells, in ascending
+  /// order.
+  template <typename F>
+  void marked(std::size_t first, std::size_t last, F&& f) const {
+    for (std::size_t b = first >> kShift; b << kShift < last; ++b)
+      for (std::uint32_t rest = blocks_[b].occupied; rest != 0; rest &= rest - 1)
+        f((b << kShift) + detail::CellBlock::lowest(rest));
+  }
   /// Where the points of occupied cells begin. May be called again and again, in the order of the cells' keys.
   void append(const std::vector<std::uint32_t>& starts) { starts_.insert(starts_.end(), starts.begin(), starts.end()); }
   /// All cells are marked and have their starts.

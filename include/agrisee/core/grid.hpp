@@ -15,6 +15,7 @@
 #include <agrisee/core/radix_sort.hpp>
 #include <agrisee/core/sparse_cells.hpp>
 #include <agrisee/core/stencil.hpp>
+#include <agrisee/core/uninitialized.hpp>
 
 #include <array>
 #include <cmath>
@@ -122,13 +123,13 @@ class Grid {
   /// Number of stored points.
   std::size_t stored() const { return ids_.size(); }
   /// Their index in the cloud and their coordinates.
-  const std::vector<Index>& ids() const { return ids_; }
+  const detail::Uninitialized<Index>& ids() const { return ids_; }
   /// Coordinates of the stored points (m), and kBlock numbers of no meaning, that all can be copied block by block.
-  const std::vector<S>& x() const { return x_; }
+  const detail::Uninitialized<S>& x() const { return x_; }
   /// Likewise.
-  const std::vector<S>& y() const { return y_; }
+  const detail::Uninitialized<S>& y() const { return y_; }
   /// Likewise.
-  const std::vector<S>& z() const { return z_; }
+  const detail::Uninitialized<S>& z() const { return z_; }
   static constexpr std::size_t kBlock = 8;  ///< coordinates a block
   /// Stored point j (m).
   Vector3<S> stored_point(std::size_t j) const { return {x_[j], y_[j], z_[j]}; }
@@ -185,7 +186,10 @@ class Grid {
   }
 
   void reserve(std::size_t n) {
-    x_.resize(n + kBlock), y_.resize(n + kBlock), z_.resize(n + kBlock);
+    for (auto* c : {&x_, &y_, &z_}) {
+      c->resize(n + kBlock);
+      std::fill(c->begin() + static_cast<std::ptrdiff_t>(n), c->end(), S(0));
+    }
     ids_.resize(n);
   }
   void store(std::size_t j, const Vector3<S>& p, std::size_t i) {
@@ -231,7 +235,7 @@ class Grid {
 
   /// Where the cloud is divided for the threads: the first point of each part, and the end.
   std::vector<std::size_t> split(int threads) const {
-    constexpr std::size_t kWorthIt = 10000;
+    constexpr std::size_t kWorthIt = 4096;
     const std::size_t most = static_cast<std::size_t>(std::max(threads, 1));
     const std::size_t parts = std::clamp<std::size_t>(size_ / kWorthIt, 1, most);
     std::vector<std::size_t> out;
@@ -273,27 +277,32 @@ class Grid {
     table_.reset(cells);
     std::vector<std::vector<std::uint32_t>> cell_begins(buckets);  // of the occupied cells
     parallel_chunks(buckets, count > 1 ? threads : 1, 16, [&](std::size_t first, std::size_t last) {
-      std::vector<std::pair<Vector3<S>, Index>> points;
-      std::vector<std::uint32_t> next;  // per cell of a bucket: points, then where the next one goes
+      struct Moved {
+        Vector3<S> p;
+        Index i;
+        std::size_t cell;  // of the bucket's
+      };
+      std::vector<Moved> points;
+      std::vector<std::uint32_t> next(std::size_t(1) << shift);  // per occupied cell: points, then where the next goes
       for (std::size_t b = first; b < last; ++b) {
         const std::size_t begin = begins[b], end = begins[b + 1], low = b << shift;
         if (begin == end) continue;
         points.clear();
         points.reserve(end - begin);
-        next.assign(std::size_t(1) << shift, 0u);
         for (std::size_t j = begin; j < end; ++j) {
           look_up(j);
-          points.emplace_back(stored_point(j), ids_[j]);
-          ++next[key_of(points.back().first) - low];
+          const Vector3<S> p = stored_point(j);
+          const std::size_t cell = key_of(p) - low;
+          points.push_back({p, ids_[j], cell});
+          if (table_.mark(low + cell)) next[cell] = 0;
+          ++next[cell];
         }
         auto cell_begin = static_cast<std::uint32_t>(begin);
-        for (std::size_t c = 0; c < next.size(); ++c) {
-          if (next[c] == 0) continue;
-          table_.mark(low + c);
+        table_.marked(low, std::min(low + next.size(), cells), [&](std::size_t cell) {
           cell_begins[b].push_back(cell_begin);
-          cell_begin += std::exchange(next[c], cell_begin);
-        }
-        for (const auto& [p, i] : points) store(next[key_of(p) - low]++, p, static_cast<std::size_t>(i));
+          cell_begin += std::exchange(next[cell - low], cell_begin);
+        });
+        for (const Moved& m : points) store(next[m.cell]++, m.p, static_cast<std::size_t>(m.i));
       }
     });
     for (const auto& some : cell_begins) table_.append(some);
@@ -315,7 +324,7 @@ class Grid {
       store(j++, p, i);
     };
     if (dims_.cast<double>().prod() < 9e18) {  // a number tells a cell
-      std::vector<Keyed> order;
+      detail::Uninitialized<Keyed<std::uint64_t>> order;
       order.reserve(n);
       for (std::size_t i = 0; i < size_; ++i) {
         look_up(i);
@@ -325,7 +334,7 @@ class Grid {
         order.push_back({key(c[2], c[1], c[0]), static_cast<Index>(i)});
       }
       radix_sort(order);
-      for (const Keyed& one : order) next(one.index);
+      for (const auto& one : order) next(one.index);
     } else {
       std::vector<std::pair<Cell, Index>> order;
       order.reserve(n);
@@ -383,10 +392,10 @@ class Grid {
     return sparse_.run(x0, x1, y, z);
   }
 
-  std::vector<S> x_, y_, z_;  // the points, sorted by cell, then by index
-  std::vector<Index> ids_;    // their index in the cloud
-  CellStarts table_;          // where the cells begin,
-  SparseCells sparse_;        // or, where these are too many, the occupied ones
+  detail::Uninitialized<S> x_, y_, z_;  // the points, sorted by cell, then by index
+  detail::Uninitialized<Index> ids_;    // their index in the cloud
+  CellStarts table_;                    // where the cells begin,
+  SparseCells sparse_;                  // or, where these are too many, the occupied ones
   Eigen::Vector3d min_;
   double cell_ = 1.0, inverse_ = 1.0;
   Eigen::Vector3i dims_ = Eigen::Vector3i::Ones();

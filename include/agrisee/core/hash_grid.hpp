@@ -32,6 +32,13 @@ class CellTable {
     return whole - (c < double(whole) ? 1 : 0);
   }
 
+  /// The cell that holds p (m), given 1 / edge length.
+  template <typename S>
+  static CellIndex cell(const Vector3<S>& p, double inverse_edge) {
+    return {coordinate(double(p.x()), inverse_edge), coordinate(double(p.y()), inverse_edge),
+            coordinate(double(p.z()), inverse_edge)};
+  }
+
   /// Number of cells that hold something.
   std::size_t size() const { return used_; }
 
@@ -142,10 +149,7 @@ class HashGrid {
   }
 
  private:
-  CellIndex cell_of(const Eigen::Vector3d& p) const {
-    return {CellTable::coordinate(p.x(), inverse_), CellTable::coordinate(p.y(), inverse_),
-            CellTable::coordinate(p.z(), inverse_)};
-  }
+  CellIndex cell_of(const Eigen::Vector3d& p) const { return CellTable::cell(p, inverse_); }
 
   /// f(index, distance_sq) for every point of the cells that the ball touches, until it returns false.
   template <typename F>

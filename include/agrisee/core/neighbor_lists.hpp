@@ -31,7 +31,7 @@ NeighborLists nearest_neighbors(const C& cloud, std::size_t k, int threads = 1) 
   constexpr S kInfinity = std::numeric_limits<S>::infinity();
   NeighborLists out{k, Indices(agrisee::size(cloud) * k, -1)};
   const detail::NeighborhoodGrid<S> near(cloud, k, kInfinity, threads);
-  const Indices& ids = near.grid.ids();
+  const auto& ids = near.grid.ids();
   const auto list = [&](std::size_t j) { return out.ids.data() + static_cast<std::size_t>(ids[j]) * k; };
   detail::for_stored_neighborhoods(
       cloud, near, k, kInfinity, threads,

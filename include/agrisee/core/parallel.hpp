@@ -4,14 +4,13 @@
 #pragma once
 
 #include <agrisee/core/cancellation.hpp>
+#include <agrisee/core/thread_pool.hpp>
 
 #include <algorithm>
 #include <atomic>
 #include <cstddef>
 #include <exception>
 #include <mutex>
-#include <thread>
-#include <vector>
 
 namespace agrisee {
 
@@ -53,14 +52,7 @@ void parallel_chunks(std::size_t n, int threads, std::size_t chunk, Body&& body)
       next = chunks;
     }
   };
-  std::vector<std::thread> pool;
-  pool.reserve(workers - 1);
-  try {
-    for (std::size_t w = 1; w < workers; ++w) pool.emplace_back(work);
-  } catch (...) {  // no more threads to be had: the ones we have do the work
-  }
-  work();
-  for (std::thread& t : pool) t.join();
+  detail::ThreadPool::shared().run(workers - 1, work);
   if (failure) std::rethrow_exception(failure);
 }
 

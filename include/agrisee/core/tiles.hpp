@@ -9,7 +9,6 @@
 
 #include <algorithm>
 #include <cstring>
-#include <numeric>
 
 namespace agrisee {
 
@@ -71,20 +70,6 @@ struct Tile {
     size += more;
   }
 };
-
-/// The places among the grid's stored points of those in the stencil's cells about `c`: what Tile::gather lists in `at`
-/// where no cells of the stencil lie inside.
-template <typename S>
-void list_places(const Grid<S>& grid, const typename Grid<S>::Cell& c, const Stencil& stencil,
-                 std::vector<std::uint32_t>& out) {
-  out.clear();
-  for (const StencilRow& row : stencil) {
-    const auto [begin, end] = grid.run(c[2] - row.outer, c[2] + row.outer, c[1] + row.dy, c[0] + row.dz);
-    const std::size_t size = out.size();
-    out.resize(size + (end - begin));
-    std::iota(out.begin() + static_cast<std::ptrdiff_t>(size), out.end(), static_cast<std::uint32_t>(begin));
-  }
-}
 
 /// make() a body a chunk, then body(cell, begin, end) for each occupied cell of the grid and its stored points
 /// [begin, end), on up to `threads` threads. A body writes only what belongs to its own points.

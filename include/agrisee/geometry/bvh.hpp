@@ -89,9 +89,9 @@ class Bvh {
   void traverse(const Eigen::Vector3f& origin, const Eigen::Vector3f& direction, float t_min, float t_max,
                 F&& hit) const;
 
-  std::vector<Node> nodes_;          // the root first, siblings side by side
-  std::vector<Triangle> triangles_;  // in the order of the leaves
-  std::vector<std::uint32_t> ids_;   // of triangles_ in the mesh
+  detail::Uninitialized<Node> nodes_;          // the root first, siblings side by side
+  detail::Uninitialized<Triangle> triangles_;  // in the order of the leaves
+  detail::Uninitialized<std::uint32_t> ids_;   // of triangles_ in the mesh
   std::size_t degenerate_ = 0;
 };
 
@@ -108,11 +108,11 @@ inline Bvh::Bvh(const Mesh& mesh, int threads) {
         throw InputError("bvh: triangle " + std::to_string(i) + " names vertex " + std::to_string(vertex) + " of " +
                          std::to_string(mesh.vertices.size()));
   constexpr std::size_t kChunk = 4096;
-  std::vector<detail::BvhItem> items(n);
+  detail::Uninitialized<detail::BvhItem> items(n);
   const auto make_item = [&](std::size_t i) {
     const Triangle t = corners(i);
-    if (is_finite(t[0]) && is_finite(t[1]) && is_finite(t[2]) && !area_normal(t).isZero(0.0))
-      items[i] = detail::BvhItem(t, static_cast<std::uint32_t>(i));
+    const bool found = is_finite(t[0]) && is_finite(t[1]) && is_finite(t[2]) && !area_normal(t).isZero(0.0);
+    items[i] = detail::BvhItem(t, found ? static_cast<std::uint32_t>(i) : detail::BvhItem::kNone);
   };
   parallel_for(n, threads, make_item, kChunk);
   items.erase(std::remove_if(items.begin(), items.end(), [](const auto& item) { return item.empty(); }), items.end());

@@ -5,11 +5,11 @@
 #pragma once
 
 #include <agrisee/core/parallel.hpp>
+#include <agrisee/core/uninitialized.hpp>
 #include <agrisee/geometry/triangle.hpp>
 
 #include <algorithm>
 #include <limits>
-#include <numeric>
 #include <utility>
 #include <vector>
 
@@ -47,17 +47,21 @@ struct BvhBox {
   }
 };
 
-/// A triangle while the tree is built, or none.
+/// A triangle while the tree is built, or none. It has no value to begin with.
 struct BvhItem {
   static constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
-  BvhBox box;
-  std::uint32_t triangle = kNone;
-  BvhItem() = default;
+  Eigen::Array4f min, max;  // of its box
+  std::uint32_t triangle;   // its index
+  BvhItem() {}
   BvhItem(const Triangle& t, std::uint32_t index) : triangle(index) {
-    for (const Eigen::Vector3f& p : t) box.extend(Eigen::Array4f(p[0], p[1], p[2], 0.0f));
+    BvhBox around;
+    for (const Eigen::Vector3f& p : t) around.extend(Eigen::Array4f(p[0], p[1], p[2], 0.0f));
+    min = around.min;
+    max = around.max;
   }
   bool empty() const { return triangle == kNone; }
-  Eigen::Array4f center() const { return 0.5f * box.min + 0.5f * box.max; }
+  BvhBox box() const { return {min, max}; }
+  Eigen::Array4f center() const { return 0.5f * min + 0.5f * max; }
 };
 
 /// A run of items that becomes a node, and the boxes around them and around their centers.
@@ -68,7 +72,7 @@ struct BvhRange {
   std::size_t size() const { return end - begin; }
   /// Take in the item at `end`.
   void push(const BvhItem& item) {
-    box.extend(item.box);
+    box.extend(item.box());
     centers.extend(item.center());
     ++end;
   }
@@ -115,14 +119,14 @@ struct BvhSplit {
 
 /// The split between bins that the surface area heuristic takes to be cheapest.
 /// @param scale see BvhBox::half_area()
-inline BvhSplit cheapest_split(const std::vector<BvhItem>& items, const BvhRange& range, const BvhBins& bins,
+inline BvhSplit cheapest_split(const Uninitialized<BvhItem>& items, const BvhRange& range, const BvhBins& bins,
                                float scale) {
   BvhBins::Bin all[3][BvhBins::kMost];
   for (std::size_t i = range.begin; i < range.end; ++i) {
     const Eigen::Array4f center = items[i].center();
     for (int a = 0; a < 3; ++a) {
       BvhBins::Bin& b = all[a][bins.of(center, a)];
-      b.box.extend(items[i].box);
+      b.box.extend(items[i].box());
       ++b.n;
     }
   }
@@ -155,7 +159,7 @@ inline BvhSplit cheapest_split(const std::vector<BvhItem>& items, const BvhRange
 
 /// Split a range: its items are reordered.
 /// @return the two sides; the left one is empty when a leaf is better
-inline std::pair<BvhRange, BvhRange> split_bvh(std::vector<BvhItem>& items, const BvhRange& range, int depth) {
+inline std::pair<BvhRange, BvhRange> split_bvh(Uninitialized<BvhItem>& items, const BvhRange& range, int depth) {
   constexpr std::size_t kMinLeaf = 4, kMaxLeaf = 8;  // fewer are not split, more always are
   constexpr float kNodeCost = 1.0f;                  // of a step down, in triangle tests
   BvhRange left, right;
@@ -203,70 +207,85 @@ struct BvhTask {
   int depth;
 };
 
-/// Make a node and all below it, but what `put_off` takes.
-/// @param put_off `bool(const BvhTask&)`: true for what it takes charge of
-template <typename PutOff>
-void grow_bvh(std::vector<BvhNode>& nodes, std::vector<BvhItem>& items, const BvhTask& whole, PutOff&& put_off) {
-  std::vector<BvhTask> tasks{whole};
+/// Split a task's range and make its node: a leaf, or an inner one whose children's nodes are added behind the others.
+/// @param sides of the range, see split_bvh
+/// @param then `void(const BvhTask&)`, called for the right child, then for the left one
+template <typename Then>
+void make_bvh_node(Uninitialized<BvhNode>& nodes, const BvhTask& task, const std::pair<BvhRange, BvhRange>& sides,
+                   Then&& then) {
+  const auto& [left, right] = sides;
+  const auto children = static_cast<std::uint32_t>(nodes.size());
+  BvhNode& node = nodes[task.node];
+  node.min = task.range.box.min.head<3>();
+  node.max = task.range.box.max.head<3>();
+  if (left.size() == 0) {
+    node.first = static_cast<std::uint32_t>(task.range.begin);
+    node.count = static_cast<std::uint32_t>(task.range.size());
+    return;
+  }
+  node.first = children;
+  node.count = 0;
+  nodes.resize(nodes.size() + 2);
+  then(BvhTask{right, children + 1, task.depth + 1});
+  then(BvhTask{left, children, task.depth + 1});
+}
+
+/// A tree of its own of a range, whose root stands at `depth`.
+inline Uninitialized<BvhNode> grow_bvh(Uninitialized<BvhItem>& items, const BvhRange& range, int depth) {
+  Uninitialized<BvhNode> nodes;
+  nodes.reserve(range.size());
+  nodes.emplace_back();
+  std::vector<BvhTask> tasks{{range, 0, depth}};
   while (!tasks.empty()) {
     throw_if_cancelled();
     const BvhTask task = tasks.back();
     tasks.pop_back();
-    if (put_off(task)) continue;
-    BvhNode& node = nodes[task.node];
-    node.min = task.range.box.min.head<3>();
-    node.max = task.range.box.max.head<3>();
-    const auto [left, right] = split_bvh(items, task.range, task.depth);
-    if (left.size() == 0) {
-      node.first = static_cast<std::uint32_t>(task.range.begin);
-      node.count = static_cast<std::uint32_t>(task.range.size());
-      continue;
-    }
-    const auto children = static_cast<std::uint32_t>(nodes.size());
-    node.first = children;
-    node.count = 0;
-    nodes.resize(nodes.size() + 2);
-    tasks.push_back({right, children + 1, task.depth + 1});
-    tasks.push_back({left, children, task.depth + 1});
+    make_bvh_node(nodes, task, split_bvh(items, task.range, task.depth),
+                  [&](const BvhTask& child) { tasks.push_back(child); });
   }
+  return nodes;
 }
 
 /// The nodes of a tree over `items`, which are put into the order of the leaves. No items: no nodes.
 /// @param threads the result does not depend on it
-inline std::vector<BvhNode> build_bvh(std::vector<BvhItem>& items, int threads) {
-  // Ranges of at most so many are independent pieces of work: levels above them are on one thread.
+inline Uninitialized<BvhNode> build_bvh(Uninitialized<BvhItem>& items, int threads) {
+  // Ranges of at most so many grow trees of their own; those above are split level by level.
   const std::size_t subtree = std::max<std::size_t>(8192, items.size() / 6);
-  std::vector<BvhNode> nodes;
+  Uninitialized<BvhNode> nodes;
   if (items.empty()) return nodes;
-  nodes.reserve(items.size());
   nodes.emplace_back();
   BvhTask whole{{}, 0, 0};
   for (const BvhItem& item : items) whole.range.push(item);
-  std::vector<BvhTask> roots;
-  grow_bvh(nodes, items, whole, [&](const BvhTask& task) {
-    if (task.range.size() > subtree) return false;
-    roots.push_back(task);
-    return true;
-  });
-  std::vector<std::vector<BvhNode>> subtrees(roots.size());
-  const auto grow = [&](std::size_t r) {
-    subtrees[r].reserve(roots[r].range.size());
-    subtrees[r].emplace_back();
-    grow_bvh(subtrees[r], items, {roots[r].range, 0, roots[r].depth}, [](const BvhTask&) { return false; });
-  };
-  std::vector<std::size_t> order(roots.size());  // the largest first, that all threads end at about the same time
-  std::iota(order.begin(), order.end(), std::size_t(0));
-  std::stable_sort(order.begin(), order.end(),
-                   [&](std::size_t a, std::size_t b) { return roots[a].range.size() > roots[b].range.size(); });
-  parallel_for(
-      roots.size(), threads, [&](std::size_t i) { grow(order[i]); }, 1);
-  for (std::size_t r = 0; r < roots.size(); ++r) {
-    const auto shift = static_cast<std::uint32_t>(nodes.size() - 1);  // of all but the root, whose place is there
-    for (BvhNode& node : subtrees[r])
-      if (node.count == 0) node.first += shift;
-    nodes[roots[r].node] = subtrees[r].front();
-    nodes.insert(nodes.end(), subtrees[r].begin() + 1, subtrees[r].end());
+  std::vector<BvhTask> level, roots;
+  const auto add = [&](const BvhTask& task) { (task.range.size() > subtree ? level : roots).push_back(task); };
+  add(whole);
+  while (!level.empty()) {
+    std::vector<std::pair<BvhRange, BvhRange>> sides(level.size());
+    const auto split = [&](std::size_t i) { sides[i] = split_bvh(items, level[i].range, level[i].depth); };
+    parallel_for(level.size(), threads, split, 1);
+    const std::vector<BvhTask> split_tasks = std::exchange(level, {});
+    for (std::size_t i = 0; i < sides.size(); ++i) make_bvh_node(nodes, split_tasks[i], sides[i], add);
   }
+  // The largest first, that all threads end at about the same time.
+  std::stable_sort(roots.begin(), roots.end(),
+                   [](const BvhTask& a, const BvhTask& b) { return a.range.size() > b.range.size(); });
+  std::vector<Uninitialized<BvhNode>> subtrees(roots.size());
+  const auto grow = [&](std::size_t r) { subtrees[r] = grow_bvh(items, roots[r].range, roots[r].depth); };
+  parallel_for(roots.size(), threads, grow, 1);
+  std::vector<std::size_t> shifts;  // where a subtree's nodes go, but for its root, whose place is there
+  std::size_t size = nodes.size();
+  for (const auto& tree : subtrees) {
+    shifts.push_back(size - 1);
+    size += tree.size() - 1;
+  }
+  nodes.resize(size);
+  const auto move = [&](std::size_t r) {
+    for (BvhNode& node : subtrees[r])
+      if (node.count == 0) node.first += static_cast<std::uint32_t>(shifts[r]);
+    nodes[roots[r].node] = subtrees[r].front();
+    std::copy(subtrees[r].begin() + 1, subtrees[r].end(), nodes.begin() + static_cast<std::ptrdiff_t>(shifts[r] + 1));
+  };
+  parallel_for(roots.size(), threads, move, 1);
   return nodes;
 }
 
