@@ -11,6 +11,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <fstream>
+#include <malloc.h>
 #include <map>
 #include <set>
 #include <string>
@@ -43,14 +44,17 @@ inline void require(bool same, const std::string& what) {
   std::exit(1);
 }
 
-/// Peak memory of the process so far (MB), Linux only; `forget_peak` starts anew.
+/// Peak memory of the process so far (MB), Linux only; `forget_peak` starts anew, with what is free given back.
 inline double peak_megabytes() {
   std::ifstream status("/proc/self/status");
   for (std::string word; status >> word;)
-    if (word == "VmHWM:" && status >> word) return std::atof(word.c_str()) / 1024.0;
+    if (word == "VmHWM:" && status >> word) return std::atof(word.c_str()) * 1024e-6;
   return 0.0;
 }
-inline void forget_peak() { std::ofstream("/proc/self/clear_refs") << 5; }
+inline void forget_peak() {
+  malloc_trim(0);
+  std::ofstream("/proc/self/clear_refs") << 5;
+}
 
 /// Register a run. `run(threads)` returns the answer, `check(answer)` is called once for it.
 template <typename Run, typename Check>

@@ -30,6 +30,10 @@ struct Sink {
   std::size_t step = 1;
 
   explicit operator bool() const { return floats || ints; }
+  /// The same from row `first` on.
+  Sink from(std::size_t first) const {
+    return {floats ? floats + first * step : nullptr, ints ? ints + first * step : nullptr, step};
+  }
   /// False when the number is no int but has to be one.
   bool store(std::size_t row, double value) const;
 };

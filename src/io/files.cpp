@@ -34,32 +34,43 @@ void fail(const fs::path& path, std::size_t line, const std::string& message) {
   throw FileError(path.string() + ":" + std::to_string(line) + ": " + message);
 }
 
-Bytes read_bytes(const fs::path& path) {
+InputFile::InputFile(const fs::path& path) : path_(path) {
   std::error_code error;
   const fs::file_status status = fs::status(path, error);
   if (!fs::exists(status)) fail(path, "no such file");
   if (fs::is_directory(status)) fail(path, "is a directory, not a file");
   if (!fs::is_regular_file(status) && !fs::is_fifo(status)) fail(path, "is not a regular file");
-  const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen(path.c_str(), "rb"), std::fclose);
-  if (!file) fail(path, std::string("cannot be opened: ") + std::strerror(errno));
+  file_.reset(std::fopen(path.c_str(), "rb"));
+  if (!file_) fail(path, std::string("cannot be opened: ") + std::strerror(errno));
+  if (!fs::is_regular_file(status)) return;
+  const auto size = fs::file_size(path, error);
+  if (!error) size_ = static_cast<std::size_t>(size);
+}
 
-  std::size_t capacity = 1 << 16;
-  if (fs::is_regular_file(status)) {
-    const auto size = fs::file_size(path, error);
-    if (!error) capacity = static_cast<std::size_t>(size) + 1;  // one more, to meet the end at the first read
-  }
-  Bytes bytes{std::unique_ptr<char[]>(new char[capacity]), 0};
+void InputFile::Closer::operator()(std::FILE* file) const { std::fclose(file); }
+
+std::size_t InputFile::read(char* to, std::size_t size) {
+  const std::size_t got = std::fread(to, 1, size, file_.get());
+  if (got < size && std::ferror(file_.get())) fail(path_, "cannot be read");
+  return got;
+}
+
+Bytes InputFile::rest(Bytes before) {
+  // One more than there should be, to meet the end at the first read.
+  std::size_t capacity = std::max(size_ ? *size_ + 1 : 1 << 16, before.size + 1);
+  Bytes bytes{std::unique_ptr<char[]>(new char[capacity]), before.size};
+  if (before.size > 0) std::memcpy(bytes.data.get(), before.data.get(), before.size);
   while (true) {
-    bytes.size += std::fread(bytes.data.get() + bytes.size, 1, capacity - bytes.size, file.get());
-    if (bytes.size < capacity) break;
+    bytes.size += read(bytes.data.get() + bytes.size, capacity - bytes.size);
+    if (bytes.size < capacity) return bytes;
     std::unique_ptr<char[]> larger(new char[2 * capacity]);
     std::memcpy(larger.get(), bytes.data.get(), bytes.size);
     bytes.data = std::move(larger);
     capacity *= 2;
   }
-  if (std::ferror(file.get())) fail(path, "cannot be read");
-  return bytes;
 }
+
+Bytes read_bytes(const fs::path& path) { return InputFile(path).rest(); }
 
 void AtomicFile::Closer::operator()(std::FILE* file) const { std::fclose(file); }
 

@@ -38,7 +38,7 @@ Mesh read_mesh(const fs::path& path, StlCorners corners) {
 }
 
 Mesh read_ply_mesh(const fs::path& path) {
-  const PlyDocument document(path);
+  PlyDocument document(path);
   const PlyElement* vertex = document.find("vertex");
   const PlyElement* face = document.find("face");
   if (!vertex || vertex->find({"x"}) < 0 || vertex->find({"y"}) < 0 || vertex->find({"z"}) < 0)

@@ -36,7 +36,7 @@ std::string header(std::size_t points, const char* properties) {
 }  // namespace
 
 CloudFile read_ply(const std::filesystem::path& path, NonFinite non_finite) {
-  const PlyDocument document(path);
+  PlyDocument document(path);
   const PlyElement* vertex = document.find("vertex");
   if (!vertex) fail(path, "holds no point cloud: no element 'vertex'");
   std::vector<std::string> names;

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <optional>
 
 #include "text.hpp"
@@ -41,9 +42,21 @@ int PlyElement::find(std::initializer_list<const char*> names) const {
   return -1;
 }
 
-PlyDocument::PlyDocument(const std::filesystem::path& path) : path_(path), bytes_(read_bytes(path)) {
-  if (bytes_.size == 0) fail(path_, "is empty");
+PlyDocument::PlyDocument(const std::filesystem::path& path) : path_(path), file_(path) {
+  constexpr std::size_t kHead = 2048;  // bytes; few headers are longer
+  Bytes head{std::unique_ptr<char[]>(new char[kHead]), 0};
+  head.size = file_.read(head.data.get(), kHead);
+  if (head.size == 0) fail(path_, "is empty");
+  const std::size_t end = head.view().find("\nend_header");
+  const bool header_in_head =
+      end != std::string_view::npos && head.view().find('\n', end + 1) != std::string_view::npos;
+  const bool whole = head.size < kHead || !file_.size() || !header_in_head;
+  bytes_ = whole ? file_.rest(std::move(head)) : std::move(head);
   parse_header();
+  const auto has_list = [](const PlyElement& e) { return e.has_list(); };
+  const bool by_blocks = !whole && !ascii_ && std::none_of(elements_.begin(), elements_.end(), has_list);
+  if (!whole && !by_blocks) bytes_ = file_.rest(std::move(bytes_));
+  size_ = by_blocks ? std::max(*file_.size(), bytes_.size) : bytes_.size;
   check_sizes();
 }
 
@@ -110,7 +123,7 @@ void PlyDocument::parse_header() {
 }
 
 void PlyDocument::check_sizes() const {
-  const std::size_t available = bytes_.size - body_;
+  const std::size_t available = size_ - body_;
   for (const PlyElement& e : elements_) {
     if (e.count == 0) continue;
     if (e.properties.empty()) fail(path_, "bad PLY header: element '" + e.name + "' has no properties");
@@ -127,9 +140,8 @@ void PlyDocument::fail_truncated(const PlyElement& element, std::size_t record) 
                   std::to_string(element.count));
 }
 
-void PlyDocument::read(const std::vector<std::pair<const PlyElement*, Wanted>>& wanted) const {
+void PlyDocument::read(const std::vector<std::pair<const PlyElement*, Wanted>>& wanted) {
   std::size_t left = wanted.size();
-  const char* at = bytes_.data.get() + body_;
   Lines lines(bytes_.view().substr(body_), body_line_);
   for (const PlyElement& e : elements_) {
     if (left == 0) return;
@@ -138,32 +150,47 @@ void PlyDocument::read(const std::vector<std::pair<const PlyElement*, Wanted>>& 
     if (take) --left;
     if (ascii_)
       read_text(e, take, lines);
+    else if (e.has_list())
+      read_records(e, take);
     else
-      at = read_binary(e, take, at);
+      read_blocks(e, take);
   }
 }
 
-const char* PlyDocument::read_binary(const PlyElement& element, const Wanted* wanted, const char* at) const {
-  if (element.has_list()) return read_records(element, wanted, at);
-  const std::size_t available = static_cast<std::size_t>(bytes_.data.get() + bytes_.size - at);
+/// The next bytes of the body: those that are in memory, then those of the file. @return how many there are
+std::size_t PlyDocument::next(char* to, std::size_t size) {
+  const std::size_t here = body_ < bytes_.size ? std::min(size, bytes_.size - body_) : 0;
+  if (here > 0) std::memcpy(to, bytes_.data.get() + body_, here);
+  const std::size_t got = here + (here < size ? file_.read(to + here, size - here) : 0);
+  body_ += got;
+  return got;
+}
+
+void PlyDocument::read_blocks(const PlyElement& element, const Wanted* wanted) {
+  constexpr std::size_t kBlock = 2048;  // records
   const std::size_t size = element.record_size();
-  if (size == 0) return at;
-  if (element.count > available / size) fail_truncated(element, available / size);
-  if (wanted) {
+  if (size == 0) return;
+  std::vector<char> block(kBlock * size);
+  for (std::size_t begin = 0; begin < element.count; begin += kBlock) {
+    const std::size_t rows = std::min(kBlock, element.count - begin);
+    if (const std::size_t got = next(block.data(), rows * size); got < rows * size)
+      fail_truncated(element, begin + got / size);
+    if (!wanted) continue;
     std::vector<Column> columns;
     std::size_t offset = 0;
     for (std::size_t i = 0; i < element.properties.size(); ++i) {
       const Scalar type = element.properties[i].type;
-      if (wanted->sinks[i]) columns.push_back({at + offset, size, type, swapped_, wanted->sinks[i]});
+      if (const Sink& sink = wanted->sinks[i])
+        columns.push_back({block.data() + offset, size, type, swapped_, sink.from(begin)});
       offset += size_of(type);
     }
-    if (const auto refused = decode(columns, element.count))
-      fail(path_, "'" + element.name + "' " + std::to_string(*refused) + ": a label is not a whole number");
+    if (const auto refused = decode(columns, rows))
+      fail(path_, "'" + element.name + "' " + std::to_string(begin + *refused) + ": a label is not a whole number");
   }
-  return at + element.count * size;
 }
 
-const char* PlyDocument::read_records(const PlyElement& element, const Wanted* wanted, const char* at) const {
+void PlyDocument::read_records(const PlyElement& element, const Wanted* wanted) {
+  const char* at = bytes_.data.get() + body_;
   const char* const end = bytes_.data.get() + bytes_.size;
   std::vector<double> values;
   for (std::size_t r = 0; r < element.count; ++r) {
@@ -194,7 +221,7 @@ const char* PlyDocument::read_records(const PlyElement& element, const Wanted* w
       at += n * size;
     }
   }
-  return at;
+  body_ = static_cast<std::size_t>(at - bytes_.data.get());
 }
 
 void PlyDocument::read_text(const PlyElement& element, const Wanted* wanted, Lines& lines) const {

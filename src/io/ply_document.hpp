@@ -32,7 +32,8 @@ struct PlyElement {
   int find(std::initializer_list<const char*> names) const;
 };
 
-/// A PLY file in memory whose header has been read and found to fit the file's size.
+/// A PLY file whose header has been read and found to fit the file's size. Binary records of one size are read block by
+/// block, all others at once.
 class PlyDocument {
  public:
   /// What to take from an element: one sink a scalar property (false = skip), and a call for each record of one list.
@@ -47,22 +48,26 @@ class PlyDocument {
 
   /// The element of that name, or nullptr.
   const PlyElement* find(const char* name) const;
-  /// Read the elements named; the others are skipped. @throws FileError where the file is truncated or not numeric
-  void read(const std::vector<std::pair<const PlyElement*, Wanted>>& wanted) const;
+  /// Read the elements named, once; the others are skipped.
+  /// @throws FileError where the file is truncated or not numeric
+  void read(const std::vector<std::pair<const PlyElement*, Wanted>>& wanted);
 
  private:
   void parse_header();
   void check_sizes() const;
-  const char* read_binary(const PlyElement& element, const Wanted* wanted, const char* at) const;
-  const char* read_records(const PlyElement& element, const Wanted* wanted, const char* at) const;
+  void read_blocks(const PlyElement& element, const Wanted* wanted);
+  void read_records(const PlyElement& element, const Wanted* wanted);
+  std::size_t next(char* to, std::size_t size);
   void read_text(const PlyElement& element, const Wanted* wanted, class Lines& lines) const;
   [[noreturn]] void fail_truncated(const PlyElement& element, std::size_t record) const;
 
   std::filesystem::path path_;
-  Bytes bytes_;
+  InputFile file_;
+  Bytes bytes_;  // the beginning of the file, or all of it
   std::vector<PlyElement> elements_;
   bool ascii_ = false, swapped_ = false;
-  std::size_t body_ = 0;       // offset of the first record
+  std::size_t size_ = 0;       // of the file
+  std::size_t body_ = 0;       // offset of the first record, then of what is read next
   std::size_t body_line_ = 0;  // its line
 };
 

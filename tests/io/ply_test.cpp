@@ -3,7 +3,10 @@
 #include <agrisee/io/ply.hpp>
 
 #include <clocale>
+#include <fstream>
 #include <limits>
+#include <sys/stat.h>
+#include <thread>
 
 #include "io/io_support.hpp"
 
@@ -43,6 +46,36 @@ std::string awkward_binary(bool big) {
            bytes_of<std::int16_t>(static_cast<std::int16_t>(-2 * i), big) +
            bytes_of<std::uint16_t>(static_cast<std::uint16_t>(i + 40000), big);
   return out;
+}
+
+constexpr std::size_t kMany = 20000;  // points of a file that is read in many blocks
+
+/// A binary file of kMany points (i, 2 i, -i) with labels, behind `padding` bytes of comments and one other element.
+std::string many_points(bool big, std::size_t padding = 0, const std::string& after_header = "\n") {
+  std::string out = std::string("ply\nformat binary_") + (big ? "big" : "little") + "_endian 1.0\n";
+  for (std::size_t left = padding; left > 0;) {
+    const std::size_t line = left < 40 ? left : 20;
+    out += "comment " + std::string(line - 9, '.') + '\n';
+    left -= line;
+  }
+  out += "element camera 3\nproperty double focus\nelement vertex " + std::to_string(kMany) +
+         "\nproperty float x\nproperty float y\nproperty float z\nproperty double label\nend_header" + after_header;
+  for (int i = 0; i < 3; ++i) out += bytes_of(0.5, big);
+  for (std::size_t i = 0; i < kMany; ++i) {
+    const auto x = static_cast<float>(i);
+    for (const float c : {x, 2 * x, -x}) out += bytes_of(c, big);
+    out += bytes_of(static_cast<double>(i % 7), big);
+  }
+  return out;
+}
+
+bool are_many_points(const io::CloudFile& file) {
+  bool same = file.cloud.size() == kMany && file.instance.size() == kMany;
+  for (std::size_t i = 0; same && i < kMany; ++i) {
+    const auto x = static_cast<float>(i);
+    same = file.cloud.points[i] == Eigen::Vector3f(x, 2 * x, -x) && file.instance[i] == static_cast<int>(i % 7);
+  }
+  return same;
 }
 
 std::string ascii(const std::string& body, const std::string& count = "2") {
@@ -219,6 +252,43 @@ TEST_CASE("PLY files that are not right are refused by name") {
       "label\n"
       "end_header\n1 2 3 0.5\n",
       "not a whole number");
+}
+
+TEST_CASE("PLY files of many blocks, with headers of any length") {
+  const TempFolder folder;
+  for (const bool big : {false, true}) CHECK(are_many_points(reader(folder.file("a.ply", many_points(big)))));
+  // The header ends anywhere about 2 KiB, the part of a file that is read first.
+  const std::string text = many_points(false);
+  const std::size_t header = text.find("end_header") + std::string("end_header\n").size();
+  for (std::size_t end = 2048 - 14; end <= 2048 + 14; ++end) {
+    INFO(end);
+    CHECK(are_many_points(reader(folder.file("a.ply", many_points(false, end - header)))));
+    CHECK(are_many_points(reader(folder.file("a.ply", many_points(false, end - header, "\r\n")))));
+  }
+  CHECK(are_many_points(reader(folder.file("a.ply", many_points(false, 200000)))));
+  CHECK(are_many_points(reader(folder.file("a.ply", many_points(false, 0, std::string(70000, ' ') + '\n')))));
+}
+
+TEST_CASE("PLY files of many blocks that are not right are refused by name") {
+  const TempFolder folder;
+  const std::string good = many_points(false);
+  for (const std::size_t kept : {good.size() - 1, good.size() / 2, std::size_t(70000), std::size_t(2048)})
+    require_file_error(folder.file("a.ply", good.substr(0, kept)), "truncated", reader);
+  for (const std::size_t bad : {std::size_t(1), std::size_t(2047), std::size_t(2048), kMany - 1}) {
+    std::string text = good;
+    text.replace(text.size() - (kMany - bad) * 20 + 12, 8, bytes_of(0.5));
+    require_file_error(folder.file("a.ply", text), "'vertex' " + std::to_string(bad) + ": a label", reader);
+  }
+  survive_damage(folder, "b.ply", good, reader);
+}
+
+TEST_CASE("PLY from a pipe, whose length nobody knows") {
+  const TempFolder folder;
+  REQUIRE(::mkfifo((folder / "pipe.ply").c_str(), 0600) == 0);
+  std::thread writer([&] { std::ofstream(folder / "pipe.ply", std::ios::binary) << many_points(false); });
+  const io::CloudFile file = reader(folder / "pipe.ply");
+  writer.join();
+  CHECK(are_many_points(file));
 }
 
 TEST_CASE("damaged PLY files neither crash nor hang") {

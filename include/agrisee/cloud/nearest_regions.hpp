@@ -11,7 +11,6 @@
 #include <agrisee/core/components.hpp>
 
 #include <algorithm>
-#include <iterator>
 #include <mutex>
 #include <utility>
 
@@ -56,13 +55,13 @@ std::pair<Labels, int> reached_sets(DisjointSets& sets, std::size_t n, Edges& ed
   for (std::size_t j = 0; j < n; ++j) {
     if ((j & 0x3FFF) == 0) throw_if_cancelled();
     if (!member(j)) continue;
-    const Index root = sets.root(static_cast<Index>(j));
-    Index& seed = seed_of[static_cast<std::size_t>(root)];
+    const Seed mine{key_of(j), sets.root(static_cast<Index>(j))};
+    Index& seed = seed_of[static_cast<std::size_t>(mine.root)];
     if (seed < 0) {
       seed = static_cast<Index>(seeds.size());
-      seeds.push_back({key_of(j), root});
-    } else if (auto& best = seeds[static_cast<std::size_t>(seed)].key; key_of(j) < best) {
-      best = key_of(j);
+      seeds.push_back(mine);
+    } else if (mine.key < seeds[static_cast<std::size_t>(seed)].key) {
+      seeds[static_cast<std::size_t>(seed)] = mine;
     }
   }
   sort_cancellably(seeds.begin(), seeds.end(), [](const Seed& a, const Seed& b) { return a.key < b.key; });
@@ -72,8 +71,7 @@ std::pair<Labels, int> reached_sets(DisjointSets& sets, std::size_t n, Edges& ed
   sort_cancellably(edges.begin(), edges.end());
   edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
 
-  Labels& regions = seed_of;
-  regions.assign(n, 0);
+  Labels regions(n, 0);
   int created = 0;
   Indices queue;
   for (const auto& [ignored, first] : seeds) {
@@ -104,7 +102,6 @@ NearestReach<scalar_t<C>> nearest_reach(const C& cloud, const NeighborhoodGrid<s
   const Grid<S>& grid = near.grid;
   NearestReach<S> reach(grid.stored());
   std::mutex far_mutex;
-  Indices stored;  // of the cloud's points, once there are crowds
   const auto keep = [&](std::size_t j, const Neighborhood<S>& found, int rings) {
     const bool all = found.size < k;  // there are no more points
     reach.sq[j] = all ? kInfinity : found.distance_sq[k - 1];
@@ -113,20 +110,16 @@ NearestReach<scalar_t<C>> nearest_reach(const C& cloud, const NeighborhoodGrid<s
     if (rings > 0) return;
     const std::lock_guard<std::mutex> lock(far_mutex);
     reach.far.push_back(static_cast<Index>(j));
-    if (found.x == grid.x().data()) {
-      reach.far.insert(reach.far.end(), found.at, found.at + found.size);
-    } else {  // found in the cloud
-      if (stored.empty()) {
-        stored.resize(agrisee::size(cloud));
-        for (std::size_t i = 0; i < grid.stored(); ++i)
-          stored[static_cast<std::size_t>(grid.ids()[i])] = static_cast<Index>(i);
-      }
-      std::transform(found.ids, found.ids + found.size, std::back_inserter(reach.far),
-                     [&](Index id) { return stored[static_cast<std::size_t>(id)]; });
-    }
+    reach.far.insert(reach.far.end(), found.ids, found.ids + found.size);
     reach.far.resize(reach.far.size() + (k - found.size), -1);
   };
   for_stored_neighborhoods(cloud, near, k, kInfinity, threads, keep);
+  if (reach.far.empty()) return reach;
+  Indices stored(agrisee::size(cloud));  // of the cloud's points
+  for (std::size_t j = 0; j < grid.stored(); ++j)
+    stored[static_cast<std::size_t>(grid.ids()[j])] = static_cast<Index>(j);
+  for (std::size_t f = 0; f < reach.far.size(); ++f)
+    if (f % (k + 1) > 0 && reach.far[f] >= 0) reach.far[f] = stored[static_cast<std::size_t>(reach.far[f])];
   return reach;
 }
 

@@ -323,26 +323,23 @@ class Grid {
       if (cell != last) sparse_.append(last = cell, static_cast<std::uint32_t>(j));
       store(j++, p, i);
     };
-    if (dims_.cast<double>().prod() < 9e18) {  // a number tells a cell
-      detail::Uninitialized<Keyed<std::uint64_t>> order;
-      order.reserve(n);
+    const auto for_finite = [&](auto&& f) {  // f(cell, index)
       for (std::size_t i = 0; i < size_; ++i) {
         look_up(i);
         const Vector3<S> p = point(cloud, i);
-        if (!is_finite(p)) continue;
-        const Cell c = cell_of(p);
-        order.push_back({key(c[2], c[1], c[0]), static_cast<Index>(i)});
+        if (is_finite(p)) f(cell_of(p), static_cast<Index>(i));
       }
+    };
+    if (dims_.cast<double>().prod() < 9e18) {  // a number tells a cell
+      detail::Uninitialized<Keyed<std::uint64_t>> order;
+      order.reserve(n);
+      for_finite([&](const Cell& c, Index i) { order.push_back({key(c[2], c[1], c[0]), i}); });
       radix_sort(order);
       for (const auto& one : order) next(one.index);
     } else {
       std::vector<std::pair<Cell, Index>> order;
       order.reserve(n);
-      for (std::size_t i = 0; i < size_; ++i) {
-        look_up(i);
-        const Vector3<S> p = point(cloud, i);
-        if (is_finite(p)) order.emplace_back(cell_of(p), static_cast<Index>(i));
-      }
+      for_finite([&](const Cell& c, Index i) { order.emplace_back(c, i); });
       detail::sort_cancellably(order.begin(), order.end());
       for (const auto& one : order) next(one.second);
     }

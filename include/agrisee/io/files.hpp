@@ -10,6 +10,7 @@
 #include <cstdio>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -24,8 +25,32 @@ struct Bytes {
   std::string_view view() const { return {data.get(), size}; }
 };
 
-/// All bytes of a regular file (or pipe), read at once.
-/// @throws FileError when it is missing, a directory, a device, or cannot be read
+/// A regular file (or pipe) that is read from its beginning to its end.
+class InputFile {
+ public:
+  /// @throws FileError when it is missing, a directory, a device, or cannot be opened
+  explicit InputFile(const std::filesystem::path& path);
+
+  /// Bytes of the whole file; none for a pipe, whose length nobody knows.
+  std::optional<std::size_t> size() const { return size_; }
+  /// The next bytes, as many as there are. @return how many, less than `size` at the end of the file alone
+  /// @throws FileError when it cannot be read
+  std::size_t read(char* to, std::size_t size);
+  /// All bytes that are left. @param before what comes before them, read already
+  /// @throws FileError when it cannot be read
+  Bytes rest(Bytes before = {});
+
+ private:
+  struct Closer {
+    void operator()(std::FILE* file) const;
+  };
+  std::filesystem::path path_;
+  std::unique_ptr<std::FILE, Closer> file_;
+  std::optional<std::size_t> size_;
+};
+
+/// All bytes of a file, read at once.
+/// @throws FileError as InputFile does
 Bytes read_bytes(const std::filesystem::path& path);
 
 /// What of a file is left after a power cut. Either way it is complete or absent for whoever looks while the machine
