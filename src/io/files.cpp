@@ -8,6 +8,7 @@
 #include <cstring>
 #include <fcntl.h>
 #include <regex>
+#include <sys/stat.h>
 #include <system_error>
 #include <unistd.h>
 
@@ -42,9 +43,9 @@ InputFile::InputFile(const fs::path& path) : path_(path) {
   if (!fs::is_regular_file(status) && !fs::is_fifo(status)) fail(path, "is not a regular file");
   file_.reset(std::fopen(path.c_str(), "rb"));
   if (!file_) fail(path, std::string("cannot be opened: ") + std::strerror(errno));
-  if (!fs::is_regular_file(status)) return;
-  const auto size = fs::file_size(path, error);
-  if (!error) size_ = static_cast<std::size_t>(size);
+  struct stat now;  // of what has been opened: another file may have been given the name
+  if (::fstat(::fileno(file_.get()), &now) == 0 && S_ISREG(now.st_mode) && now.st_size > 0)
+    size_ = static_cast<std::size_t>(now.st_size);
 }
 
 void InputFile::Closer::operator()(std::FILE* file) const { std::fclose(file); }

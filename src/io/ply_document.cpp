@@ -167,12 +167,13 @@ std::size_t PlyDocument::next(char* to, std::size_t size) {
 }
 
 void PlyDocument::read_blocks(const PlyElement& element, const Wanted* wanted) {
-  constexpr std::size_t kBlock = 2048;  // records
+  constexpr std::size_t kBlock = 1 << 16;  // bytes, or one record
   const std::size_t size = element.record_size();
   if (size == 0) return;
-  std::vector<char> block(kBlock * size);
-  for (std::size_t begin = 0; begin < element.count; begin += kBlock) {
-    const std::size_t rows = std::min(kBlock, element.count - begin);
+  const std::size_t most = std::min(std::max<std::size_t>(kBlock / size, 1), element.count);
+  std::vector<char> block(most * size);
+  for (std::size_t begin = 0; begin < element.count; begin += most) {
+    const std::size_t rows = std::min(most, element.count - begin);
     if (const std::size_t got = next(block.data(), rows * size); got < rows * size)
       fail_truncated(element, begin + got / size);
     if (!wanted) continue;

@@ -13,6 +13,7 @@
 #include <agrisee/cloud/parameters.hpp>
 #include <agrisee/core/components.hpp>
 #include <agrisee/core/count_neighbors.hpp>
+#include <agrisee/core/sums.hpp>
 
 namespace agrisee {
 
@@ -99,7 +100,7 @@ Labels dbscan(const C& cloud, const DbscanParameters& params = {}, int threads =
         const S qx = x[j], qy = y[j], qz = z[j];
         for (std::size_t i = begin; i < end; ++i) {
           const S dx = x[i] - qx, dy = y[i] - qy, dz = z[i] - qz;
-          const bool near = dx * dx + dy * dy + dz * dz <= eps_sq;
+          const bool near = detail::sum_of_squares(dx, dy, dz) <= eps_sq;
           is[i - begin] = static_cast<std::uint8_t>(near & stored_core[i]);
         }
       });
@@ -109,7 +110,8 @@ Labels dbscan(const C& cloud, const DbscanParameters& params = {}, int threads =
       sets, grid.stored(), 1, threads, [&](std::size_t j) { return stored_core[j] != 0; },
       [&](std::size_t j) { return grid.ids()[j]; });
   Labels labels(n, 0);
-  parallel_for(grid.stored(), threads, [&](std::size_t j) { labels[id(j)] = stored_labels[j]; }, 4096);
+  parallel_for(
+      grid.stored(), threads, [&](std::size_t j) { labels[id(j)] = stored_labels[j]; }, 4096);
 
   // Border points: the least label of the core points nearby.
   constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
@@ -125,7 +127,7 @@ Labels dbscan(const C& cloud, const DbscanParameters& params = {}, int threads =
           for (std::size_t i = begin; i < end; ++i) {
             const S dx = x[i] - qx, dy = y[i] - qy, dz = z[i] - qz;
             const auto its = static_cast<std::uint32_t>(stored_labels[i]) - 1u;  // of no cluster: the largest
-            least = std::min(least, dx * dx + dy * dy + dz * dz <= eps_sq ? its : kNone);
+            least = std::min(least, detail::sum_of_squares(dx, dy, dz) <= eps_sq ? its : kNone);
           }
         }
         if (least != kNone) labels[id(j)] = static_cast<int>(least) + 1;

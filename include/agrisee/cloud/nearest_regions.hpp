@@ -11,6 +11,7 @@
 #include <agrisee/core/components.hpp>
 
 #include <algorithm>
+#include <atomic>
 #include <mutex>
 #include <utility>
 
@@ -18,19 +19,19 @@ namespace agrisee {
 
 namespace detail {
 
-/// Which points are the k nearest of each stored point of a grid: those up to the last of them. Most are told by their
-/// distances once more, which takes less time than writing and reading lists, and a tenth of the memory.
+/// Which points are the k nearest of each stored point of a grid: those up to the last of them. A tenth of the lists'
+/// memory; who is asked about again is told by its distance.
 template <typename S>
 struct NearestReach {
   /// Of n points, to be written.
-  explicit NearestReach(std::size_t n) { rings.resize(n), sq.resize(n), last.resize(n); }
+  explicit NearestReach(std::size_t n) : rings(n) { sq.resize(n), last.resize(n); }
   /// Whether the point `id`, `d_sq` (m2) away, is one of the k nearest of stored point j.
   bool holds(std::size_t j, S d_sq, Index id) const { return d_sq < sq[j] || (d_sq == sq[j] && id <= last[j]); }
 
-  Uninitialized<char> rings;  ///< of cells in which the k are found, 1 or 2; 0: see `far`
-  Uninitialized<S> sq;        ///< squared distance (m2) of the k-th nearest; infinite where there are fewer
-  Uninitialized<Index> last;  ///< its index; of those at that distance, greater ones are none of the k
-  Indices far;                ///< k + 1 a stored point: itself, then its neighbours, stored points, or -1
+  std::vector<std::atomic<char>> rings;  ///< of cells in which the k are found, 1 or 2; 0: not known yet, or see `far`
+  Uninitialized<S> sq;                   ///< squared distance (m2) of the k-th nearest; infinite where there are fewer
+  Uninitialized<Index> last;             ///< its index; of those at that distance, greater ones are none of the k
+  Indices far;                           ///< k + 1 a stored point: itself, then its neighbours, stored points, or -1
 };
 
 /// Edges of one direction between stored points.
@@ -94,24 +95,28 @@ std::pair<Labels, int> reached_sets(DisjointSets& sets, std::size_t n, Edges& ed
 }
 
 /// The reach of the points of a grid; see there.
-template <typename C>
+/// @param found found(j, neighbourhood, reach) for those found within rings of cells, once the reach of j is known
+template <typename C, typename Found>
 NearestReach<scalar_t<C>> nearest_reach(const C& cloud, const NeighborhoodGrid<scalar_t<C>>& near, std::size_t k,
-                                        int threads) {
+                                        int threads, const Found& found) {
   using S = scalar_t<C>;
   constexpr S kInfinity = std::numeric_limits<S>::infinity();
   const Grid<S>& grid = near.grid;
   NearestReach<S> reach(grid.stored());
   std::mutex far_mutex;
-  const auto keep = [&](std::size_t j, const Neighborhood<S>& found, int rings) {
-    const bool all = found.size < k;  // there are no more points
-    reach.sq[j] = all ? kInfinity : found.distance_sq[k - 1];
-    reach.last[j] = all ? std::numeric_limits<Index>::max() : found.ids[k - 1];
-    reach.rings[j] = static_cast<char>(rings);
-    if (rings > 0) return;
+  const auto keep = [&](std::size_t j, const Neighborhood<S>& its, int rings) {
+    const bool all = its.size < k;  // there are no more points
+    reach.sq[j] = all ? kInfinity : its.distance_sq[k - 1];
+    reach.last[j] = all ? std::numeric_limits<Index>::max() : its.ids[k - 1];
+    if (rings > 0) {
+      reach.rings[j].store(static_cast<char>(rings), std::memory_order_release);
+      found(j, its, reach);
+      return;
+    }
     const std::lock_guard<std::mutex> lock(far_mutex);
     reach.far.push_back(static_cast<Index>(j));
-    reach.far.insert(reach.far.end(), found.ids, found.ids + found.size);
-    reach.far.resize(reach.far.size() + (k - found.size), -1);
+    reach.far.insert(reach.far.end(), its.ids, its.ids + its.size);
+    reach.far.resize(reach.far.size() + (k - its.size), -1);
   };
   for_stored_neighborhoods(cloud, near, k, kInfinity, threads, keep);
   if (reach.far.empty()) return reach;
@@ -135,11 +140,26 @@ Labels nearest_regions(const C& cloud, const std::vector<Vector3<scalar_t<C>>>& 
   const Grid<S>& grid = near.grid;
   const std::size_t n = grid.stored();
   const auto& ids = grid.ids();
-  NearestReach<S> reach = nearest_reach(cloud, near, k, threads);
   const OrientedPoints<S> points(grid, normals, params, threads);
   const auto member = [&](std::size_t j) { return points.member(j); };
 
+  // Most sets are joined by the lists at hand, as soon as the reach of two neighbours is known; their first few
+  // suffice.
+  constexpr std::size_t kFirst = 9;  // itself included
   DisjointSets sets(n);
+  const auto join_known = [&](std::size_t j, const Neighborhood<S>& its, const NearestReach<S>& reach) {
+    if (!member(j)) return;
+    Index mine = sets.root(static_cast<Index>(j));
+    for (std::size_t f = 1; f < std::min(its.size, kFirst); ++f) {
+      const std::size_t i = its.stored[its.at[f]];
+      if (reach.rings[i].load(std::memory_order_acquire) == 0 || sets.root(static_cast<Index>(i)) == mine) continue;
+      if (reach.holds(i, its.distance_sq[f], ids[j]) && points.smooth(i, j))
+        mine = sets.join(mine, static_cast<Index>(i));
+    }
+  };
+  NearestReach<S> reach = nearest_reach(cloud, near, k, threads, join_known);
+
+  // What is left are neighbours of different sets, found by their distances.
   std::mutex edges_mutex;
   Edges edges;
   const auto add = [&](const Edges& some) {
@@ -158,29 +178,40 @@ Labels nearest_regions(const C& cloud, const std::vector<Vector3<scalar_t<C>>>& 
   };
   const Stencil stencils[] = {box_stencil(1), box_stencil(2)};
   for_cells(grid, threads, [&] {
-    return [&, tile = Tile<S>(), sq = std::vector<S>(), within = std::vector<std::uint32_t>(), one_way = Edges()](
-               const typename Grid<S>::Cell& cell, std::size_t first, std::size_t last) mutable {
+    return [&, others = Indices(), one_way = Edges()](const typename Grid<S>::Cell& cell, std::size_t first,
+                                                      std::size_t last) mutable {
       one_way.clear();
       for (int rings = 1; rings <= 2; ++rings) {
-        const auto grows = [&](std::size_t i) { return reach.rings[i] == rings && member(i); };
+        const auto grows = [&](std::size_t i) {
+          return reach.rings[i].load(std::memory_order_relaxed) == rings && member(i);
+        };
         std::size_t i = first;
         while (i < last && !grows(i)) ++i;
         if (i == last) continue;
-        tile.gather(grid, cell, stencils[rings - 1]);
-        if (sq.size() < tile.size) sq.resize(2 * tile.size), within.resize(2 * tile.size);
+        const auto candidates = [&](auto&& f) {  // f(j) for those of the cells about
+          for (const StencilRow& row : stencils[rings - 1]) {
+            const auto [begin, end] =
+                grid.run(cell[2] - row.outer, cell[2] + row.outer, cell[1] + row.dy, cell[0] + row.dz);
+            for (std::size_t j = begin; j < end; ++j) f(j);
+          }
+        };
+        const Index most = sets.root(static_cast<Index>(i));
+        others.clear();
+        candidates([&](std::size_t j) {
+          const auto it = static_cast<Index>(j);
+          if (!sets.points_to(it, most) && member(j) && sets.root(it) != most) others.push_back(it);
+        });
+        if (others.empty()) continue;
         for (; i < last; ++i) {
           if (!grows(i)) continue;
-          tile.distances_sq(grid.stored_point(i), sq.data());
-          std::size_t found = 0;
-          for (std::size_t c = 0; c < tile.size; ++c) {  // no branch: a third of the candidates pass
-            within[found] = static_cast<std::uint32_t>(c);
-            found += sq[c] <= reach.sq[i] ? 1u : 0u;
-          }
-          for (std::size_t f = 0; f < found; ++f) {
-            const S d_sq = sq[within[f]];
-            const std::size_t j = tile.at[within[f]];
+          const auto try_one = [&, p = grid.stored_point(i)](std::size_t j) {
+            const S d_sq = distance_sq<S>(grid.stored_point(j), p);
             if (reach.holds(i, d_sq, ids[j])) join_smooth(i, j, d_sq, one_way);
-          }
+          };
+          if (sets.root(static_cast<Index>(i)) == most)
+            for (const Index j : others) try_one(static_cast<std::size_t>(j));
+          else
+            candidates(try_one);
         }
       }
       add(one_way);

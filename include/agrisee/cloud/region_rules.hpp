@@ -7,6 +7,7 @@
 #include <agrisee/core/cloud.hpp>
 #include <agrisee/core/grid.hpp>
 #include <agrisee/core/parallel.hpp>
+#include <agrisee/core/sums.hpp>
 #include <agrisee/core/uninitialized.hpp>
 
 #include <algorithm>
@@ -79,10 +80,10 @@ bool can_join(const Vector3<S>& p, const Vector3<S>& normal) {
 }
 
 /// How alike two normals are, the first's coordinates u, v, w: cosine > cos_min for those that differ by less than a
-/// limit. One order of summation for all ways of growing.
+/// limit. One way of summing for all ways of growing.
 template <typename S>
 S cosine(S u, S v, S w, S other_u, S other_v, S other_w, bool without_sign) {
-  const S sum = u * other_u + (v * other_v + w * other_w);
+  const S sum = sum_of_products(v, w, u, other_v, other_w, other_u);
   return without_sign ? std::abs(sum) : sum;
 }
 
@@ -129,7 +130,7 @@ class OrientedPoints {
     const S qx = x[j], qy = y[j], qz = z[j], qu = u[j], qv = v[j], qw = w[j];
     for (std::size_t i = begin; i < end; ++i) {
       const S dx = x[i] - qx, dy = y[i] - qy, dz = z[i] - qz;
-      const bool near = dx * dx + dy * dy + dz * dz < limit_sq;
+      const bool near = sum_of_squares(dx, dy, dz) < limit_sq;
       is[i - begin] = static_cast<std::uint8_t>(near & (cosine(u[i], v[i], w[i], qu, qv, qw, kUnsigned) > cos_min));
     }
   }

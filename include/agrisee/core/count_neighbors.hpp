@@ -7,6 +7,7 @@
 /// pairs within the radius at 1,500 neighbours, three times these pairs at 50.
 #pragma once
 
+#include <agrisee/core/sums.hpp>
 #include <agrisee/core/tiles.hpp>
 
 namespace agrisee {
@@ -40,7 +41,7 @@ std::size_t count_within(const Tile<S>& tile, const Vector3<S>& q, S r_sq) {
   std::uint32_t in = 0;
   for (std::size_t j = 0; j < tile.size; ++j) {
     const S dx = tile.x[j] - qx, dy = tile.y[j] - qy, dz = tile.z[j] - qz;
-    in += dx * dx + dy * dy + dz * dz <= r_sq ? 1u : 0u;
+    in += detail::sum_of_squares(dx, dy, dz) <= r_sq ? 1u : 0u;
   }
   return tile.inside + in;
 }

@@ -7,6 +7,7 @@
 #include <agrisee/core/grid.hpp>
 #include <agrisee/core/kdtree.hpp>
 #include <agrisee/core/neighborhood.hpp>
+#include <agrisee/core/sums.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -109,7 +110,7 @@ class FarNearest {
       S d_sq[kBlock];
       for (std::size_t l = 0; l < kBlock; ++l) {  // may be some points too many
         const S dx = x[first + l] - qx, dy = y[first + l] - qy, dz = z[first + l] - qz;
-        d_sq[l] = dx * dx + dy * dy + dz * dz;
+        d_sq[l] = sum_of_squares(dx, dy, dz);
       }
       unsigned near = 0;
       for (std::size_t l = 0; l < kBlock; ++l) near |= d_sq[l] <= limit_sq_ ? 1u : 0u;

@@ -15,6 +15,7 @@
 #include <agrisee/core/radix_sort.hpp>
 #include <agrisee/core/sparse_cells.hpp>
 #include <agrisee/core/stencil.hpp>
+#include <agrisee/core/sums.hpp>
 #include <agrisee/core/uninitialized.hpp>
 
 #include <array>
@@ -182,7 +183,7 @@ class Grid {
 
   S distance_sq(std::size_t j, const Vector3<S>& q) const {
     const S dx = x_[j] - q.x(), dy = y_[j] - q.y(), dz = z_[j] - q.z();
-    return dx * dx + dy * dy + dz * dz;
+    return detail::sum_of_squares(dx, dy, dz);
   }
 
   void reserve(std::size_t n) {

@@ -6,6 +6,7 @@
 
 #include <agrisee/core/cloud.hpp>
 #include <agrisee/core/neighbors.hpp>
+#include <agrisee/core/sums.hpp>
 
 #include <cmath>
 #include <memory>
@@ -102,7 +103,17 @@ class KdTree {
       return false;
     }
   };
-  using Tree = nanoflann::KDTreeSingleIndexAdaptor<nanoflann::L2_Simple_Adaptor<S, Data>, Data, 3>;
+  /// nanoflann's own, but for the last bit of distances, which is that of all searches.
+  struct Metric : nanoflann::L2_Simple_Adaptor<S, Data> {
+    explicit Metric(const Data& data) : nanoflann::L2_Simple_Adaptor<S, Data>(data), points(data.points) {}
+    template <typename I>
+    S evalMetric(const S* q, I i, std::size_t) const {
+      const Vector3<S>& p = points[static_cast<std::size_t>(i)];
+      return detail::sum_of_squares(q[0] - p[0], q[1] - p[1], q[2] - p[2]);
+    }
+    const std::vector<Vector3<S>>& points;
+  };
+  using Tree = nanoflann::KDTreeSingleIndexAdaptor<Metric, Data, 3>;
 
   // nanoflann prunes with bounds that carry rounding errors; a slightly larger "worst" keeps exact ties in.
   static S padded(S d_sq) {

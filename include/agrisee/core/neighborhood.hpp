@@ -15,13 +15,14 @@ namespace agrisee {
 /// The neighbours of one point, nearest first, ties by index; itself included.
 template <typename S>
 struct Neighborhood {
-  std::size_t size = 0;               ///< number of neighbours
-  const S* distance_sq = nullptr;     ///< m2
-  const Index* ids = nullptr;         ///< in the cloud
-  const S* x = nullptr;               ///< x of neighbour i is x[at[i]] (m); may be the grid's own
-  const S* y = nullptr;               ///< y likewise
-  const S* z = nullptr;               ///< and z
-  const std::uint32_t* at = nullptr;  ///< where neighbour i is among them
+  std::size_t size = 0;                   ///< number of neighbours
+  const S* distance_sq = nullptr;         ///< m2
+  const Index* ids = nullptr;             ///< in the cloud
+  const S* x = nullptr;                   ///< x of neighbour i is x[at[i]] (m); may be the grid's own
+  const S* y = nullptr;                   ///< y likewise
+  const S* z = nullptr;                   ///< and z
+  const std::uint32_t* at = nullptr;      ///< where neighbour i is among them
+  const std::uint32_t* stored = nullptr;  ///< x[j] is the grid's point stored[j]; for those found in a tile
 
   /// Neighbour number i (m).
   Vector3<S> point(std::size_t i) const { return {x[at[i]], y[at[i]], z[at[i]]}; }
@@ -47,7 +48,7 @@ class TileNearest {
     for (std::size_t i = 0; i < near_.size; ++i) ids_[i] = grid_.ids()[tile.at[at_[i]]];
     if (near_.size == k_ && sorted_[k_ - 1] > 0) trial_sq_ = S(1.3) * sorted_[k_ - 1];
     near_.distance_sq = sorted_.data(), near_.ids = ids_.data(), near_.at = at_.data();
-    near_.x = tile.x.data(), near_.y = tile.y.data(), near_.z = tile.z.data();
+    near_.x = tile.x.data(), near_.y = tile.y.data(), near_.z = tile.z.data(), near_.stored = tile.at.data();
     return near_;
   }
 

@@ -9,11 +9,12 @@
 /// - `size()`              number of points of the cloud, those that are not finite included
 ///
 /// Equal distances are ordered by index. The query point is not treated apart: a point of the cloud finds itself first.
-/// Points that are not finite are never found; a query that is not finite finds nothing. A search copies the coordinates,
-/// so the cloud may go away.
+/// Points that are not finite are never found; a query that is not finite finds nothing. A search copies the
+/// coordinates, so the cloud may go away.
 #pragma once
 
 #include <agrisee/core/error.hpp>
+#include <agrisee/core/sums.hpp>
 #include <agrisee/core/types.hpp>
 
 #include <algorithm>
@@ -41,11 +42,11 @@ using Neighbors = std::vector<Neighbor<S>>;
 /// Count them all.
 constexpr std::size_t kNoCap = std::numeric_limits<std::size_t>::max();
 
-/// Squared distance, summed in the one order that all searches use, so that ties are ties everywhere.
+/// Squared distance, summed in the one way that all searches use, so that ties are ties everywhere.
 template <typename S>
 S distance_sq(const Vector3<S>& a, const Vector3<S>& b) {
   const S dx = a.x() - b.x(), dy = a.y() - b.y(), dz = a.z() - b.z();
-  return dx * dx + dy * dy + dz * dz;
+  return detail::sum_of_squares(dx, dy, dz);
 }
 
 namespace detail {

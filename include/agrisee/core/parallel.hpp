@@ -18,7 +18,9 @@ namespace agrisee {
 ///
 /// Chunks are handed out as threads become free; `body` must write only what belongs to its own indices, so the result
 /// does not depend on the order. The first exception thrown by `body` is rethrown here after all threads have ended.
-/// Between chunks the caller's cancellation is looked at; it is that of all the threads.
+/// Between chunks the caller's cancellation is looked at; it is that of all the threads, and so is the caller's
+/// rounding of numbers. Callers on several threads share the helpers: there are as many as the largest `threads` less
+/// one, and no fewer results where they are busy or cannot be started.
 /// @param n how many items
 /// @param threads at most so many
 /// @param chunk indices a chunk (at least 1); small loops (n <= chunk) never start a thread

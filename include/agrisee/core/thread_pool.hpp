@@ -1,11 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// Threads that are kept for the next loop: to start one takes longer than many a loop. They are started when they are
-/// first asked for, one pool a process (a shared library that hides its symbols has its own), and ended with it.
+/// first asked for, one pool a process, and run until it ends. After fork() the child starts threads of its own.
+///
+/// A shared library that holds a pool must stay loaded. GCC sees to that (the pool is a unique symbol); with other
+/// compilers, or symbols hidden, link what dlclose may unload with `-Wl,-z,nodelete`.
 #pragma once
 
 #include <algorithm>
 #include <atomic>
+#include <cfenv>
 #include <chrono>
 #include <condition_variable>
 #include <cstddef>
@@ -14,27 +18,21 @@
 #include <thread>
 #include <vector>
 
+#if defined(__unix__) || defined(__APPLE__)
+#include <pthread.h>
+#include <signal.h>
+#define AGRISEE_POSIX_THREADS
+#endif
+
 namespace agrisee::detail {
 
 /// Threads that help whoever has work for several. Any number of threads may ask at once, helpers too.
 class ThreadPool {
  public:
-  ThreadPool() = default;
-  ThreadPool(const ThreadPool&) = delete;
-  ThreadPool& operator=(const ThreadPool&) = delete;
-  ~ThreadPool() {
-    {
-      const std::lock_guard<std::mutex> lock(mutex_);
-      stopped_ = true;
-    }
-    posted_.notify_all();
-    for (std::thread& t : threads_) t.join();
-  }
-
-  /// The one of the process.
+  /// The one of the process. It is never destroyed: loops may run, and helpers be at work, while a process ends.
   static ThreadPool& shared() {
-    static ThreadPool pool;
-    return pool;
+    static std::atomic<ThreadPool*> pool{first(pool)};
+    return *pool.load();
   }
 
   /// Calls work() on this thread and on up to `helpers` others at the same time; returns once all of these calls have.
@@ -43,7 +41,8 @@ class ThreadPool {
   /// @param helpers at most so many others  @param work called without arguments; must not throw
   template <typename Work>
   void run(std::size_t helpers, const Work& work) {
-    Job job{[](const void* w) { (*static_cast<const Work*>(w))(); }, &work, helpers, {}};
+    Job job{[](const void* w) { (*static_cast<const Work*>(w))(); }, &work, helpers, {}, {}};
+    std::fegetenv(&job.arithmetic);
     post(job);
     work();
     withdraw(job);
@@ -55,19 +54,48 @@ class ThreadPool {
     const void* work;
     std::size_t wanted;                // helpers that may still begin
     std::atomic<std::size_t> running;  // helpers that have begun and not ended
+    std::fenv_t arithmetic;            // how numbers are rounded: as where the loop is
   };
 
+  explicit ThreadPool(const ThreadPool* of_parent) : of_parent_(of_parent) {}
+
+  static ThreadPool* first(std::atomic<ThreadPool*>& pool) {
+#ifdef AGRISEE_POSIX_THREADS
+    static std::atomic<ThreadPool*>* of_process;
+    of_process = &pool;
+    ::pthread_atfork(nullptr, nullptr, [] { of_process->store(new ThreadPool(of_process->load())); });
+#else
+    static_cast<void>(pool);
+#endif
+    return new ThreadPool(nullptr);
+  }
+
   void post(Job& job) {
-    {
-      const std::lock_guard<std::mutex> lock(mutex_);
-      try {
-        while (threads_.size() < job.wanted) threads_.emplace_back([this] { serve(); });
-      } catch (...) {  // no more threads, or memory, to be had: those that are there do the work
-      }
-      jobs_.push_back(&job);
-      posts_.fetch_add(1, std::memory_order_release);
+    std::unique_lock<std::mutex> lock(mutex_);
+    start(job.wanted);
+    jobs_.push_back(&job);
+    posts_.fetch_add(1, std::memory_order_release);
+    const std::size_t awake = std::min(asleep_, job.wanted);
+    lock.unlock();
+    for (std::size_t i = 0; i < awake; ++i) posted_.notify_one();
+  }
+
+  /// Sees to it that there are so many helpers, or as many as can be had.
+  void start(std::size_t helpers) {
+    if (helpers_ >= helpers) return;
+#ifdef AGRISEE_POSIX_THREADS
+    sigset_t all, before;  // signals are for the threads of the application
+    sigfillset(&all);
+    sigdelset(&all, SIGPROF);  // profilers may look
+    const bool blocked = ::pthread_sigmask(SIG_SETMASK, &all, &before) == 0;
+#endif
+    try {
+      for (; helpers_ < helpers; ++helpers_) std::thread([this] { serve(); }).detach();
+    } catch (...) {  // no more threads, or memory, to be had: those that are there do the work
     }
-    posted_.notify_all();
+#ifdef AGRISEE_POSIX_THREADS
+    if (blocked) ::pthread_sigmask(SIG_SETMASK, &before, nullptr);
+#endif
   }
 
   void withdraw(Job& job) {
@@ -80,16 +108,17 @@ class ThreadPool {
     ended_.wait(lock, ended);
   }
 
-  /// What a helper does.
+  /// What a helper does, for ever.
   void serve() {
     std::unique_lock<std::mutex> lock(mutex_);
-    while (!stopped_) {
+    while (true) {
       const auto open = std::find_if(jobs_.begin(), jobs_.end(), [](const Job* job) { return job->wanted > 0; });
       if (open != jobs_.end()) {
         Job& job = **open;
         --job.wanted;
         job.running.fetch_add(1, std::memory_order_relaxed);
         lock.unlock();
+        std::fesetenv(&job.arithmetic);
         job.call(job.work);
         lock.lock();
         if (job.running.fetch_sub(1, std::memory_order_release) == 1) ended_.notify_all();  // the job may be gone now
@@ -97,10 +126,16 @@ class ThreadPool {
       }
       const std::uint64_t seen = posts_.load(std::memory_order_relaxed);
       const auto more = [&] { return posts_.load(std::memory_order_acquire) != seen; };
-      lock.unlock();
-      soon(more);
-      lock.lock();
-      posted_.wait(lock, [&] { return stopped_ || more(); });
+      if (looking_ < processors_) {  // more would only take the time of those at work
+        ++looking_;
+        lock.unlock();
+        soon(more);
+        lock.lock();
+        --looking_;
+      }
+      ++asleep_;
+      posted_.wait(lock, more);
+      --asleep_;
     }
   }
 
@@ -120,8 +155,11 @@ class ThreadPool {
   std::condition_variable posted_, ended_;
   std::vector<Job*> jobs_;
   std::atomic<std::uint64_t> posts_{0};  // jobs so far
-  std::vector<std::thread> threads_;
-  bool stopped_ = false;
+  std::size_t helpers_ = 0, looking_ = 0, asleep_ = 0;
+  const ThreadPool* const of_parent_;  // the one before fork(), of which nothing may be touched or freed
+  const std::size_t processors_ = std::max(2u, std::thread::hardware_concurrency()) - 1;  // for helpers
 };
 
 }  // namespace agrisee::detail
+
+#undef AGRISEE_POSIX_THREADS

@@ -6,6 +6,7 @@
 
 #include <agrisee/core/grid.hpp>
 #include <agrisee/core/parallel.hpp>
+#include <agrisee/core/sums.hpp>
 
 #include <algorithm>
 #include <cstring>
@@ -46,7 +47,7 @@ struct Tile {
     const S qx = q.x(), qy = q.y(), qz = q.z();
     for (std::size_t j = 0; j < size; ++j) {
       const S dx = x[j] - qx, dy = y[j] - qy, dz = z[j] - qz;
-      out[j] = dx * dx + dy * dy + dz * dz;
+      out[j] = detail::sum_of_squares(dx, dy, dz);
     }
   }
 

@@ -31,7 +31,7 @@ class InputFile {
   /// @throws FileError when it is missing, a directory, a device, or cannot be opened
   explicit InputFile(const std::filesystem::path& path);
 
-  /// Bytes of the whole file; none for a pipe, whose length nobody knows.
+  /// Bytes of the whole file; none for a pipe and for files of the system, whose length nobody knows.
   std::optional<std::size_t> size() const { return size_; }
   /// The next bytes, as many as there are. @return how many, less than `size` at the end of the file alone
   /// @throws FileError when it cannot be read

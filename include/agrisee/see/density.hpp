@@ -14,6 +14,7 @@
 
 #include <agrisee/core/hash_grid.hpp>
 #include <agrisee/core/parallel.hpp>
+#include <agrisee/core/sums.hpp>
 #include <agrisee/see/params.hpp>
 
 #include <array>
@@ -183,7 +184,7 @@ class DensityMap {
     int in = 0;
     for (std::size_t j = begin; j < b.size(); ++j) {
       const S dx = x[j] - px, dy = y[j] - py, dz = z[j] - pz;
-      in += dx * dx + dy * dy + dz * dz <= r_sq ? 1 : 0;
+      in += detail::sum_of_squares(dx, dy, dz) <= r_sq ? 1 : 0;
     }
     return in;
   }
