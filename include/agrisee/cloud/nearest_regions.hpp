@@ -177,9 +177,10 @@ Labels nearest_regions(const C& cloud, const std::vector<Vector3<scalar_t<C>>>& 
       one_way.emplace_back(a, b);
   };
   const Stencil stencils[] = {box_stencil(1), box_stencil(2)};
+  constexpr std::size_t kFew = 16;  // to be tried one by one
   for_cells(grid, threads, [&] {
-    return [&, others = Indices(), one_way = Edges()](const typename Grid<S>::Cell& cell, std::size_t first,
-                                                      std::size_t last) mutable {
+    return [&, tile = Tile<S>(), sq = std::vector<S>(), within = Indices(), others = Indices(), one_way = Edges()](
+               const typename Grid<S>::Cell& cell, std::size_t first, std::size_t last) mutable {
       one_way.clear();
       for (int rings = 1; rings <= 2; ++rings) {
         const auto grows = [&](std::size_t i) {
@@ -188,30 +189,41 @@ Labels nearest_regions(const C& cloud, const std::vector<Vector3<scalar_t<C>>>& 
         std::size_t i = first;
         while (i < last && !grows(i)) ++i;
         if (i == last) continue;
-        const auto candidates = [&](auto&& f) {  // f(j) for those of the cells about
-          for (const StencilRow& row : stencils[rings - 1]) {
-            const auto [begin, end] =
-                grid.run(cell[2] - row.outer, cell[2] + row.outer, cell[1] + row.dy, cell[0] + row.dz);
-            for (std::size_t j = begin; j < end; ++j) f(j);
-          }
-        };
         const Index most = sets.root(static_cast<Index>(i));
         others.clear();
-        candidates([&](std::size_t j) {
-          const auto it = static_cast<Index>(j);
-          if (!sets.points_to(it, most) && member(j) && sets.root(it) != most) others.push_back(it);
-        });
+        for (const StencilRow& row : stencils[rings - 1]) {
+          const auto [begin, end] =
+              grid.run(cell[2] - row.outer, cell[2] + row.outer, cell[1] + row.dy, cell[0] + row.dz);
+          for (auto j = static_cast<Index>(begin); j < static_cast<Index>(end); ++j)
+            if (!sets.points_to(j, most) && member(static_cast<std::size_t>(j)) && sets.root(j) != most)
+              others.push_back(j);
+        }
         if (others.empty()) continue;
+        tile.size = 0;
         for (; i < last; ++i) {
           if (!grows(i)) continue;
-          const auto try_one = [&, p = grid.stored_point(i)](std::size_t j) {
-            const S d_sq = distance_sq<S>(grid.stored_point(j), p);
-            if (reach.holds(i, d_sq, ids[j])) join_smooth(i, j, d_sq, one_way);
-          };
-          if (sets.root(static_cast<Index>(i)) == most)
-            for (const Index j : others) try_one(static_cast<std::size_t>(j));
-          else
-            candidates(try_one);
+          const Vector3<S> p = grid.stored_point(i);
+          if (others.size() <= kFew && sets.root(static_cast<Index>(i)) == most) {
+            for (const Index o : others) {
+              const auto j = static_cast<std::size_t>(o);
+              const S d_sq = distance_sq<S>(grid.stored_point(j), p);
+              if (reach.holds(i, d_sq, ids[j])) join_smooth(i, j, d_sq, one_way);
+            }
+            continue;
+          }
+          if (tile.size == 0) tile.gather(grid, cell, stencils[rings - 1]);
+          if (sq.size() < tile.size) sq.resize(2 * tile.size), within.resize(2 * tile.size);
+          tile.distances_sq(p, sq.data());
+          std::size_t found = 0;
+          for (std::size_t c = 0; c < tile.size; ++c) {  // no branch: a third of the candidates pass
+            within[found] = static_cast<Index>(c);
+            found += sq[c] <= reach.sq[i] ? 1u : 0u;
+          }
+          for (std::size_t f = 0; f < found; ++f) {
+            const auto c = static_cast<std::size_t>(within[f]);
+            const std::size_t j = tile.at[c];
+            if (reach.holds(i, sq[c], ids[j])) join_smooth(i, j, sq[c], one_way);
+          }
         }
       }
       add(one_way);
