@@ -31,8 +31,14 @@ class ThreadPool {
  public:
   /// The one of the process. It is never destroyed: loops may run, and helpers be at work, while a process ends.
   static ThreadPool& shared() {
-    static std::atomic<ThreadPool*> pool{first(pool)};
-    return *pool.load();
+    static const bool forks_seen = see_forks();
+    static_cast<void>(forks_seen);
+    ThreadPool* pool = current().load();
+    if (pool) return *pool;
+    auto* mine = new ThreadPool;
+    if (current().compare_exchange_strong(pool, mine)) return *mine;
+    delete mine;  // another thread was first
+    return *pool;
   }
 
   /// Calls work() on this thread and on up to `helpers` others at the same time; returns once all of these calls have.
@@ -57,17 +63,27 @@ class ThreadPool {
     std::fenv_t arithmetic;            // how numbers are rounded: as where the loop is
   };
 
-  explicit ThreadPool(const ThreadPool* of_parent) : of_parent_(of_parent) {}
+  ThreadPool() = default;
 
-  static ThreadPool* first(std::atomic<ThreadPool*>& pool) {
+  static std::atomic<ThreadPool*>& current() {
+    static std::atomic<ThreadPool*> pool{nullptr};
+    return pool;
+  }
+  /// The pool of the process that this one was forked from; known, that no leak is seen, but not to be touched:
+  /// its threads are not here, its locks may never open.
+  static const ThreadPool*& before_fork() {
+    static const ThreadPool* pool = nullptr;
+    return pool;
+  }
+  /// From now on a child of fork() has no pool until it needs one.
+  static bool see_forks() {
 #ifdef AGRISEE_POSIX_THREADS
-    static std::atomic<ThreadPool*>* of_process;
-    of_process = &pool;
-    ::pthread_atfork(nullptr, nullptr, [] { of_process->store(new ThreadPool(of_process->load())); });
+    return ::pthread_atfork(nullptr, nullptr, [] {
+             if (const ThreadPool* pool = current().exchange(nullptr)) before_fork() = pool;
+           }) == 0;
 #else
-    static_cast<void>(pool);
+    return false;
 #endif
-    return new ThreadPool(nullptr);
   }
 
   void post(Job& job) {
@@ -156,7 +172,6 @@ class ThreadPool {
   std::vector<Job*> jobs_;
   std::atomic<std::uint64_t> posts_{0};  // jobs so far
   std::size_t helpers_ = 0, looking_ = 0, asleep_ = 0;
-  const ThreadPool* const of_parent_;  // the one before fork(), of which nothing may be touched or freed
   const std::size_t processors_ = std::max(2u, std::thread::hardware_concurrency()) - 1;  // for helpers
 };
 
