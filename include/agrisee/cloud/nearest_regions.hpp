@@ -177,7 +177,7 @@ Labels nearest_regions(const C& cloud, const std::vector<Vector3<scalar_t<C>>>& 
       one_way.emplace_back(a, b);
   };
   const Stencil stencils[] = {box_stencil(1), box_stencil(2)};
-  constexpr std::size_t kFew = 16;  // to be tried one by one
+  constexpr std::size_t kOneByOne = 16;  // others, or tile by tile
   for_cells(grid, threads, [&] {
     return [&, tile = Tile<S>(), sq = std::vector<S>(), within = Indices(), others = Indices(), one_way = Edges()](
                const typename Grid<S>::Cell& cell, std::size_t first, std::size_t last) mutable {
@@ -203,7 +203,7 @@ Labels nearest_regions(const C& cloud, const std::vector<Vector3<scalar_t<C>>>& 
         for (; i < last; ++i) {
           if (!grows(i)) continue;
           const Vector3<S> p = grid.stored_point(i);
-          if (others.size() <= kFew && sets.root(static_cast<Index>(i)) == most) {
+          if (others.size() <= kOneByOne && sets.root(static_cast<Index>(i)) == most) {
             for (const Index o : others) {
               const auto j = static_cast<std::size_t>(o);
               const S d_sq = distance_sq<S>(grid.stored_point(j), p);
