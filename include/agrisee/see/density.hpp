@@ -184,7 +184,7 @@ class DensityMap {
     int in = 0;
     for (std::size_t j = begin; j < b.size(); ++j) {
       const S dx = x[j] - px, dy = y[j] - py, dz = z[j] - pz;
-      in += detail::sum_of_squares(dx, dy, dz) <= r_sq ? 1 : 0;
+      in += agrisee::detail::sum_of_squares(dx, dy, dz) <= r_sq ? 1 : 0;
     }
     return in;
   }
