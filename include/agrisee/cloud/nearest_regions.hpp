@@ -195,8 +195,7 @@ Labels nearest_regions(const C& cloud, const std::vector<Vector3<scalar_t<C>>>& 
           const auto [begin, end] =
               grid.run(cell[2] - row.outer, cell[2] + row.outer, cell[1] + row.dy, cell[0] + row.dz);
           for (auto j = static_cast<Index>(begin); j < static_cast<Index>(end); ++j)
-            if (!sets.points_to(j, most) && member(static_cast<std::size_t>(j)) && sets.root(j) != most)
-              others.push_back(j);
+            if (sets.apart(j, most, member)) others.push_back(j);
         }
         if (others.empty()) continue;
         tile.size = 0;

@@ -33,13 +33,10 @@ class DisjointSets {
   }
   /// Whether i is known to belong to `root`, at one look; false says nothing.
   bool points_to(Index i, Index root) const { return parent(i) == root; }
-  /// Whether those of [begin, end) that are members belong to `root`; member(i) tells.
+  /// Whether i is a member, which member(i) tells, of another set than that of `root`.
   template <typename Member>
-  bool hold(Index root, std::size_t begin, std::size_t end, const Member& member) {
-    for (std::size_t i = begin; i < end; ++i)
-      if (!points_to(static_cast<Index>(i), root) && member(i) && this->root(static_cast<Index>(i)) != root)
-        return false;
-    return true;
+  bool apart(Index i, Index root, const Member& member) {
+    return !points_to(i, root) && member(static_cast<std::size_t>(i)) && this->root(i) != root;
   }
   /// Join the sets of a and b; the root of both, unless another thread joins more at the same time.
   Index join(Index a, Index b) {
@@ -78,6 +75,11 @@ void join_neighbors(const Grid<S>& grid, const Stencil& stencil, int threads, Di
                const typename Grid<S>::Cell& cell, std::size_t first, std::size_t last) mutable {
       while (first < last && !member(first)) ++first;
       if (first == last) return;
+      const auto joined = [&](std::size_t begin, std::size_t end, Index root) {  // whether all members are, with `root`
+        for (std::size_t i = begin; i < end; ++i)
+          if (sets.apart(static_cast<Index>(i), root, member)) return false;
+        return true;
+      };
       const auto join_near = [&](std::size_t j, std::size_t begin, std::size_t end) {
         if (begin >= end) return;
         if ((tested += end - begin) > kLook) throw_if_cancelled(), tested = 0;
@@ -100,8 +102,7 @@ void join_neighbors(const Grid<S>& grid, const Stencil& stencil, int threads, Di
         };
         const auto [begin, end] = cells(row.outer);
         if (begin == end) continue;
-        if (together && sets.hold(sets.root(static_cast<Index>(first)), begin, end, member))
-          continue;  // nothing to test
+        if (together && joined(begin, end, sets.root(static_cast<Index>(first)))) continue;  // nothing is left to test
         auto inside = std::make_pair(end, end);
         if (row.inner >= 0) inside = cells(row.inner);
         if (inside.first == inside.second) inside = {end, end};
@@ -114,7 +115,7 @@ void join_neighbors(const Grid<S>& grid, const Stencil& stencil, int threads, Di
           join_near(j, begin, std::min(until, inside.first));
           join_near(j, inside.second, until);
         }
-        if (own) together = sets.hold(sets.root(static_cast<Index>(first)), first, last, member);
+        if (own) together = joined(first, last, sets.root(static_cast<Index>(first)));
       }
     };
   });

@@ -9,22 +9,25 @@
 
 namespace agrisee::detail {
 
-/// a u + b v + c w, from left to right: in one rounding each where the processor multiplies and adds as fast as it
-/// multiplies, in two elsewhere.
-inline float sum_of_products(float a, float b, float c, float u, float v, float w) {
+/// Whether the processor multiplies and adds numbers of the type in one rounding as fast as it multiplies.
+template <typename S>
+constexpr bool kFuses = false;
 #ifdef __FP_FAST_FMAF
-  return std::fma(c, w, std::fma(b, v, a * u));
-#else
-  return a * u + b * v + c * w;
+template <>
+constexpr bool kFuses<float> = true;
 #endif
-}
-/// The same.
-inline double sum_of_products(double a, double b, double c, double u, double v, double w) {
 #ifdef __FP_FAST_FMA
-  return std::fma(c, w, std::fma(b, v, a * u));
-#else
-  return a * u + b * v + c * w;
+template <>
+constexpr bool kFuses<double> = true;
 #endif
+
+/// a u + b v + c w, from left to right, in one rounding each where that costs nothing, in two elsewhere.
+template <typename S>
+S sum_of_products(S a, S b, S c, S u, S v, S w) {
+  if constexpr (kFuses<S>)
+    return std::fma(c, w, std::fma(b, v, a * u));
+  else
+    return a * u + b * v + c * w;
 }
 
 /// x^2 + y^2 + z^2
