@@ -13,26 +13,44 @@ using namespace agrisee;
 
 namespace {
 
-template <typename S>
-void check_nearest(const shapes::Points<S>& cloud, std::size_t k, S radius) {
+template <typename S, Order kOrder>
+void check_nearest_in(const shapes::Points<S>& cloud, std::size_t k, S radius) {
   std::vector<Neighbors<S>> found(cloud.size());
   std::vector<int> calls(cloud.size(), 0);
-  for_each_neighborhood(cloud, k, radius, 2, [&](Index index, const Neighborhood<S>& near) {
+  for_each_neighborhood<kOrder>(cloud, k, radius, 2, [&](Index index, const Neighborhood<S>& near) {
     const auto i = static_cast<std::size_t>(index);
     ++calls[i];
     for (std::size_t j = 0; j < near.size; ++j) {
-      found[i].push_back({near.ids[j], std::sqrt(near.distance_sq[j])});
-      if (near.point(j) != cloud[static_cast<std::size_t>(near.ids[j])]) calls[i] += 100;
+      found[i].push_back({near.id(j), std::sqrt(near.distance_sq[j])});
+      if (near.point(j) != cloud[static_cast<std::size_t>(near.id(j))]) calls[i] += 100;
     }
+    if (near.size < k) return;
+    std::size_t up_to_last = 0;
+    for (std::size_t j = 0; j < cloud.size(); ++j) {
+      const S d_sq = distance_sq<S>(cloud[j], cloud[i]);
+      up_to_last += d_sq < near.last_sq || (d_sq == near.last_sq && static_cast<Index>(j) <= near.last) ? 1u : 0u;
+    }
+    if (up_to_last != k) calls[i] += 1000;
   });
   for (std::size_t i = 0; i < cloud.size(); ++i) {
-    INFO("point " << i << ", k " << k << ", radius " << radius);
+    INFO("point " << i << ", k " << k << ", radius " << radius << ", sorted " << (kOrder == Order::nearest_first));
     REQUIRE(calls[i] == (is_finite(cloud[i]) ? 1 : 0));
     if (!is_finite(cloud[i])) continue;
     auto expected = shapes::brute<S>(cloud, cloud[i], radius * radius);
     if (expected.size() > k) expected.resize(k);
+    if (kOrder == Order::any) {
+      const auto by_index = [](const Neighbor<S>& a, const Neighbor<S>& b) { return a.index < b.index; };
+      std::sort(found[i].begin(), found[i].end(), by_index);
+      std::sort(expected.begin(), expected.end(), by_index);
+    }
     REQUIRE(found[i] == expected);
   }
+}
+
+template <typename S>
+void check_nearest(const shapes::Points<S>& cloud, std::size_t k, S radius) {
+  check_nearest_in<S, Order::nearest_first>(cloud, k, radius);
+  check_nearest_in<S, Order::any>(cloud, k, radius);
 }
 
 template <typename S>
@@ -165,6 +183,21 @@ TEST_CASE("crowds are searched like other places") {
   cloud[1] = cloud[2] = cloud[7] = Eigen::Vector3f(0.002f, 0.0f, 0.0f);
   check_nearest<float>(cloud, 5, std::numeric_limits<float>::infinity());
   check_nearest<float>(cloud, 5, 0.0005f);
+}
+
+TEMPLATE_TEST_CASE("indices within a limit are those of a plain loop", "", float, double) {
+  Rng rng(5);
+  for (const std::size_t n : {0u, 4u, 16u, 36u, 160u}) {
+    std::vector<TestType> values(n);
+    for (auto& v : values) v = rng.below(8) == 0 ? std::numeric_limits<TestType>::quiet_NaN() : TestType(rng.below(9));
+    for (const TestType limit : {TestType(-1), TestType(4), std::numeric_limits<TestType>::infinity()}) {
+      std::vector<std::uint32_t> expected, out(n);
+      for (std::size_t i = 0; i < n; ++i)
+        if (values[i] <= limit) expected.push_back(static_cast<std::uint32_t>(i));
+      out.resize(detail::indices_within(values.data(), n, limit, out.data()));
+      CHECK(out == expected);
+    }
+  }
 }
 
 TEST_CASE("a hundred thousand points at one place take no square of that") {

@@ -9,9 +9,11 @@
 #include <agrisee/cloud/region_rules.hpp>
 #include <agrisee/core/all_neighbors.hpp>
 #include <agrisee/core/components.hpp>
+#include <agrisee/core/indices_within.hpp>
 
 #include <algorithm>
 #include <atomic>
+#include <cstdint>
 #include <mutex>
 #include <utility>
 
@@ -29,8 +31,8 @@ struct NearestReach {
   bool holds(std::size_t j, S d_sq, Index id) const { return d_sq < sq[j] || (d_sq == sq[j] && id <= last[j]); }
 
   std::vector<std::atomic<char>> rings;  ///< of cells in which the k are found, 1 or 2; 0: not known yet, or see `far`
-  Uninitialized<S> sq;                   ///< squared distance (m2) of the k-th nearest; infinite where there are fewer
-  Uninitialized<Index> last;             ///< its index; of those at that distance, greater ones are none of the k
+  Uninitialized<S> sq;                   ///< squared distance (m2) up to which points are; infinite where all are
+  Uninitialized<Index> last;             ///< of those at that distance, greater indices are none of the k
   Indices far;                           ///< k + 1 a stored point: itself, then its neighbours, stored points, or -1
 };
 
@@ -106,8 +108,8 @@ NearestReach<scalar_t<C>> nearest_reach(const C& cloud, const NeighborhoodGrid<s
   std::mutex far_mutex;
   const auto keep = [&](std::size_t j, const Neighborhood<S>& its, int rings) {
     const bool all = its.size < k;  // there are no more points
-    reach.sq[j] = all ? kInfinity : its.distance_sq[k - 1];
-    reach.last[j] = all ? std::numeric_limits<Index>::max() : its.ids[k - 1];
+    reach.sq[j] = all ? kInfinity : its.last_sq;
+    reach.last[j] = all ? std::numeric_limits<Index>::max() : its.last;
     if (rings > 0) {
       reach.rings[j].store(static_cast<char>(rings), std::memory_order_release);
       found(j, its, reach);
@@ -115,10 +117,10 @@ NearestReach<scalar_t<C>> nearest_reach(const C& cloud, const NeighborhoodGrid<s
     }
     const std::lock_guard<std::mutex> lock(far_mutex);
     reach.far.push_back(static_cast<Index>(j));
-    reach.far.insert(reach.far.end(), its.ids, its.ids + its.size);
+    for (std::size_t f = 0; f < its.size; ++f) reach.far.push_back(its.id(f));
     reach.far.resize(reach.far.size() + (k - its.size), -1);
   };
-  for_stored_neighborhoods(cloud, near, k, kInfinity, threads, keep);
+  for_stored_neighborhoods<Order::any>(cloud, near, k, kInfinity, threads, keep);
   if (reach.far.empty()) return reach;
   Indices stored(agrisee::size(cloud));  // of the cloud's points
   for (std::size_t j = 0; j < grid.stored(); ++j)
@@ -150,7 +152,7 @@ Labels nearest_regions(const C& cloud, const std::vector<Vector3<scalar_t<C>>>& 
   const auto join_known = [&](std::size_t j, const Neighborhood<S>& its, const NearestReach<S>& reach) {
     if (!member(j)) return;
     Index mine = sets.root(static_cast<Index>(j));
-    for (std::size_t f = 1; f < std::min(its.size, kFirst); ++f) {
+    for (std::size_t f = 0; f < std::min(its.size, kFirst); ++f) {
       const std::size_t i = its.stored[its.at[f]];
       if (reach.rings[i].load(std::memory_order_acquire) == 0 || sets.root(static_cast<Index>(i)) == mine) continue;
       if (reach.holds(i, its.distance_sq[f], ids[j]) && points.smooth(i, j))
@@ -179,8 +181,8 @@ Labels nearest_regions(const C& cloud, const std::vector<Vector3<scalar_t<C>>>& 
   const Stencil stencils[] = {box_stencil(1), box_stencil(2)};
   constexpr std::size_t kOneByOne = 16;  // others, or tile by tile
   for_cells(grid, threads, [&] {
-    return [&, tile = Tile<S>(), sq = std::vector<S>(), within = Indices(), others = Indices(), one_way = Edges()](
-               const typename Grid<S>::Cell& cell, std::size_t first, std::size_t last) mutable {
+    return [&, tile = Tile<S>(), sq = std::vector<S>(), within = std::vector<std::uint32_t>(), others = Indices(),
+            one_way = Edges()](const typename Grid<S>::Cell& cell, std::size_t first, std::size_t last) mutable {
       one_way.clear();
       for (int rings = 1; rings <= 2; ++rings) {
         const auto grows = [&](std::size_t i) {
@@ -211,15 +213,11 @@ Labels nearest_regions(const C& cloud, const std::vector<Vector3<scalar_t<C>>>& 
             continue;
           }
           if (tile.size == 0) tile.gather(grid, cell, stencils[rings - 1]);
-          if (sq.size() < tile.size) sq.resize(2 * tile.size), within.resize(2 * tile.size);
+          if (sq.size() < tile.padded()) sq.resize(2 * tile.padded()), within.resize(2 * tile.padded());
           tile.distances_sq(p, sq.data());
-          std::size_t found = 0;
-          for (std::size_t c = 0; c < tile.size; ++c) {  // no branch: a third of the candidates pass
-            within[found] = static_cast<Index>(c);
-            found += sq[c] <= reach.sq[i] ? 1u : 0u;
-          }
+          const std::size_t found = indices_within(sq.data(), tile.padded(), reach.sq[i], within.data());
           for (std::size_t f = 0; f < found; ++f) {
-            const auto c = static_cast<std::size_t>(within[f]);
+            const std::size_t c = within[f];
             const std::size_t j = tile.at[c];
             if (reach.holds(i, sq[c], ids[j])) join_smooth(i, j, sq[c], one_way);
           }

@@ -4,7 +4,7 @@
 /// paper, "Segmentation via Region Growing": r_n, k_n), turned to the view that saw each point or to one viewpoint.
 /// Where neither is known, orient_normals.hpp makes them agree with their neighbours.
 ///
-/// Any frame, metres. Cost: a grid, the sorting of some 30 neighbours and one 3 x 3 eigenproblem a point.
+/// Any frame, metres. Cost: a grid, the picking of some 30 neighbours and the least axis of a 3 x 3 matrix a point.
 #pragma once
 
 #include <agrisee/cloud/parameters.hpp>
@@ -19,11 +19,12 @@ namespace detail {
 /// @param curvature receives the surface variation where it is not null
 template <typename S>
 Vector3<S> normal_of(const Moments& moments, S* curvature) {
-  const PrincipalAxes<double> axes = principal_axes<double>(moments.mean(), moments.covariance());
-  const double rounding = 4.0 * double(std::numeric_limits<S>::epsilon()) * axes.mean.cwiseAbs().maxCoeff();
-  if (axes.variance[1] <= 1e-8 * axes.variance[2] + rounding * rounding) return Vector3<S>::Zero();
-  if (curvature) *curvature = static_cast<S>(axes.curvature());
-  return axes.axes.col(0).template cast<S>();
+  Eigen::Vector3d variance;
+  const Eigen::Vector3d axis = least_axis(moments.covariance(), variance);
+  const double rounding = 4.0 * double(std::numeric_limits<S>::epsilon()) * moments.mean().cwiseAbs().maxCoeff();
+  if (!(variance[1] > 1e-8 * variance[2] + rounding * rounding)) return Vector3<S>::Zero();
+  if (curvature) *curvature = static_cast<S>(variance[0] / variance.sum());
+  return axis.cast<S>();
 }
 
 }  // namespace detail
@@ -63,7 +64,8 @@ std::vector<Vector3<scalar_t<C>>> estimate_normals(const C& cloud, const NormalP
   return normals;
 }
 
-/// The same from neighbour lists that are there already, as far as they reach: `max_neighbors` of them within `radius`.
+/// The same, but for rounding, from neighbour lists that are there already, as far as they reach: `max_neighbors` of
+/// them within `radius`.
 template <typename C>
 std::vector<Vector3<scalar_t<C>>> estimate_normals(const C& cloud, const NormalParameters& params,
                                                    const NeighborLists& lists, int threads = 1,
@@ -91,7 +93,7 @@ std::vector<Vector3<scalar_t<C>>> estimate_normals(const C& cloud, const NormalP
   return normals;
 }
 
-/// The same without a search; several times as fast.
+/// The same, but for rounding, without a search; several times as fast.
 template <typename C>
 std::vector<Vector3<scalar_t<C>>> estimate_normals(const C& cloud, const NormalParameters& params = {}, int threads = 1,
                                                    std::vector<scalar_t<C>>* curvatures = nullptr) {
@@ -100,16 +102,16 @@ std::vector<Vector3<scalar_t<C>>> estimate_normals(const C& cloud, const NormalP
   const std::size_t n = agrisee::size(cloud);
   std::vector<Vector3<S>> normals(n, Vector3<S>::Zero());
   if (curvatures) curvatures->assign(n, S(0));
-  for_each_neighborhood(cloud, static_cast<std::size_t>(params.max_neighbors), static_cast<S>(params.radius), threads,
-                        [&](Index index, const Neighborhood<S>& near) {
-                          if (near.size < 3) return;
-                          const auto i = static_cast<std::size_t>(index);
-                          Moments moments;
-                          moments.reset(near.point(0).template cast<double>());
-                          for (std::size_t j = 0; j < near.size; ++j)
-                            moments.add(near.point(j).template cast<double>());
-                          normals[i] = detail::normal_of<S>(moments, curvatures ? &(*curvatures)[i] : nullptr);
-                        });
+  const auto fit = [&](Index index, const Neighborhood<S>& near) {
+    if (near.size < 3) return;
+    const auto i = static_cast<std::size_t>(index);
+    Moments moments;
+    moments.reset(point(cloud, i).template cast<double>());
+    for (std::size_t j = 0; j < near.size; ++j) moments.add(near.point(j).template cast<double>());
+    normals[i] = detail::normal_of<S>(moments, curvatures ? &(*curvatures)[i] : nullptr);
+  };
+  for_each_neighborhood<Order::any>(cloud, static_cast<std::size_t>(params.max_neighbors),
+                                    static_cast<S>(params.radius), threads, fit);
   return normals;
 }
 

@@ -4,7 +4,7 @@
 /// distance d_i to its K nearest neighbours exceeds mu + alpha sigma, mu and sigma being the mean and the deviation of
 /// all d_i.
 ///
-/// Any frame, metres. Cost: a grid and the sorting of some 30 neighbours a point, which bounds it, O(n K).
+/// Any frame, metres. Cost: a grid and the picking of some 20 neighbours a point, which bounds it, O(n K).
 ///
 /// The K neighbours are others than the point itself, which is left out by its index: a duplicate of it counts, at
 /// distance 0. PCL's `setMeanK(K)` means the same K, Open3D's `nb_neighbors` counts the point: K + 1 there is K here
@@ -77,14 +77,13 @@ template <typename C>
 std::vector<double> mean_neighbor_distances(const C& cloud, int k, int threads = 1) {
   using S = scalar_t<C>;
   std::vector<double> distances(agrisee::size(cloud), std::numeric_limits<double>::quiet_NaN());
-  for_each_neighborhood(cloud, static_cast<std::size_t>(std::max(k, 0)) + 1, std::numeric_limits<S>::infinity(),
-                        threads, [&](Index i, const Neighborhood<S>& near) {
-                          double sum = 0.0;
-                          for (std::size_t j = 0; j < near.size; ++j)
-                            sum += static_cast<double>(std::sqrt(near.distance_sq[j]));
-                          distances[static_cast<std::size_t>(i)] =
-                              near.size > 1 ? sum / static_cast<double>(near.size - 1) : 0.0;
-                        });
+  const auto mean = [&](Index i, const Neighborhood<S>& near) {
+    double sum = 0.0;
+    for (std::size_t j = 0; j < near.size; ++j) sum += static_cast<double>(std::sqrt(near.distance_sq[j]));
+    distances[static_cast<std::size_t>(i)] = near.size > 1 ? sum / static_cast<double>(near.size - 1) : 0.0;
+  };
+  for_each_neighborhood<Order::any>(cloud, static_cast<std::size_t>(std::max(k, 0)) + 1,
+                                    std::numeric_limits<S>::infinity(), threads, mean);
   return distances;
 }
 

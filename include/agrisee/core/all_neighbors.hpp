@@ -44,13 +44,12 @@ void coinciding_neighborhoods(const Grid<S>& grid, std::size_t begin, std::size_
     return p < q || (p == q && a < b);
   });
   const std::vector<S> zeros(k, S(0));
-  Indices ids(k);
   for (auto group = order.begin(); group != order.end();) {
     const auto next = std::upper_bound(group, order.end(), *group, [&](auto a, auto b) { return place(a) < place(b); });
     if (static_cast<std::size_t>(next - group) >= k) {
-      for (std::size_t i = 0; i < k; ++i) ids[i] = grid.ids()[group[static_cast<std::ptrdiff_t>(i)]];
-      const Neighborhood<S> near{k,      zeros.data(), ids.data(), grid.x().data(), grid.y().data(), grid.z().data(),
-                                 &*group};
+      Neighborhood<S> near{k,       zeros.data(),     &*group, grid.x().data(), grid.y().data(), grid.z().data(),
+                           nullptr, grid.ids().data()};
+      end_at_last(near);
       for (; group != next; ++group) {
         if ((*group & 0xFFF) == 0) throw_if_cancelled();
         body(*group, near);
@@ -69,14 +68,14 @@ struct Left {
 
 /// body(j, neighbourhood, rings) for the stored points j of which all neighbours are found within so many rings of
 /// cells, 1 or 2; 0 where there are so many that these were found otherwise.
-template <typename S, typename Body>
+template <Order kOrder, typename S, typename Body>
 Left near_neighborhoods(const Grid<S>& grid, std::size_t k, S radius, S typical, int threads, const Body& body) {
   constexpr char kFar = 0, kDone = 1, kCrowded = 2;
   const Stencil rings[] = {box_stencil(1), box_stencil(2)};
   const std::size_t crowd = 32 * k + 1024;
   std::vector<char> state(grid.stored(), kFar);
   for_cells(grid, threads, [&] {
-    return [&, tile = Tile<S>(), nearest = TileNearest<S>(grid, k, typical)](
+    return [&, tile = Tile<S>(), nearest = TileNearest<S, kOrder>(grid, k, typical)](
                const typename Grid<S>::Cell& cell, std::size_t begin, std::size_t end) mutable {
       std::size_t left = end - begin;
       for (int r = 1; r <= 2 && left > 0; ++r) {
@@ -128,12 +127,12 @@ struct NeighborhoodGrid {
 /// As for_each_neighborhood, but body(j, neighbourhood, rings) for the stored points j of the grid, see
 /// near_neighborhoods; rings is 0 for those whose neighbours are not found within two rings or are too many to look
 /// through.
-template <typename C, typename Body>
+template <Order kOrder, typename C, typename Body>
 void for_stored_neighborhoods(const C& cloud, const NeighborhoodGrid<scalar_t<C>>& near, std::size_t k,
                               scalar_t<C> radius, int threads, const Body& body) {
   using S = scalar_t<C>;
   const Grid<S>& grid = near.grid;
-  const Left left = near_neighborhoods(grid, k, radius, near.typical, threads, body);
+  const Left left = near_neighborhoods<kOrder>(grid, k, radius, near.typical, threads, body);
   if (!left.far.empty()) {
     const FarCells<S> cells(grid);
     parallel_chunks(left.far.size(), threads, 64, [&](std::size_t begin, std::size_t end) {
@@ -161,13 +160,13 @@ void for_stored_neighborhoods(const C& cloud, const NeighborhoodGrid<scalar_t<C>
 }  // namespace detail
 
 /// body(i, neighbourhood) for every finite point i of a cloud, in no particular order: its k >= 1 nearest points
-/// (itself included) that are at most `radius` >= 0 away (m; infinite for all). A body writes only what belongs to
-/// point i.
-template <typename C, typename Body>
+/// (itself included) that are at most `radius` >= 0 away (m; infinite for all), of equally far ones those of lesser
+/// index. A body writes only what belongs to point i.
+template <Order kOrder, typename C, typename Body>
 void for_each_neighborhood(const C& cloud, std::size_t k, scalar_t<C> radius, int threads, const Body& body) {
   using S = scalar_t<C>;
   const detail::NeighborhoodGrid<S> near(cloud, k, radius, threads);
-  detail::for_stored_neighborhoods(
+  detail::for_stored_neighborhoods<kOrder>(
       cloud, near, k, radius, threads,
       [&](std::size_t j, const Neighborhood<S>& neighborhood, int) { body(near.grid.ids()[j], neighborhood); });
 }

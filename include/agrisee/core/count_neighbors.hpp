@@ -10,6 +10,9 @@
 #include <agrisee/core/sums.hpp>
 #include <agrisee/core/tiles.hpp>
 
+#include <iterator>
+#include <numeric>
+
 namespace agrisee {
 
 namespace detail {
@@ -38,12 +41,14 @@ int cells_a_radius(const C& cloud, scalar_t<C> r) {
 template <typename S>
 std::size_t count_within(const Tile<S>& tile, const Vector3<S>& q, S r_sq) {
   const S qx = q.x(), qy = q.y(), qz = q.z();
-  std::uint32_t in = 0;
-  for (std::size_t j = 0; j < tile.size; ++j) {
-    const S dx = tile.x[j] - qx, dy = tile.y[j] - qy, dz = tile.z[j] - qz;
-    in += detail::sum_of_squares(dx, dy, dz) <= r_sq ? 1u : 0u;
-  }
-  return tile.inside + in;
+  constexpr std::size_t kLanes = Tile<S>::kLanes;
+  std::uint32_t in[kLanes] = {};
+  for (std::size_t j = 0; j < tile.size; j += kLanes)
+    for (std::size_t l = 0; l < kLanes; ++l) {
+      const S dx = tile.x[j + l] - qx, dy = tile.y[j + l] - qy, dz = tile.z[j + l] - qz;
+      in[l] += detail::sum_of_squares(dx, dy, dz) <= r_sq ? 1u : 0u;
+    }
+  return std::accumulate(std::begin(in), std::end(in), tile.inside);
 }
 
 }  // namespace detail

@@ -77,10 +77,11 @@ class FarNearest {
     }
     std::sort(found_.begin(), found_.end(), before());
     found_.resize(std::min(found_.size(), k_));
-    distance_sq_.clear(), ids_.clear(), at_.clear();
-    for (const Found& f : found_) distance_sq_.push_back(f.d_sq), ids_.push_back(grid.ids()[f.at]), at_.push_back(f.at);
-    near_ = {ids_.size(),     distance_sq_.data(), ids_.data(), grid.x().data(),
-             grid.y().data(), grid.z().data(),     at_.data()};
+    distance_sq_.clear(), at_.clear();
+    for (const Found& f : found_) distance_sq_.push_back(f.d_sq), at_.push_back(f.at);
+    near_ = {at_.size(),      distance_sq_.data(), at_.data(), grid.x().data(),
+             grid.y().data(), grid.z().data(),     nullptr,    grid.ids().data()};
+    end_at_last(near_);
     return near_;
   }
 
@@ -135,7 +136,6 @@ class FarNearest {
   S limit_sq_ = 0;
   std::vector<Found> found_;
   std::vector<S> distance_sq_;
-  Indices ids_;
   std::vector<std::uint32_t> at_;
   Neighborhood<S> near_;
 };

@@ -32,10 +32,11 @@ NeighborLists nearest_neighbors(const C& cloud, std::size_t k, int threads = 1) 
   NeighborLists out{k, Indices(agrisee::size(cloud) * k, -1)};
   const detail::NeighborhoodGrid<S> near(cloud, k, kInfinity, threads);
   const auto& ids = near.grid.ids();
-  const auto list = [&](std::size_t j) { return out.ids.data() + static_cast<std::size_t>(ids[j]) * k; };
-  detail::for_stored_neighborhoods(
-      cloud, near, k, kInfinity, threads,
-      [&](std::size_t j, const Neighborhood<S>& found, int) { std::copy_n(found.ids, found.size, list(j)); });
+  const auto list = [&](std::size_t j, const Neighborhood<S>& found, int) {
+    Index* const to = out.ids.data() + static_cast<std::size_t>(ids[j]) * k;
+    for (std::size_t i = 0; i < found.size; ++i) to[i] = found.id(i);
+  };
+  detail::for_stored_neighborhoods<Order::nearest_first>(cloud, near, k, kInfinity, threads, list);
   return out;
 }
 

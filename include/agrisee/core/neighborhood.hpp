@@ -3,6 +3,7 @@
 /// The k nearest points of one point as stages read them, picked from the candidates of a tile or by a search.
 #pragma once
 
+#include <agrisee/core/indices_within.hpp>
 #include <agrisee/core/tiles.hpp>
 
 #include <algorithm>
@@ -12,26 +13,36 @@
 
 namespace agrisee {
 
-/// The neighbours of one point, nearest first, ties by index; itself included.
+/// The neighbours of one point, itself included.
 template <typename S>
 struct Neighborhood {
   std::size_t size = 0;                   ///< number of neighbours
-  const S* distance_sq = nullptr;         ///< m2
-  const Index* ids = nullptr;             ///< in the cloud
+  const S* distance_sq = nullptr;         ///< m2, of each neighbour
+  const std::uint32_t* at = nullptr;      ///< where neighbour i is among the points that follow
   const S* x = nullptr;                   ///< x of neighbour i is x[at[i]] (m); may be the grid's own
   const S* y = nullptr;                   ///< y likewise
   const S* z = nullptr;                   ///< and z
-  const std::uint32_t* at = nullptr;      ///< where neighbour i is among them
-  const std::uint32_t* stored = nullptr;  ///< x[j] is the grid's point stored[j]; for those found in a tile
+  const std::uint32_t* stored = nullptr;  ///< x[j] is the grid's point stored[j]; null where they are those of `ids`
+  const Index* ids = nullptr;             ///< in the cloud; of the grid's stored points where `stored` is set
+  S last_sq = 0;                          ///< squared distance (m2) up to which points are neighbours,
+  Index last = 0;                         ///< at which their index is at most this
 
   /// Neighbour number i (m).
   Vector3<S> point(std::size_t i) const { return {x[at[i]], y[at[i]], z[at[i]]}; }
+  /// Its index in the cloud.
+  Index id(std::size_t i) const { return ids[stored ? stored[at[i]] : at[i]]; }
+};
+
+/// How the points of a neighbourhood come.
+enum class Order {
+  any,           ///< in one that depends on the cloud alone
+  nearest_first  ///< by distance, then by index
 };
 
 namespace detail {
 
-/// Sorts the nearest of a tile's candidates; not to be shared between threads.
-template <typename S>
+/// Picks the nearest of a tile's candidates; not to be shared between threads.
+template <typename S, Order kOrder>
 class TileNearest {
  public:
   /// @param first_trial distance (m) within which k points are expected
@@ -40,101 +51,127 @@ class TileNearest {
 
   /// The k candidates nearest to q that are at most `reach` away (m).
   const Neighborhood<S>& operator()(const Tile<S>& tile, const Vector3<S>& q, S reach) {
-    resize(tile.size + kLanes);
+    resize(tile.padded());
     tile.distances_sq(q, all_.data());
-    keep(tile.size, limit(tile.size, reach * reach));
-    rank(tile);
-    near_.size = std::min(k_, kept_);
-    for (std::size_t i = 0; i < near_.size; ++i) ids_[i] = grid_.ids()[tile.at[at_[i]]];
-    if (near_.size == k_ && sorted_[k_ - 1] > 0) trial_sq_ = S(1.3) * sorted_[k_ - 1];
-    near_.distance_sq = sorted_.data(), near_.ids = ids_.data(), near_.at = at_.data();
-    near_.x = tile.x.data(), near_.y = tile.y.data(), near_.z = tile.z.data(), near_.stored = tile.at.data();
+    near_.last_sq = limit(tile, reach * reach), near_.last = std::numeric_limits<Index>::max();
+    keep(tile, near_.last_sq);
+    if (kept_ > k_) cut(tile);
+    if (kept_ == k_ && near_.last_sq > 0) trial_sq_ = S(1.1) * near_.last_sq;
+    if (kOrder == Order::nearest_first) rank(tile);
+    near_.size = kept_;
+    near_.distance_sq = kept_sq_.data(), near_.at = kept_at_.data();
+    near_.x = tile.x.data(), near_.y = tile.y.data(), near_.z = tile.z.data();
+    near_.stored = tile.at.data(), near_.ids = grid_.ids().data();
     return near_;
   }
 
  private:
-  static constexpr std::size_t kLanes = 8;
+  static constexpr std::size_t kLanes = Tile<S>::kLanes;
 
   void resize(std::size_t n) {
     if (all_.size() >= n) return;
     n *= 2;
-    all_.resize(n), kept_sq_.resize(n), sorted_.resize(n);
+    all_.resize(n), kept_sq_.resize(n + kLanes), sorted_.resize(n + kLanes);
     kept_at_.resize(n), at_.resize(n), ranks_.resize(n);
-    ids_.resize(n);
   }
 
+  /// How many of n distances, a multiple of kLanes, are at most the square root of `limit_sq`.
   std::size_t count(std::size_t n, S limit_sq) const {
-    std::uint32_t in = 0;
-    for (std::size_t j = 0; j < n; ++j) in += all_[j] <= limit_sq ? 1u : 0u;
-    return in;
-  }
-
-  /// Keep those of n candidates whose squared distance is at most `limit_sq`.
-  void keep(std::size_t n, S limit_sq) {
     const S* const all = all_.data();
-    std::uint32_t* const at = kept_at_.data();
-    std::size_t kept = 0;
-    for (std::size_t j = 0; j < n; ++j) {  // no branch: a third of the candidates pass
-      at[kept] = static_cast<std::uint32_t>(j);
-      kept += all[j] <= limit_sq ? 1u : 0u;
-    }
-    for (std::size_t i = 0; i < kept; ++i) kept_sq_[i] = all[at[i]];
-    kept_ = kept;
+    std::uint32_t in[kLanes] = {};
+    for (std::size_t j = 0; j < n; j += kLanes)
+      for (std::size_t l = 0; l < kLanes; ++l) in[l] += all[j + l] <= limit_sq ? 1u : 0u;
+    std::uint32_t sum = 0;
+    for (const std::uint32_t some : in) sum += some;
+    return sum;
   }
 
-  /// A squared distance, at most `reach_sq`, within which there are k of the n candidates, but few more.
-  S limit(std::size_t n, S reach_sq) const {
-    if (n <= k_) return reach_sq;
+  /// Keep the candidates whose squared distance is at most `limit_sq`.
+  void keep(const Tile<S>& tile, S limit_sq) {
+    kept_ = indices_within(all_.data(), tile.padded(), limit_sq, kept_at_.data());
+    for (std::size_t i = 0; i < kept_; ++i) kept_sq_[i] = all_[kept_at_[i]];
+  }
+
+  /// A squared distance, at most `reach_sq`, within which there are k of the candidates; more where some are as far
+  /// as the k-th or nearly so, fewer where there are no more within reach.
+  S limit(const Tile<S>& tile, S reach_sq) const {
+    if (tile.size <= k_) return reach_sq;
+    const std::size_t n = tile.padded();
     S few = 0, enough = std::min(trial_sq_, reach_sq);  // squared distances within which there are too few, enough
-    std::size_t in = count(n, enough);
+    std::size_t under = 0, in = count(n, enough);       // how many there are
     while (in < k_ && enough < reach_sq) {
-      few = enough;
+      few = enough, under = in;
       enough = std::min(reach_sq, S(1.5) * enough * static_cast<S>(k_) / static_cast<S>(std::max(in, k_ / 4 + 1)));
       in = count(n, enough);
     }
-    for (int trial = 0; trial < 12 && in > 2 * k_; ++trial) {  // counts grow with the square of the distance
-      const S guess = few > 0 ? (few + enough) / S(2) : S(1.3) * enough * static_cast<S>(k_) / static_cast<S>(in);
+    for (int trial = 0; trial < 12 && in > k_; ++trial) {  // on a surface, counts grow with the square of the distance
+      const S share = (static_cast<S>(k_ - under) + S(0.5)) / static_cast<S>(in - under);
+      const S guess = few + share * (enough - few);
+      if (!(few < guess && guess < enough)) break;
       const std::size_t within = count(n, guess);
       if (within < k_)
-        few = guess;
+        few = guess, under = within;
       else
         enough = guess, in = within;
     }
     return enough;
   }
 
+  /// Of what is kept, keep the k nearest, ties by index.
+  void cut(const Tile<S>& tile) {
+    list(tile);
+    const auto kth = order_.begin() + static_cast<std::ptrdiff_t>(k_ - 1);
+    std::nth_element(order_.begin(), kth, order_.end(), before);
+    near_.last_sq = kth->first.distance, near_.last = kth->first.index;
+    std::size_t kept = 0;
+    for (std::size_t i = 0; i < kept_; ++i) {
+      const bool nearer = kept_sq_[i] < near_.last_sq ||
+                          (kept_sq_[i] == near_.last_sq && grid_.ids()[tile.at[kept_at_[i]]] <= near_.last);
+      kept_sq_[kept] = kept_sq_[i], kept_at_[kept] = kept_at_[i];
+      kept += nearer ? 1u : 0u;
+    }
+    kept_ = kept;
+  }
+
   /// Sort what is kept, each to the place that the number of nearer ones gives it.
   void rank(const Tile<S>& tile) {
     const std::size_t n = kept_;
-    if (n > std::min<std::size_t>(4 * k_ + 64, 384)) return sort(tile);
-    for (std::size_t i = n; i < n + kLanes; ++i) kept_sq_[i] = std::numeric_limits<S>::infinity();
+    if (n > 384) return sort(tile);
+    constexpr std::size_t kRows = 8;
+    for (std::size_t i = n; i < n + kRows; ++i) kept_sq_[i] = std::numeric_limits<S>::infinity();
     std::size_t sum = 0;
-    for (std::size_t i = 0; i < n; i += kLanes) {
-      S own[kLanes];
-      Rank nearer[kLanes] = {};
-      std::copy_n(kept_sq_.data() + i, kLanes, own);
+    for (std::size_t i = 0; i < n; i += kRows) {
+      S own[kRows];
+      Rank nearer[kRows] = {};
+      std::copy_n(kept_sq_.data() + i, kRows, own);
       for (std::size_t j = 0; j < n; ++j) {
         const S other = kept_sq_[j];
-        for (std::size_t l = 0; l < kLanes; ++l) nearer[l] += other < own[l] ? Rank(1) : Rank(0);
+        for (std::size_t l = 0; l < kRows; ++l) nearer[l] += other < own[l] ? Rank(1) : Rank(0);
       }
-      std::copy_n(nearer, kLanes, ranks_.data() + i);
+      std::copy_n(nearer, kRows, ranks_.data() + i);
     }
+    for (std::size_t i = 0; i < n; ++i) sum += static_cast<std::size_t>(ranks_[i]);
+    if (n > 0 && 2 * sum != n * (n - 1)) return sort(tile);  // equal distances share a rank
     for (std::size_t i = 0; i < n; ++i) {
-      sum += static_cast<std::size_t>(ranks_[i]);
       sorted_[static_cast<std::size_t>(ranks_[i])] = kept_sq_[i];
       at_[static_cast<std::size_t>(ranks_[i])] = kept_at_[i];
     }
-    if (n > 0 && 2 * sum != n * (n - 1)) sort(tile);  // equal distances share a rank
+    std::swap(sorted_, kept_sq_), std::swap(at_, kept_at_);
   }
 
   /// Sort what is kept by distance, then by index.
   void sort(const Tile<S>& tile) {
+    list(tile);
+    std::sort(order_.begin(), order_.end(), before);
+    for (std::size_t i = 0; i < kept_; ++i) kept_sq_[i] = order_[i].first.distance, kept_at_[i] = order_[i].second;
+  }
+
+  using Listed = std::pair<Neighbor<S>, std::uint32_t>;  // its distance is squared (m2); where it is in the tile
+  static bool before(const Listed& a, const Listed& b) { return Nearest<S>::before(a.first, b.first); }
+  void list(const Tile<S>& tile) {
     order_.clear();
     for (std::size_t i = 0; i < kept_; ++i)
       order_.push_back({{grid_.ids()[tile.at[kept_at_[i]]], kept_sq_[i]}, kept_at_[i]});
-    std::sort(order_.begin(), order_.end(),
-              [](const auto& a, const auto& b) { return Nearest<S>::before(a.first, b.first); });
-    for (std::size_t i = 0; i < kept_; ++i) sorted_[i] = order_[i].first.distance, at_[i] = order_[i].second;
   }
 
   using Rank = std::conditional_t<sizeof(S) == 4, std::int32_t, std::int64_t>;  // as wide as S, for the vectors' sake
@@ -145,10 +182,15 @@ class TileNearest {
   std::vector<S> all_, kept_sq_, sorted_;
   std::vector<std::uint32_t> kept_at_, at_;
   std::vector<Rank> ranks_;
-  Indices ids_;
-  std::vector<std::pair<Neighbor<S>, std::uint32_t>> order_;
+  std::vector<Listed> order_;
   Neighborhood<S> near_;
 };
+
+/// Let a neighbourhood that is sorted end at its last one.
+template <typename S>
+void end_at_last(Neighborhood<S>& near) {
+  if (near.size > 0) near.last_sq = near.distance_sq[near.size - 1], near.last = near.id(near.size - 1);
+}
 
 /// The neighbourhood of a point by a search over the cloud; not to be shared between threads.
 template <typename S>
@@ -168,7 +210,8 @@ class SearchNearest {
       distance_sq_.push_back(d_sq);
       x_.push_back(p.x()), y_.push_back(p.y()), z_.push_back(p.z());
     }
-    near_ = {ids_.size(), distance_sq_.data(), ids_.data(), x_.data(), y_.data(), z_.data(), at_.data()};
+    near_ = {ids_.size(), distance_sq_.data(), at_.data(), x_.data(), y_.data(), z_.data(), nullptr, ids_.data()};
+    end_at_last(near_);
     return near_;
   }
 

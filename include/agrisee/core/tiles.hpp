@@ -10,13 +10,16 @@
 
 #include <algorithm>
 #include <cstring>
+#include <limits>
 
 namespace agrisee {
 
 /// Candidates as a structure of arrays; not to be shared between threads.
 template <typename S>
 struct Tile {
-  std::vector<S> x;               ///< coordinates (m), at least `size` long
+  static constexpr std::size_t kLanes = 16;  ///< candidates a block
+
+  std::vector<S> x;               ///< coordinates (m), at least padded() long; NaN after the last one
   std::vector<S> y;               ///< likewise
   std::vector<S> z;               ///< likewise
   std::vector<std::uint32_t> at;  ///< position among the grid's stored points
@@ -40,15 +43,20 @@ struct Tile {
         inside += hole.second - hole.first;
       }
     }
+    pad();
   }
 
-  /// Squared distances (m2) from q to the candidates.
+  /// The end of the last one's block, for loops over whole blocks: few lengths, which processors foresee.
+  std::size_t padded() const { return (size + kLanes - 1) / kLanes * kLanes; }
+
+  /// Squared distances (m2) from q to the candidates, NaN up to padded().
   void distances_sq(const Vector3<S>& q, S* out) const {
     const S qx = q.x(), qy = q.y(), qz = q.z();
-    for (std::size_t j = 0; j < size; ++j) {
-      const S dx = x[j] - qx, dy = y[j] - qy, dz = z[j] - qz;
-      out[j] = detail::sum_of_squares(dx, dy, dz);
-    }
+    for (std::size_t j = 0; j < size; j += kLanes)
+      for (std::size_t l = j; l < j + kLanes; ++l) {
+        const S dx = x[l] - qx, dy = y[l] - qy, dz = z[l] - qz;
+        out[l] = detail::sum_of_squares(dx, dy, dz);
+      }
   }
 
   /// Empty it; its memory stays.
@@ -58,7 +66,7 @@ struct Tile {
   void append(const Grid<S>& grid, std::size_t begin, std::size_t end) {
     constexpr std::size_t kBlock = Grid<S>::kBlock;
     const std::size_t more = end - begin;
-    if (size + more + kBlock > x.size()) {
+    if (size + more + kBlock + kLanes > x.size()) {
       const std::size_t room = 2 * (size + more) + 64;
       x.resize(room), y.resize(room), z.resize(room), at.resize(room);
     }
@@ -69,6 +77,11 @@ struct Tile {
       for (std::size_t l = 0; l < kBlock; ++l) at[size + i + l] = static_cast<std::uint32_t>(begin + i + l);
     }
     size += more;
+  }
+
+ private:
+  void pad() {
+    for (std::size_t l = size; l < padded(); ++l) x[l] = std::numeric_limits<S>::quiet_NaN();
   }
 };
 

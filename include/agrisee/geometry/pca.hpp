@@ -7,14 +7,17 @@
 
 #include <Eigen/Eigenvalues>
 
+#include <algorithm>
+#include <cmath>
+
 namespace agrisee {
 
 /// Mean and principal axes of a set of points.
 template <typename S>
 struct PrincipalAxes {
-  Vector3<S> mean = Vector3<S>::Zero();         ///< m
-  Vector3<S> variance = Vector3<S>::Zero();     ///< along the axes (divided by n), ascending, never negative
-  Matrix3<S> axes = Matrix3<S>::Identity();     ///< columns, unit, by ascending variance; signs are arbitrary
+  Vector3<S> mean = Vector3<S>::Zero();      ///< m
+  Vector3<S> variance = Vector3<S>::Zero();  ///< along the axes (divided by n), ascending, never negative
+  Matrix3<S> axes = Matrix3<S>::Identity();  ///< columns, unit, by ascending variance; signs are arbitrary
   /// Surface variation lambda0 / (lambda0 + lambda1 + lambda2) (Pauly et al., 2002); 0 where all points coincide.
   S curvature() const {
     const S sum = variance.sum();
@@ -41,8 +44,52 @@ PrincipalAxes<S> principal_axes(const Vector3<S>& mean, const Matrix3<S>& covari
   return out;
 }
 
-/// Mean and covariance (divided by n) of points as they come, in double. Sums are taken relative to an origin that should
-/// lie among the points, so that clouds far from zero lose nothing.
+/// The axis of least variance of a covariance matrix (unit, its sign arbitrary), in a quarter of the time of all axes.
+/// The least eigenvalue is found by Newton's method from below, its axis is the greatest column of the adjugate of what
+/// is left of the matrix; where eigenvalues nearly coincide with the least, by iteration.
+/// @param covariance in double; symmetric, no eigenvalue less than 0
+/// @param variance receives the eigenvalues, ascending, never negative, the greater two to half of their digits where
+/// they coincide; zero, as the axis, where the matrix is zero or not finite
+inline Eigen::Vector3d least_axis(const Eigen::Matrix3d& covariance, Eigen::Vector3d& variance) {
+  variance.setZero();
+  const double scale = covariance.diagonal().maxCoeff();
+  if (!(scale > 0.0) || !std::isfinite(scale)) return Eigen::Vector3d::Zero();
+  const double up = 1.0 / scale;
+  double xx = up * covariance(0, 0), yy = up * covariance(1, 1), zz = up * covariance(2, 2);
+  const double xy = up * covariance(1, 0), xz = up * covariance(2, 0), yz = up * covariance(2, 1);
+  // The characteristic polynomial, x^3 - trace x^2 + minors x - determinant, grows up to its least root.
+  const double trace = xx + yy + zz;
+  const double minors = (xx * yy - xy * xy) + (xx * zz - xz * xz) + (yy * zz - yz * yz);
+  const double determinant = xx * (yy * zz - yz * yz) - xy * (xy * zz - yz * xz) + xz * (xy * yz - yy * xz);
+  double least = 0.0;
+  bool found = false;
+  for (int i = 0; i < 16 && !found; ++i) {
+    const double value = ((least - trace) * least + minors) * least - determinant;
+    const double slope = (3.0 * least - 2.0 * trace) * least + minors;
+    const double step = value < 0.0 && slope > 0.0 ? -value / slope : 0.0;
+    least += step;
+    found = step < 1e-13;
+  }
+  const double half = 0.5 * (trace - least), product = minors - 2.0 * half * least;  // of the other two
+  const double most = half + std::sqrt(std::max(half * half - product, 0.0));
+  const double middle = most > 0.0 ? product / most : 0.0;
+  // Rounding turns the axis by some epsilon / ((middle - least)^2 (most - least)).
+  constexpr double kNear = 1e-7;
+  if (!found || !((middle - least) * (middle - least) * (most - least) > kNear)) {
+    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(up * covariance);
+    variance = scale * solver.eigenvalues().cwiseMax(0.0);
+    return solver.eigenvectors().col(0);
+  }
+  variance = scale * Eigen::Vector3d(least, middle, most);
+  xx -= least, yy -= least, zz -= least;
+  const double a = yy * zz - yz * yz, b = xx * zz - xz * xz, c = xx * yy - xy * xy;  // of the adjugate
+  const double ab = xz * yz - xy * zz, ac = xy * yz - xz * yy, bc = xy * xz - xx * yz;
+  if (a >= b && a >= c) return Eigen::Vector3d(a, ab, ac).normalized();
+  return b >= c ? Eigen::Vector3d(ab, b, bc).normalized() : Eigen::Vector3d(ac, bc, c).normalized();
+}
+
+/// Mean and covariance (divided by n) of points as they come, in double. Sums are taken relative to an origin that
+/// should lie among the points, so that clouds far from zero lose nothing.
 class Moments {
  public:
   Moments() { reset(Eigen::Vector3d::Zero()); }
@@ -64,10 +111,15 @@ class Moments {
   Eigen::Vector3d mean() const { return n_ > 0.0 ? Eigen::Vector3d(origin_ + offset()) : origin_; }
   /// Zero without points.
   Eigen::Matrix3d covariance() const {
-    Eigen::Matrix3d c = Eigen::Matrix3d::Zero();
-    if (n_ == 0.0) return c;
-    c << xx_, xy_, xz_, xy_, yy_, yz_, xz_, yz_, zz_;
-    return c / n_ - offset() * offset().transpose();
+    if (n_ == 0.0) return Eigen::Matrix3d::Zero();
+    const double x = x_ / n_, y = y_ / n_, z = z_ / n_;
+    const double xx = xx_ / n_ - x * x, xy = xy_ / n_ - x * y, xz = xz_ / n_ - x * z;
+    const double yy = yy_ / n_ - y * y, yz = yz_ / n_ - y * z, zz = zz_ / n_ - z * z;
+    Eigen::Matrix3d c;
+    c.col(0) = Eigen::Vector3d(xx, xy, xz);
+    c.col(1) = Eigen::Vector3d(xy, yy, yz);
+    c.col(2) = Eigen::Vector3d(xz, yz, zz);
+    return c;
   }
 
  private:
