@@ -291,12 +291,16 @@ IcpResult register_cloud(const Source& source, const std::vector<Vector3<scalar_
   const auto enough = [&] { return result.matches >= static_cast<std::size_t>(params.min_matches); };
   const std::vector<Index> matches_before = problem.matches();
   const std::vector<double> residuals_before = problem.residuals();
-  const double scale_before = robust_scale(matches_before, residuals_before, params.min_scale());
+  const auto scale_of = [&](const std::vector<Index>& matches, const std::vector<double>& residuals) {
+    const bool wanted = params.kernel != RobustKernel::none;
+    return wanted ? robust_scale(matches, residuals, params.min_scale()) : params.min_scale();
+  };
+  const double scale_before = scale_of(matches_before, residuals_before);
 
   Pose pose = initial;
   while (enough() && result.iterations < params.max_iterations) {
     throw_if_cancelled();
-    const double scale = robust_scale(problem.matches(), problem.residuals(), params.min_scale());
+    const double scale = scale_of(problem.matches(), problem.residuals());
     const Pose step = problem.step(pose, scale, result.constrained);
     const double shift = (step * (pose * problem.centroid()) - pose * problem.centroid()).norm();
     pose = step * pose;

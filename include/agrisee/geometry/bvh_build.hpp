@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <mutex>
 #include <utility>
 #include <vector>
 
@@ -76,6 +77,12 @@ struct BvhRange {
     centers.extend(item.center());
     ++end;
   }
+  /// Take in as many items as `other` has, which are those that follow.
+  void add(const BvhRange& other) {
+    box.extend(other.box);
+    centers.extend(other.centers);
+    end += other.size();
+  }
 };
 
 /// Bins along the three axes of the box around the centers of a range.
@@ -117,19 +124,51 @@ struct BvhSplit {
   float cost = std::numeric_limits<float>::infinity();
 };
 
-/// The split between bins that the surface area heuristic takes to be cheapest.
-/// @param scale see BvhBox::half_area()
-inline BvhSplit cheapest_split(const Uninitialized<BvhItem>& items, const BvhRange& range, const BvhBins& bins,
-                               float scale) {
+/// What a range's items are in each bin along each axis.
+struct BvhHistogram {
   BvhBins::Bin all[3][BvhBins::kMost];
-  for (std::size_t i = range.begin; i < range.end; ++i) {
-    const Eigen::Array4f center = items[i].center();
+
+  void add(const BvhItem& item, const BvhBins& bins) {
+    const Eigen::Array4f center = item.center();
     for (int a = 0; a < 3; ++a) {
       BvhBins::Bin& b = all[a][bins.of(center, a)];
-      b.box.extend(items[i].box());
+      b.box.extend(item.box());
       ++b.n;
     }
   }
+  void add(const BvhHistogram& other) {
+    for (int a = 0; a < 3; ++a)
+      for (int b = 0; b < BvhBins::kMost; ++b) {
+        all[a][b].box.extend(other.all[a][b].box);
+        all[a][b].n += other.all[a][b].n;
+      }
+  }
+};
+
+/// `total`, with which the parts of items [begin, end) that `add_to(part, begin, end)` makes are joined by part.add.
+/// Large runs are divided among threads; the order of the parts must not matter.
+template <typename Part, typename AddTo>
+void add_parts(Part& total, std::size_t begin, std::size_t end, int threads, const AddTo& add_to) {
+  constexpr std::size_t kChunk = 8192;
+  if (threads <= 1 || end - begin <= kChunk) return add_to(total, begin, end);
+  std::mutex mutex;
+  parallel_chunks(end - begin, threads, kChunk, [&](std::size_t first, std::size_t last) {
+    Part part;
+    add_to(part, begin + first, begin + last);
+    const std::lock_guard<std::mutex> lock(mutex);
+    total.add(part);
+  });
+}
+
+/// The split between bins that the surface area heuristic takes to be cheapest.
+/// @param scale see BvhBox::half_area()
+inline BvhSplit cheapest_split(const Uninitialized<BvhItem>& items, const BvhRange& range, const BvhBins& bins,
+                               float scale, int threads) {
+  BvhHistogram histogram;
+  add_parts(histogram, range.begin, range.end, threads, [&](BvhHistogram& part, std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) part.add(items[i], bins);
+  });
+  const auto& all = histogram.all;
   BvhSplit best;
   for (int a = 0; a < 3; ++a) {
     if (!(bins.scale[a] > 0.0f)) continue;
@@ -158,8 +197,10 @@ inline BvhSplit cheapest_split(const Uninitialized<BvhItem>& items, const BvhRan
 }
 
 /// Split a range: its items are reordered.
+/// @param threads the result does not depend on it
 /// @return the two sides; the left one is empty when a leaf is better
-inline std::pair<BvhRange, BvhRange> split_bvh(Uninitialized<BvhItem>& items, const BvhRange& range, int depth) {
+inline std::pair<BvhRange, BvhRange> split_bvh(Uninitialized<BvhItem>& items, const BvhRange& range, int depth,
+                                               int threads = 1) {
   constexpr std::size_t kMinLeaf = 4, kMaxLeaf = 8;  // fewer are not split, more always are
   constexpr float kNodeCost = 1.0f;                  // of a step down, in triangle tests
   BvhRange left, right;
@@ -168,7 +209,8 @@ inline std::pair<BvhRange, BvhRange> split_bvh(Uninitialized<BvhItem>& items, co
   const float longest = (range.box.max - range.box.min).head<3>().maxCoeff();
   const float scale = std::isfinite(longest) && longest > 0.0f ? 1.0f / longest : 1.0f;
   const BvhBins bins(range);
-  const BvhSplit best = depth < kBvhSahDepth && bins.usable() ? cheapest_split(items, range, bins, scale) : BvhSplit();
+  const bool by_area = depth < kBvhSahDepth && bins.usable();
+  const BvhSplit best = by_area ? cheapest_split(items, range, bins, scale, threads) : BvhSplit();
   const float area = range.box.half_area(scale);
   if (range.size() <= kMaxLeaf && !(best.cost + kNodeCost * area < area * static_cast<float>(range.size())))
     return {left, right};
@@ -255,13 +297,16 @@ inline Uninitialized<BvhNode> build_bvh(Uninitialized<BvhItem>& items, int threa
   if (items.empty()) return nodes;
   nodes.emplace_back();
   BvhTask whole{{}, 0, 0};
-  for (const BvhItem& item : items) whole.range.push(item);
+  add_parts(whole.range, 0, items.size(), threads, [&](BvhRange& part, std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) part.push(items[i]);
+  });
   std::vector<BvhTask> level, roots;
   const auto add = [&](const BvhTask& task) { (task.range.size() > subtree ? level : roots).push_back(task); };
   add(whole);
   while (!level.empty()) {
     std::vector<std::pair<BvhRange, BvhRange>> sides(level.size());
-    const auto split = [&](std::size_t i) { sides[i] = split_bvh(items, level[i].range, level[i].depth); };
+    const int each = threads / static_cast<int>(level.size());  // threads
+    const auto split = [&](std::size_t i) { sides[i] = split_bvh(items, level[i].range, level[i].depth, each); };
     parallel_for(level.size(), threads, split, 1);
     const std::vector<BvhTask> split_tasks = std::exchange(level, {});
     for (std::size_t i = 0; i < sides.size(); ++i) make_bvh_node(nodes, split_tasks[i], sides[i], add);
