@@ -4,6 +4,7 @@
 #include <agrisee/core/count_neighbors.hpp>
 #include <agrisee/core/neighbor_lists.hpp>
 
+#include <cfenv>
 #include <numeric>
 
 #include "catch.hpp"
@@ -183,6 +184,15 @@ TEST_CASE("crowds are searched like other places") {
   cloud[1] = cloud[2] = cloud[7] = Eigen::Vector3f(0.002f, 0.0f, 0.0f);
   check_nearest<float>(cloud, 5, std::numeric_limits<float>::infinity());
   check_nearest<float>(cloud, 5, 0.0005f);
+}
+
+TEST_CASE("searches of finite clouds raise no flag of invalid arithmetic") {
+  const auto cloud = shapes::cloud_of<float>("random", 300);
+  std::feclearexcept(FE_ALL_EXCEPT);
+  const NeighborLists lists = nearest_neighbors(cloud, 20);
+  const std::vector<int> counts = count_neighbors(cloud, 0.02f);
+  CHECK(std::fetestexcept(FE_INVALID) == 0);
+  CHECK(lists.size() == counts.size());
 }
 
 TEMPLATE_TEST_CASE("indices within a limit are those of a plain loop", "", float, double) {

@@ -145,9 +145,9 @@ Labels nearest_regions(const C& cloud, const std::vector<Vector3<scalar_t<C>>>& 
   const OrientedPoints<S> points(grid, normals, params, threads);
   const auto member = [&](std::size_t j) { return points.member(j); };
 
-  // Most sets are joined by the lists at hand, as soon as the reach of two neighbours is known; their first few
-  // suffice.
-  constexpr std::size_t kFirst = 9;  // itself included
+  // Most sets are joined by the neighbours at hand, as soon as the reach of both is known; the first few of them
+  // suffice: those of the rows before, which come first, mostly have been looked at.
+  constexpr std::size_t kFirst = 9;
   DisjointSets sets(n);
   const auto join_known = [&](std::size_t j, const Neighborhood<S>& its, const NearestReach<S>& reach) {
     if (!member(j)) return;
@@ -215,7 +215,8 @@ Labels nearest_regions(const C& cloud, const std::vector<Vector3<scalar_t<C>>>& 
           if (tile.size == 0) tile.gather(grid, cell, stencils[rings - 1]);
           if (sq.size() < tile.padded()) sq.resize(2 * tile.padded()), within.resize(2 * tile.padded());
           tile.distances_sq(p, sq.data());
-          const std::size_t found = indices_within(sq.data(), tile.padded(), reach.sq[i], within.data());
+          const std::size_t found =
+              std::min(indices_within(sq.data(), tile.padded(), reach.sq[i], within.data()), tile.size);
           for (std::size_t f = 0; f < found; ++f) {
             const std::size_t c = within[f];
             const std::size_t j = tile.at[c];

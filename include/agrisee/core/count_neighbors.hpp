@@ -10,6 +10,7 @@
 #include <agrisee/core/sums.hpp>
 #include <agrisee/core/tiles.hpp>
 
+#include <algorithm>
 #include <iterator>
 #include <numeric>
 
@@ -48,7 +49,8 @@ std::size_t count_within(const Tile<S>& tile, const Vector3<S>& q, S r_sq) {
       const S dx = tile.x[j + l] - qx, dy = tile.y[j + l] - qy, dz = tile.z[j + l] - qz;
       in[l] += detail::sum_of_squares(dx, dy, dz) <= r_sq ? 1u : 0u;
     }
-  return std::accumulate(std::begin(in), std::end(in), tile.inside);
+  const std::size_t sum = std::accumulate(std::begin(in), std::end(in), std::size_t(0));
+  return tile.inside + std::min(sum, tile.size);  // within infinity there are those that are none, too
 }
 
 }  // namespace detail

@@ -14,7 +14,7 @@
 namespace agrisee::detail {
 
 /// Write the indices i of the n numbers with values[i] <= limit, ascending; there must be room for all n.
-/// @param n a multiple of four: numbers that are none of the candidates are NaN
+/// @param n a multiple of four
 /// @return how many there are
 template <typename S>
 std::size_t indices_within(const S* values, std::size_t n, S limit, std::uint32_t* out) {

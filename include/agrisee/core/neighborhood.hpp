@@ -24,8 +24,10 @@ struct Neighborhood {
   const S* z = nullptr;                   ///< and z
   const std::uint32_t* stored = nullptr;  ///< x[j] is the grid's point stored[j]; null where they are those of `ids`
   const Index* ids = nullptr;             ///< in the cloud; of the grid's stored points where `stored` is set
-  S last_sq = 0;                          ///< squared distance (m2) up to which points are neighbours,
-  Index last = 0;                         ///< at which their index is at most this
+  /// Of all points, the neighbours are those whose squared distance (m2) is less than this, or equal to it with an
+  /// index of at most `last`. It may be any number that tells them apart, not the same in each run.
+  S last_sq = 0;
+  Index last = 0;  ///< see last_sq
 
   /// Neighbour number i (m).
   Vector3<S> point(std::size_t i) const { return {x[at[i]], y[at[i]], z[at[i]]}; }
@@ -35,7 +37,7 @@ struct Neighborhood {
 
 /// How the points of a neighbourhood come.
 enum class Order {
-  any,           ///< in one that depends on the cloud alone
+  any,           ///< in some order, which depends on the cloud alone
   nearest_first  ///< by distance, then by index
 };
 
@@ -57,7 +59,7 @@ class TileNearest {
     keep(tile, near_.last_sq);
     if (kept_ > k_) cut(tile);
     if (kept_ == k_ && near_.last_sq > 0) trial_sq_ = S(1.1) * near_.last_sq;
-    if (kOrder == Order::nearest_first) rank(tile);
+    if constexpr (kOrder == Order::nearest_first) rank(tile);
     near_.size = kept_;
     near_.distance_sq = kept_sq_.data(), near_.at = kept_at_.data();
     near_.x = tile.x.data(), near_.y = tile.y.data(), near_.z = tile.z.data();
@@ -75,20 +77,20 @@ class TileNearest {
     kept_at_.resize(n), at_.resize(n), ranks_.resize(n);
   }
 
-  /// How many of n distances, a multiple of kLanes, are at most the square root of `limit_sq`.
-  std::size_t count(std::size_t n, S limit_sq) const {
+  /// How many candidates have a squared distance of at most `limit_sq`.
+  std::size_t count(const Tile<S>& tile, S limit_sq) const {
     const S* const all = all_.data();
     std::uint32_t in[kLanes] = {};
-    for (std::size_t j = 0; j < n; j += kLanes)
+    for (std::size_t j = 0; j < tile.size; j += kLanes)
       for (std::size_t l = 0; l < kLanes; ++l) in[l] += all[j + l] <= limit_sq ? 1u : 0u;
-    std::uint32_t sum = 0;
+    std::size_t sum = 0;
     for (const std::uint32_t some : in) sum += some;
-    return sum;
+    return std::min(sum, tile.size);  // within infinity there are those that are none, too
   }
 
   /// Keep the candidates whose squared distance is at most `limit_sq`.
   void keep(const Tile<S>& tile, S limit_sq) {
-    kept_ = indices_within(all_.data(), tile.padded(), limit_sq, kept_at_.data());
+    kept_ = std::min(indices_within(all_.data(), tile.padded(), limit_sq, kept_at_.data()), tile.size);
     for (std::size_t i = 0; i < kept_; ++i) kept_sq_[i] = all_[kept_at_[i]];
   }
 
@@ -96,19 +98,18 @@ class TileNearest {
   /// as the k-th or nearly so, fewer where there are no more within reach.
   S limit(const Tile<S>& tile, S reach_sq) const {
     if (tile.size <= k_) return reach_sq;
-    const std::size_t n = tile.padded();
     S few = 0, enough = std::min(trial_sq_, reach_sq);  // squared distances within which there are too few, enough
-    std::size_t under = 0, in = count(n, enough);       // how many there are
+    std::size_t under = 0, in = count(tile, enough);    // how many there are
     while (in < k_ && enough < reach_sq) {
       few = enough, under = in;
       enough = std::min(reach_sq, S(1.5) * enough * static_cast<S>(k_) / static_cast<S>(std::max(in, k_ / 4 + 1)));
-      in = count(n, enough);
+      in = count(tile, enough);
     }
     for (int trial = 0; trial < 12 && in > k_; ++trial) {  // on a surface, counts grow with the square of the distance
       const S share = (static_cast<S>(k_ - under) + S(0.5)) / static_cast<S>(in - under);
       const S guess = few + share * (enough - few);
       if (!(few < guess && guess < enough)) break;
-      const std::size_t within = count(n, guess);
+      const std::size_t within = count(tile, guess);
       if (within < k_)
         few = guess, under = within;
       else

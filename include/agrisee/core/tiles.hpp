@@ -19,9 +19,9 @@ template <typename S>
 struct Tile {
   static constexpr std::size_t kLanes = 16;  ///< candidates a block
 
-  std::vector<S> x;               ///< coordinates (m), at least padded() long; NaN after the last one
-  std::vector<S> y;               ///< likewise
-  std::vector<S> z;               ///< likewise
+  std::vector<S> x;               ///< coordinates (m), padded() long at least; infinite after the last one
+  std::vector<S> y;               ///< likewise, but any number after the last one
+  std::vector<S> z;               ///< like y
   std::vector<std::uint32_t> at;  ///< position among the grid's stored points
   std::size_t size = 0;           ///< candidates
   std::size_t inside = 0;         ///< points that are not listed because they lie within reach of the whole cell
@@ -49,7 +49,7 @@ struct Tile {
   /// The end of the last one's block, for loops over whole blocks: few lengths, which processors foresee.
   std::size_t padded() const { return (size + kLanes - 1) / kLanes * kLanes; }
 
-  /// Squared distances (m2) from q to the candidates, NaN up to padded().
+  /// Squared distances (m2) from q to the candidates, then infinity: padded() numbers in all.
   void distances_sq(const Vector3<S>& q, S* out) const {
     const S qx = q.x(), qy = q.y(), qz = q.z();
     for (std::size_t j = 0; j < size; j += kLanes)
@@ -59,6 +59,7 @@ struct Tile {
       }
   }
 
+ private:
   /// Empty it; its memory stays.
   void clear() { size = inside = 0; }
 
@@ -79,9 +80,8 @@ struct Tile {
     size += more;
   }
 
- private:
   void pad() {
-    for (std::size_t l = size; l < padded(); ++l) x[l] = std::numeric_limits<S>::quiet_NaN();
+    for (std::size_t l = size; l < padded(); ++l) x[l] = std::numeric_limits<S>::infinity();
   }
 };
 

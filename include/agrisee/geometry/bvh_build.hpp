@@ -56,7 +56,8 @@ struct BvhItem {
   BvhItem() {}
   BvhItem(const Triangle& t, std::uint32_t index) : triangle(index) {
     BvhBox around;
-    for (const Eigen::Vector3f& p : t) around.extend(Eigen::Array4f(p[0], p[1], p[2], 0.0f));
+    for (const Eigen::Vector3f& p : t)
+      around.extend(Eigen::Array4f(p[0], p[1], p[2], 0.0f) + 0.0f);  // no -0, which is no less than 0
     min = around.min;
     max = around.max;
   }

@@ -49,11 +49,11 @@ PrincipalAxes<S> principal_axes(const Vector3<S>& mean, const Matrix3<S>& covari
 /// is left of the matrix; where eigenvalues nearly coincide with the least, by iteration.
 /// @param covariance in double; symmetric, no eigenvalue less than 0
 /// @param variance receives the eigenvalues, ascending, never negative, the greater two to half of their digits where
-/// they coincide; zero, as the axis, where the matrix is zero or not finite
+/// they coincide; zero, as the axis, where the matrix is zero, so small that 1 / it overflows, or not finite
 inline Eigen::Vector3d least_axis(const Eigen::Matrix3d& covariance, Eigen::Vector3d& variance) {
   variance.setZero();
   const double scale = covariance.diagonal().maxCoeff();
-  if (!(scale > 0.0) || !std::isfinite(scale)) return Eigen::Vector3d::Zero();
+  if (!(scale > 0.0)) return Eigen::Vector3d::Zero();
   const double up = 1.0 / scale;
   double xx = up * covariance(0, 0), yy = up * covariance(1, 1), zz = up * covariance(2, 2);
   const double xy = up * covariance(1, 0), xz = up * covariance(2, 0), yz = up * covariance(2, 1);
@@ -61,6 +61,7 @@ inline Eigen::Vector3d least_axis(const Eigen::Matrix3d& covariance, Eigen::Vect
   const double trace = xx + yy + zz;
   const double minors = (xx * yy - xy * xy) + (xx * zz - xz * xz) + (yy * zz - yz * yz);
   const double determinant = xx * (yy * zz - yz * yz) - xy * (xy * zz - yz * xz) + xz * (xy * yz - yy * xz);
+  if (!std::isfinite(trace) || !std::isfinite(minors) || !std::isfinite(determinant)) return Eigen::Vector3d::Zero();
   double least = 0.0;
   bool found = false;
   for (int i = 0; i < 16 && !found; ++i) {
@@ -72,10 +73,10 @@ inline Eigen::Vector3d least_axis(const Eigen::Matrix3d& covariance, Eigen::Vect
   }
   const double half = 0.5 * (trace - least), product = minors - 2.0 * half * least;  // of the other two
   const double most = half + std::sqrt(std::max(half * half - product, 0.0));
-  const double middle = most > 0.0 ? product / most : 0.0;
+  const double middle = most > 0.0 ? std::min(product / most, most) : 0.0;
   // Rounding turns the axis by some epsilon / ((middle - least)^2 (most - least)).
   constexpr double kNear = 1e-7;
-  if (!found || !((middle - least) * (middle - least) * (most - least) > kNear)) {
+  if (!found || !(middle > least) || !((middle - least) * (middle - least) * (most - least) > kNear)) {
     const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(up * covariance);
     variance = scale * solver.eigenvalues().cwiseMax(0.0);
     return solver.eigenvectors().col(0);
