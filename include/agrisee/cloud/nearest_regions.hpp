@@ -9,7 +9,6 @@
 #include <agrisee/cloud/region_rules.hpp>
 #include <agrisee/core/all_neighbors.hpp>
 #include <agrisee/core/components.hpp>
-#include <agrisee/core/indices_within.hpp>
 
 #include <algorithm>
 #include <atomic>
@@ -215,8 +214,7 @@ Labels nearest_regions(const C& cloud, const std::vector<Vector3<scalar_t<C>>>& 
           if (tile.size == 0) tile.gather(grid, cell, stencils[rings - 1]);
           if (sq.size() < tile.padded()) sq.resize(2 * tile.padded()), within.resize(2 * tile.padded());
           tile.distances_sq(p, sq.data());
-          const std::size_t found =
-              std::min(indices_within(sq.data(), tile.padded(), reach.sq[i], within.data()), tile.size);
+          const std::size_t found = tile.list_within(sq.data(), reach.sq[i], within.data());
           for (std::size_t f = 0; f < found; ++f) {
             const std::size_t c = within[f];
             const std::size_t j = tile.at[c];

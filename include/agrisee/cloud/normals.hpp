@@ -23,7 +23,7 @@ Vector3<S> normal_of(const Moments& moments, S* curvature) {
   const Eigen::Vector3d axis = least_axis(moments.covariance(), variance);
   const double rounding = 4.0 * double(std::numeric_limits<S>::epsilon()) * moments.mean().cwiseAbs().maxCoeff();
   if (!(variance[1] > 1e-8 * variance[2] + rounding * rounding)) return Vector3<S>::Zero();
-  if (curvature) *curvature = static_cast<S>(variance[0] / variance.sum());
+  if (curvature) *curvature = static_cast<S>(surface_variation<double>(variance));
   return axis.cast<S>();
 }
 

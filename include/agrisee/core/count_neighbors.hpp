@@ -11,8 +11,6 @@
 #include <agrisee/core/tiles.hpp>
 
 #include <algorithm>
-#include <iterator>
-#include <numeric>
 
 namespace agrisee {
 
@@ -41,16 +39,12 @@ int cells_a_radius(const C& cloud, scalar_t<C> r) {
 /// Points of the tile within r_sq of q.
 template <typename S>
 std::size_t count_within(const Tile<S>& tile, const Vector3<S>& q, S r_sq) {
-  const S qx = q.x(), qy = q.y(), qz = q.z();
-  constexpr std::size_t kLanes = Tile<S>::kLanes;
-  std::uint32_t in[kLanes] = {};
-  for (std::size_t j = 0; j < tile.size; j += kLanes)
-    for (std::size_t l = 0; l < kLanes; ++l) {
-      const S dx = tile.x[j + l] - qx, dy = tile.y[j + l] - qy, dz = tile.z[j + l] - qz;
-      in[l] += detail::sum_of_squares(dx, dy, dz) <= r_sq ? 1u : 0u;
-    }
-  const std::size_t sum = std::accumulate(std::begin(in), std::end(in), std::size_t(0));
-  return tile.inside + std::min(sum, tile.size);  // within infinity there are those that are none, too
+  const S qx = q.x(), qy = q.y(), qz = q.z(), *x = tile.x.data(), *y = tile.y.data(), *z = tile.z.data();
+  const auto distance_sq = [=](std::size_t j) {
+    const S dx = x[j] - qx, dy = y[j] - qy, dz = z[j] - qz;
+    return detail::sum_of_squares(dx, dy, dz);
+  };
+  return tile.inside + tile.count_within(distance_sq, r_sq);
 }
 
 }  // namespace detail

@@ -3,7 +3,6 @@
 /// The k nearest points of one point as stages read them, picked from the candidates of a tile or by a search.
 #pragma once
 
-#include <agrisee/core/indices_within.hpp>
 #include <agrisee/core/tiles.hpp>
 
 #include <algorithm>
@@ -68,29 +67,23 @@ class TileNearest {
   }
 
  private:
-  static constexpr std::size_t kLanes = Tile<S>::kLanes;
+  static constexpr std::size_t kRows = 8;  // ranked at a time
 
   void resize(std::size_t n) {
     if (all_.size() >= n) return;
     n *= 2;
-    all_.resize(n), kept_sq_.resize(n + kLanes), sorted_.resize(n + kLanes);
+    all_.resize(n), kept_sq_.resize(n + kRows), sorted_.resize(n + kRows);
     kept_at_.resize(n), at_.resize(n), ranks_.resize(n);
   }
 
   /// How many candidates have a squared distance of at most `limit_sq`.
   std::size_t count(const Tile<S>& tile, S limit_sq) const {
-    const S* const all = all_.data();
-    std::uint32_t in[kLanes] = {};
-    for (std::size_t j = 0; j < tile.size; j += kLanes)
-      for (std::size_t l = 0; l < kLanes; ++l) in[l] += all[j + l] <= limit_sq ? 1u : 0u;
-    std::size_t sum = 0;
-    for (const std::uint32_t some : in) sum += some;
-    return std::min(sum, tile.size);  // within infinity there are those that are none, too
+    return tile.count_within([all = all_.data()](std::size_t j) { return all[j]; }, limit_sq);
   }
 
   /// Keep the candidates whose squared distance is at most `limit_sq`.
   void keep(const Tile<S>& tile, S limit_sq) {
-    kept_ = std::min(indices_within(all_.data(), tile.padded(), limit_sq, kept_at_.data()), tile.size);
+    kept_ = tile.list_within(all_.data(), limit_sq, kept_at_.data());
     for (std::size_t i = 0; i < kept_; ++i) kept_sq_[i] = all_[kept_at_[i]];
   }
 
@@ -138,7 +131,6 @@ class TileNearest {
   void rank(const Tile<S>& tile) {
     const std::size_t n = kept_;
     if (n > 384) return sort(tile);
-    constexpr std::size_t kRows = 8;
     for (std::size_t i = n; i < n + kRows; ++i) kept_sq_[i] = std::numeric_limits<S>::infinity();
     std::size_t sum = 0;
     for (std::size_t i = 0; i < n; i += kRows) {

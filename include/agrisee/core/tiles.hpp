@@ -5,6 +5,7 @@
 #pragma once
 
 #include <agrisee/core/grid.hpp>
+#include <agrisee/core/indices_within.hpp>
 #include <agrisee/core/parallel.hpp>
 #include <agrisee/core/sums.hpp>
 
@@ -57,6 +58,25 @@ struct Tile {
         const S dx = x[l] - qx, dy = y[l] - qy, dz = z[l] - qz;
         out[l] = detail::sum_of_squares(dx, dy, dz);
       }
+  }
+
+  /// How many candidates are near.
+  /// @param sq sq(j), the squared distance (m2) of candidate j, infinite from `size` to padded()
+  /// @param limit_sq that of the farthest that counts (m2)
+  template <typename Sq>
+  std::size_t count_within(const Sq& sq, S limit_sq) const {
+    std::uint32_t in[kLanes] = {};
+    for (std::size_t j = 0; j < size; j += kLanes)
+      for (std::size_t l = 0; l < kLanes; ++l) in[l] += sq(j + l) <= limit_sq ? 1u : 0u;
+    std::size_t sum = 0;
+    for (const std::uint32_t some : in) sum += some;
+    return std::min(sum, size);  // within infinity is what is no candidate, too
+  }
+
+  /// Write the candidates with distances_sq[j] <= limit_sq (m2), ascending, to `out`, which has room for padded().
+  /// @return how many there are
+  std::size_t list_within(const S* distances_sq, S limit_sq, std::uint32_t* out) const {
+    return std::min(detail::indices_within(distances_sq, padded(), limit_sq, out), size);  // see count_within
   }
 
  private:

@@ -12,17 +12,22 @@
 
 namespace agrisee {
 
+/// Surface variation lambda0 / (lambda0 + lambda1 + lambda2) (Pauly et al., 2002) of variances along principal axes,
+/// ascending; 0 where all are.
+template <typename S>
+S surface_variation(const Vector3<S>& variance) {
+  const S sum = variance.sum();
+  return sum > 0 ? variance[0] / sum : S(0);
+}
+
 /// Mean and principal axes of a set of points.
 template <typename S>
 struct PrincipalAxes {
   Vector3<S> mean = Vector3<S>::Zero();      ///< m
   Vector3<S> variance = Vector3<S>::Zero();  ///< along the axes (divided by n), ascending, never negative
   Matrix3<S> axes = Matrix3<S>::Identity();  ///< columns, unit, by ascending variance; signs are arbitrary
-  /// Surface variation lambda0 / (lambda0 + lambda1 + lambda2) (Pauly et al., 2002); 0 where all points coincide.
-  S curvature() const {
-    const S sum = variance.sum();
-    return sum > 0 ? variance[0] / sum : S(0);
-  }
+  /// Surface variation; 0 where all points coincide.
+  S curvature() const { return surface_variation<S>(variance); }
 };
 
 /// Eigenvalues (ascending, clamped at 0) and axes of a covariance matrix.
