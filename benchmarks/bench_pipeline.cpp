@@ -27,7 +27,8 @@ struct View {
 void surface(benchmark::State& state, const char* noise) {
   const View view(noise);
   for (auto _ : state)
-    benchmark::DoNotOptimize(sensor::reconstruct_surface(view.capture.frame, view.pose, view.truss.workcell.scan_volume));
+    benchmark::DoNotOptimize(
+        sensor::reconstruct_surface(view.capture.frame, view.pose, view.truss.workcell.scan_volume));
 }
 BENCHMARK_CAPTURE(surface, l515, "l515")->Unit(benchmark::kMillisecond);
 BENCHMARK_CAPTURE(surface, gaussian_10mm, "gaussian:0.01")->Unit(benchmark::kMillisecond);
@@ -38,7 +39,8 @@ void fuse(benchmark::State& state) {
   for (auto _ : state) {
     SurfelMap map;
     for (int v = 0; v < 4; ++v)
-      for (std::size_t i = 0; i < image.points.size(); ++i) map.add(image.points[i], image.normals[i], image.sigma[i], v);
+      for (std::size_t i = 0; i < image.points.size(); ++i)
+        map.add(image.points[i], image.normals[i], image.sigma[i], v);
     benchmark::DoNotOptimize(map.size());
   }
 }

@@ -8,13 +8,13 @@ std::vector<Eigen::Vector3f> my_points();
 
 int main() {
   agrisee::Cloud cloud;
-  cloud.points = my_points();                                    // metres, any frame
+  cloud.points = my_points();  // metres, any frame
   agrisee::CloudOrigin origin;
-  origin.viewpoint = Eigen::Vector3d(0.0, 0.0, 0.2);             // where they were seen from
+  origin.viewpoint = Eigen::Vector3d(0.0, 0.0, 0.2);  // where they were seen from
   const agrisee::ScanResult result = agrisee::process(cloud, {}, origin);
   for (const agrisee::Fruit& fruit : result.fruits)
-    std::cout << "fruit " << fruit.id << " at " << fruit.body->center.transpose() << ", radius " << fruit.body->radii.mean()
-              << ", found by " << fruit.found_by << "\n";
+    std::cout << "fruit " << fruit.id << " at " << fruit.body->center.transpose() << ", radius "
+              << fruit.body->radii.mean() << ", found by " << fruit.found_by << "\n";
   return result.fruits.size() == 2 ? 0 : 1;
 }
 

@@ -17,7 +17,8 @@ inline const std::vector<Sphere> kThreeFruit = {
 
 /// Depth frame of spheres, with Gaussian noise along the ray.
 inline agrisee::sensor::DepthFrame render(const std::vector<Sphere>& spheres, const agrisee::sensor::Intrinsics& k,
-                                          const agrisee::Pose& world_T_optical, double noise = 0.0, std::uint64_t seed = 1) {
+                                          const agrisee::Pose& world_T_optical, double noise = 0.0,
+                                          std::uint64_t seed = 1) {
   agrisee::sensor::DepthFrame frame;
   frame.intrinsics = k;
   frame.depth.assign(k.size(), 0.0f);
@@ -45,7 +46,8 @@ inline agrisee::sensor::DepthFrame render(const std::vector<Sphere>& spheres, co
 
 /// Points with normals on a sphere, `spacing` apart, where keep(direction) holds.
 template <typename Keep>
-void add_sphere(agrisee::Cloud& cloud, const Sphere& s, double spacing, Keep&& keep, double noise = 0.0, std::uint64_t seed = 1) {
+void add_sphere(agrisee::Cloud& cloud, const Sphere& s, double spacing, Keep&& keep, double noise = 0.0,
+                std::uint64_t seed = 1) {
   agrisee::Rng rng(seed);
   const int n = static_cast<int>(4.0 * agrisee::kPi * s.radius * s.radius / (spacing * spacing));
   for (int i = 0; i < n; ++i) {

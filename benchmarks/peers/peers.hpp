@@ -7,7 +7,6 @@
 #include <agrisee/core/kdtree.hpp>
 
 #include <benchmark/benchmark.h>
-
 #include <cstdio>
 #include <cstdlib>
 #include <fstream>
@@ -60,22 +59,23 @@ inline void forget_peak() {
 template <typename Run, typename Check>
 void add(const std::string& stage, const std::string& library, std::size_t n, int threads, Run run, Check check) {
   const std::string name = stage + "/" + library + "/" + std::to_string(n) + "/" + std::to_string(threads);
-  benchmark::RegisterBenchmark(name.c_str(), [=](benchmark::State& state) {
+  benchmark::RegisterBenchmark(name.c_str(),
+                               [=](benchmark::State& state) {
 #ifdef _OPENMP
-    omp_set_num_threads(threads);
+                                 omp_set_num_threads(threads);
 #endif
-    static std::map<std::string, double> peaks;
-    if (!peaks.count(name)) {  // also warms up
-      run(threads);
-      forget_peak();
-      const double before = peak_megabytes();
-      const auto answer = run(threads);
-      peaks[name] = peak_megabytes() - before;
-      check(answer);
-    }
-    for (auto _ : state) benchmark::DoNotOptimize(run(threads));
-    state.counters["peak_MB"] = peaks[name];
-  })
+                                 static std::map<std::string, double> peaks;
+                                 if (!peaks.count(name)) {  // also warms up
+                                   run(threads);
+                                   forget_peak();
+                                   const double before = peak_megabytes();
+                                   const auto answer = run(threads);
+                                   peaks[name] = peak_megabytes() - before;
+                                   check(answer);
+                                 }
+                                 for (auto _ : state) benchmark::DoNotOptimize(run(threads));
+                                 state.counters["peak_MB"] = peaks[name];
+                               })
       ->Unit(benchmark::kMillisecond)
       ->UseRealTime();
 }

@@ -9,8 +9,8 @@
 #endif
 #ifdef PEERS_OPEN3D
 #include <open3d/geometry/PointCloud.h>
-#include <open3d/io/PointCloudIO.h>
 #include <open3d/geometry/TriangleMesh.h>
+#include <open3d/io/PointCloudIO.h>
 #include <open3d/io/TriangleMeshIO.h>
 #endif
 
@@ -55,46 +55,50 @@ const pcl::PointCloud<pcl::PointNormal>& pcl_with_normals(std::size_t n) {
 
 void ply(std::size_t n) {
   const Cloud& cloud = peers::cloud(n);
-  peers::add("ply_read", "ours", n, 1, [=](int) { return io::read_ply(written(n)); },
-             [&](const auto& file) { peers::require(file.cloud.points == cloud.points, "PLY read"); });
+  peers::add(
+      "ply_read", "ours", n, 1, [=](int) { return io::read_ply(written(n)); },
+      [&](const auto& file) { peers::require(file.cloud.points == cloud.points, "PLY read"); });
   const auto out = temporary("write.ply");
-  peers::add("ply_write", "ours", n, 1, [=](int) { return io::write_ply(out, peers::cloud(n)), 0; },
-             peers::Unchecked());
+  peers::add(
+      "ply_write", "ours", n, 1, [=](int) { return io::write_ply(out, peers::cloud(n)), 0; }, peers::Unchecked());
 #ifdef PEERS_PCL
-  peers::add("ply_read", "PCL", n, 1,
-             [=](int) {
-               pcl::PointCloud<pcl::PointNormal> in;
-               pcl::PLYReader().read(written(n).string(), in);
-               return in;
-             },
-             [&](const auto& in) {
-               peers::require(in.size() == cloud.size() && in.back().getVector3fMap() == cloud.points.back(),
-                              "PLY read by PCL");
-             });
-  peers::add("ply_write", "PCL", n, 1,
-             [=](int) { return pcl::PLYWriter().write(out.string(), pcl_with_normals(n), true, false); },
-             peers::Unchecked());
+  peers::add(
+      "ply_read", "PCL", n, 1,
+      [=](int) {
+        pcl::PointCloud<pcl::PointNormal> in;
+        pcl::PLYReader().read(written(n).string(), in);
+        return in;
+      },
+      [&](const auto& in) {
+        peers::require(in.size() == cloud.size() && in.back().getVector3fMap() == cloud.points.back(),
+                       "PLY read by PCL");
+      });
+  peers::add(
+      "ply_write", "PCL", n, 1,
+      [=](int) { return pcl::PLYWriter().write(out.string(), pcl_with_normals(n), true, false); }, peers::Unchecked());
 #endif
 #ifdef PEERS_OPEN3D
-  peers::add("ply_read", "Open3D", n, 1,
-             [=](int) {
-               open3d::geometry::PointCloud in;
-               open3d::io::ReadPointCloudFromPLY(written(n).string(), in, {});
-               return in;
-             },
-             [&](const auto& in) {
-               peers::require(in.points_.size() == cloud.size() &&
-                                  in.points_.back().template cast<float>() == cloud.points.back(),
-                              "PLY read by Open3D");
-             });
-  peers::add("ply_write", "Open3D", n, 1,
-             [=](int) {
-               auto& c = peers::open3d_cloud(n);
-               if (c.normals_.empty())
-                 for (const auto& v : peers::cloud(n).normals) c.normals_.push_back(v.cast<double>());
-               return open3d::io::WritePointCloudToPLY(out.string(), c, {});
-             },
-             peers::Unchecked());
+  peers::add(
+      "ply_read", "Open3D", n, 1,
+      [=](int) {
+        open3d::geometry::PointCloud in;
+        open3d::io::ReadPointCloudFromPLY(written(n).string(), in, {});
+        return in;
+      },
+      [&](const auto& in) {
+        peers::require(
+            in.points_.size() == cloud.size() && in.points_.back().template cast<float>() == cloud.points.back(),
+            "PLY read by Open3D");
+      });
+  peers::add(
+      "ply_write", "Open3D", n, 1,
+      [=](int) {
+        auto& c = peers::open3d_cloud(n);
+        if (c.normals_.empty())
+          for (const auto& v : peers::cloud(n).normals) c.normals_.push_back(v.cast<double>());
+        return open3d::io::WritePointCloudToPLY(out.string(), c, {});
+      },
+      peers::Unchecked());
 #endif
 }
 
@@ -103,16 +107,18 @@ void stl() {
   const Mesh mesh = shapes::sphere({0, 0, 0}, 0.1, 224);
   io::write_stl(path, mesh);
   const std::size_t n = mesh.triangles.size();
-  peers::add("stl_read", "ours", n, 1, [=](int) { return io::read_stl(path); },
-             [=](const Mesh& m) { peers::require(m.triangles.size() == n, "STL read"); });
+  peers::add(
+      "stl_read", "ours", n, 1, [=](int) { return io::read_stl(path); },
+      [=](const Mesh& m) { peers::require(m.triangles.size() == n, "STL read"); });
 #ifdef PEERS_OPEN3D
-  peers::add("stl_read", "Open3D", n, 1,
-             [=](int) {
-               open3d::geometry::TriangleMesh m;
-               open3d::io::ReadTriangleMesh(path.string(), m);
-               return m;
-             },
-             [=](const auto& m) { peers::require(m.triangles_.size() == n, "STL read by Open3D"); });
+  peers::add(
+      "stl_read", "Open3D", n, 1,
+      [=](int) {
+        open3d::geometry::TriangleMesh m;
+        open3d::io::ReadTriangleMesh(path.string(), m);
+        return m;
+      },
+      [=](const auto& m) { peers::require(m.triangles_.size() == n, "STL read by Open3D"); });
 #endif
 }
 

@@ -77,8 +77,8 @@ std::vector<float> embree_single(int threads) {
       [&](std::size_t i) {
         const Eigen::Vector3f& d = rays()[i];
         RTCRayHit query{};
-        query.ray = {o.x(), o.y(), o.z(), float(l515.range_min), d.x(), d.y(), d.z(), 0, float(l515.range_max),
-                     0xFFFFFFFFu, 0, 0};
+        query.ray = {o.x(),       o.y(), o.z(), float(l515.range_min), d.x(), d.y(), d.z(), 0, float(l515.range_max),
+                     0xFFFFFFFFu, 0,     0};
         query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
         RTCIntersectContext context;
         rtcInitIntersectContext(&context);
@@ -115,7 +115,8 @@ std::vector<float> embree_packets(int threads) {
         context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
         rtcIntersect16(valid, embree_scene(), &context, &query);
         for (std::size_t k = 0; k < 16; ++k)
-          if (query.hit.geomID[k] != RTC_INVALID_GEOMETRY_ID) range[(v + k / 4) * width + u + k % 4] = query.ray.tfar[k];
+          if (query.hit.geomID[k] != RTC_INVALID_GEOMETRY_ID)
+            range[(v + k / 4) * width + u + k % 4] = query.ray.tfar[k];
       },
       256);
   return range;
@@ -140,13 +141,15 @@ int main(int argc, char** argv) {
                [](const auto& range) { same_ranges(range, "depth frame of Embree's single rays"); });
     peers::add("depth_frame", "Embree packets", pixels, threads, embree_packets,
                [](const auto& range) { same_ranges(range, "depth frame of Embree's packets"); });
-    peers::add("bvh_build", "Embree medium", triangles, threads,
-               [](int t) { return built(t, RTC_BUILD_QUALITY_MEDIUM); }, peers::Unchecked());
-    peers::add("bvh_build", "Embree low", triangles, threads,
-               [](int t) { return built(t, RTC_BUILD_QUALITY_LOW); }, peers::Unchecked());
+    peers::add(
+        "bvh_build", "Embree medium", triangles, threads, [](int t) { return built(t, RTC_BUILD_QUALITY_MEDIUM); },
+        peers::Unchecked());
+    peers::add(
+        "bvh_build", "Embree low", triangles, threads, [](int t) { return built(t, RTC_BUILD_QUALITY_LOW); },
+        peers::Unchecked());
 #endif
-    peers::add("bvh_build", "ours", triangles, threads, [](int t) { return Bvh(spheres(), t).size(); },
-               peers::Unchecked());
+    peers::add(
+        "bvh_build", "ours", triangles, threads, [](int t) { return Bvh(spheres(), t).size(); }, peers::Unchecked());
   }
   return peers::main(argc, argv);
 }

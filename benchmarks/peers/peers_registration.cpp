@@ -53,25 +53,25 @@ int main(int argc, char** argv) {
     peers::add("icp", "ours", n, threads, ours, peers::Unchecked());
 #ifdef PEERS_OPEN3D
     namespace registration = open3d::pipelines::registration;
-    peers::add("icp", "Open3D", n, threads,
-               [=](int) {
-                 static std::map<std::size_t, std::pair<open3d::geometry::PointCloud, open3d::geometry::PointCloud>> all;
-                 auto& [from, to] = all[n];
-                 if (from.points_.empty()) {
-                   from = peers::open3d_cloud(source(n));
-                   to = peers::open3d_cloud(peers::cloud(n));
-                   for (const auto& normal : peers::cloud(n).normals) to.normals_.push_back(normal.cast<double>());
-                 }
-                 const auto result = registration::RegistrationICP(
-                     from, to, kReach, Eigen::Matrix4d::Identity(),
-                     registration::TransformationEstimationPointToPlane(),
-                     registration::ICPConvergenceCriteria(0.0, 0.0, 20));
-                 return Eigen::Matrix4d(result.transformation_);
-               },
-               [=](const Eigen::Matrix4d& theirs) {
-                 const double gap = (theirs - ours(1).matrix()).cwiseAbs().maxCoeff();
-                 peers::require(gap < 1e-4, "pose of Open3D's ICP by " + std::to_string(gap));
-               });
+    peers::add(
+        "icp", "Open3D", n, threads,
+        [=](int) {
+          static std::map<std::size_t, std::pair<open3d::geometry::PointCloud, open3d::geometry::PointCloud>> all;
+          auto& [from, to] = all[n];
+          if (from.points_.empty()) {
+            from = peers::open3d_cloud(source(n));
+            to = peers::open3d_cloud(peers::cloud(n));
+            for (const auto& normal : peers::cloud(n).normals) to.normals_.push_back(normal.cast<double>());
+          }
+          const auto result = registration::RegistrationICP(from, to, kReach, Eigen::Matrix4d::Identity(),
+                                                            registration::TransformationEstimationPointToPlane(),
+                                                            registration::ICPConvergenceCriteria(0.0, 0.0, 20));
+          return Eigen::Matrix4d(result.transformation_);
+        },
+        [=](const Eigen::Matrix4d& theirs) {
+          const double gap = (theirs - ours(1).matrix()).cwiseAbs().maxCoeff();
+          peers::require(gap < 1e-4, "pose of Open3D's ICP by " + std::to_string(gap));
+        });
 #endif
   });
   return peers::main(argc, argv);

@@ -121,11 +121,11 @@ void regions(std::size_t n, int threads) {
   peers::add("region_growing", "ours", n, threads, ours, peers::Unchecked());
 #ifdef PEERS_PCL
   if (threads == 1)
-    peers::add("region_growing", "PCL", n, threads,
-               [=](int) { return pcl_regions(peers::pcl_cloud(n), pcl_normals(n)); },
-               [=](const Labels& theirs) {  // equal curvatures come in no fixed order there
-                 peers::require(different(theirs, ours(1)) <= n / 1000, "regions of PCL");
-               });
+    peers::add(
+        "region_growing", "PCL", n, threads, [=](int) { return pcl_regions(peers::pcl_cloud(n), pcl_normals(n)); },
+        [=](const Labels& theirs) {  // equal curvatures come in no fixed order there
+          peers::require(different(theirs, ours(1)) <= n / 1000, "regions of PCL");
+        });
 #endif
 }
 
@@ -135,19 +135,21 @@ void clusters(std::size_t n, int threads) {
   peers::add("dbscan", "ours", n, threads, ours, peers::Unchecked());
 #ifdef PEERS_PCL
   if (threads == 1)  // without a core test, so its answer is another
-    peers::add("dbscan", "PCL Euclidean", n, threads, [=](int) { return pcl_clusters(peers::pcl_cloud(n), eps); },
-               peers::Unchecked());
+    peers::add(
+        "dbscan", "PCL Euclidean", n, threads, [=](int) { return pcl_clusters(peers::pcl_cloud(n), eps); },
+        peers::Unchecked());
 #endif
 #ifdef PEERS_OPEN3D
-  peers::add("dbscan", "Open3D", n, threads,
-             [=](int) {
-               Labels labels = peers::open3d_cloud(n).ClusterDBSCAN(eps, 10);
-               for (int& label : labels) ++label;
-               return labels;
-             },
-             [=](const Labels& theirs) {  // distances there are double
-               peers::require(different(theirs, ours(1)) <= n / 10000, "clusters of Open3D");
-             });
+  peers::add(
+      "dbscan", "Open3D", n, threads,
+      [=](int) {
+        Labels labels = peers::open3d_cloud(n).ClusterDBSCAN(eps, 10);
+        for (int& label : labels) ++label;
+        return labels;
+      },
+      [=](const Labels& theirs) {  // distances there are double
+        peers::require(different(theirs, ours(1)) <= n / 10000, "clusters of Open3D");
+      });
 #endif
 }
 
@@ -174,31 +176,32 @@ void chain(std::size_t n, int threads) {
   const auto ours = [=](int t) { return our_chain(n, t); };
   peers::add("chain", "ours", n, threads, ours, peers::Unchecked());
 #ifdef PEERS_PCL
-  peers::add("chain", "PCL", n, threads,
-             [=](int t) {
-               pcl::StatisticalOutlierRemoval<pcl::PointXYZ> filter;
-               filter.setInputCloud(peers::pcl_cloud(n));
-               filter.setMeanK(20);
-               filter.setStddevMulThresh(2.0);
-               PclPoints::Ptr kept(new PclPoints);
-               filter.filter(*kept);
-               pcl::NormalEstimationOMP<pcl::PointXYZ, pcl::Normal> estimation(static_cast<unsigned>(t));
-               estimation.setInputCloud(kept);
-               estimation.setKSearch(25);
-               PclNormals::Ptr normals(new PclNormals);
-               estimation.compute(*normals);
-               const Labels labels = pcl_regions(kept, normals);
-               PclPoints::Ptr rest(new PclPoints);
-               for (std::size_t i = 0; i < labels.size(); ++i)
-                 if (labels[i] == 0) rest->push_back((*kept)[i]);
-               return Counts{kept->size(), labels_in(labels), labels_in(pcl_clusters(rest, peers::radius_of(n, 20)))};
-             },
-             [=](const Counts& theirs) {
-               const Counts mine = ours(1);
-               peers::require(theirs[0] <= mine[0] + 2 && mine[0] <= theirs[0] + 2 && theirs[1] == mine[1],
-                              "chain of PCL: " + std::to_string(theirs[0]) + " points, " + std::to_string(theirs[1]) +
-                                  " regions; ours " + std::to_string(mine[0]) + ", " + std::to_string(mine[1]));
-             });
+  peers::add(
+      "chain", "PCL", n, threads,
+      [=](int t) {
+        pcl::StatisticalOutlierRemoval<pcl::PointXYZ> filter;
+        filter.setInputCloud(peers::pcl_cloud(n));
+        filter.setMeanK(20);
+        filter.setStddevMulThresh(2.0);
+        PclPoints::Ptr kept(new PclPoints);
+        filter.filter(*kept);
+        pcl::NormalEstimationOMP<pcl::PointXYZ, pcl::Normal> estimation(static_cast<unsigned>(t));
+        estimation.setInputCloud(kept);
+        estimation.setKSearch(25);
+        PclNormals::Ptr normals(new PclNormals);
+        estimation.compute(*normals);
+        const Labels labels = pcl_regions(kept, normals);
+        PclPoints::Ptr rest(new PclPoints);
+        for (std::size_t i = 0; i < labels.size(); ++i)
+          if (labels[i] == 0) rest->push_back((*kept)[i]);
+        return Counts{kept->size(), labels_in(labels), labels_in(pcl_clusters(rest, peers::radius_of(n, 20)))};
+      },
+      [=](const Counts& theirs) {
+        const Counts mine = ours(1);
+        peers::require(theirs[0] <= mine[0] + 2 && mine[0] <= theirs[0] + 2 && theirs[1] == mine[1],
+                       "chain of PCL: " + std::to_string(theirs[0]) + " points, " + std::to_string(theirs[1]) +
+                           " regions; ours " + std::to_string(mine[0]) + ", " + std::to_string(mine[1]));
+      });
 #endif
 }
 

@@ -2,10 +2,9 @@
 // agrisee's whole pipeline as one ROS 1 node. Topics, services and parameters: docs/ros.md.
 #include <agrisee/io/scene.hpp>
 
-#include <ros/ros.h>
-
 #include <geometry_msgs/PoseArray.h>
 #include <geometry_msgs/PoseStamped.h>
+#include <ros/ros.h>
 #include <sensor_msgs/CameraInfo.h>
 #include <sensor_msgs/Image.h>
 #include <sensor_msgs/JointState.h>
@@ -207,7 +206,8 @@ class ScanNode {
     return pose_array<geometry_msgs::PoseArray>(header(), poses);
   }
 
-  /// Everything that is known now. The joint goal goes first: the arm moves while the rest is computed; the status last.
+  /// Everything that is known now. The joint goal goes first: the arm moves while the rest is computed; the status
+  /// last.
   void publish() {
     publish_goal();
     const Pipeline& pipeline = session_.pipeline();

@@ -6,10 +6,9 @@
 #include <agrisee/io/scene.hpp>
 #include <agrisee/sensor/l515.hpp>
 
-#include <ros/ros.h>
-
 #include <geometry_msgs/Pose.h>
 #include <geometry_msgs/TransformStamped.h>
+#include <ros/ros.h>
 #include <sensor_msgs/CameraInfo.h>
 #include <sensor_msgs/Image.h>
 #include <sensor_msgs/JointState.h>
@@ -26,7 +25,8 @@ namespace {
 
 class SimNode {
  public:
-  SimNode() : private_("~"), options_(read_options(private_)), file_(io::read_scene(options_.scene)), world_(file_.scene) {
+  SimNode()
+      : private_("~"), options_(read_options(private_)), file_(io::read_scene(options_.scene)), world_(file_.scene) {
     file_.workcell.sensor.check();
     from_ = to_ = file_.workcell.start;
     joint_states_ = node_.advertise<sensor_msgs::JointState>("joint_states", 10);

@@ -3,10 +3,9 @@
 // generation's names around the same logic. NOT COMPILED SO FAR: where this was written there is no ROS 2.
 #include <agrisee/io/scene.hpp>
 
-#include <rclcpp/rclcpp.hpp>
-
 #include <geometry_msgs/msg/pose_array.hpp>
 #include <geometry_msgs/msg/pose_stamped.hpp>
+#include <rclcpp/rclcpp.hpp>
 #include <sensor_msgs/msg/camera_info.hpp>
 #include <sensor_msgs/msg/image.hpp>
 #include <sensor_msgs/msg/joint_state.hpp>
@@ -31,9 +30,8 @@ class Ros2Lookup {
   explicit Ros2Lookup(rclcpp::Node& node) : node_(node) {}
   template <typename T>
   void operator()(const std::string& name, T& field) {
-    using Stored =
-        std::conditional_t<std::is_same_v<T, bool> || std::is_same_v<T, std::string>, T,
-                           std::conditional_t<std::is_integral_v<T>, std::int64_t, double>>;
+    using Stored = std::conditional_t<std::is_same_v<T, bool> || std::is_same_v<T, std::string>, T,
+                                      std::conditional_t<std::is_integral_v<T>, std::int64_t, double>>;
     try {
       if (!node_.has_parameter(name)) node_.declare_parameter<Stored>(name, static_cast<Stored>(field));
       field = static_cast<T>(node_.get_parameter(name).get_value<Stored>());
@@ -69,7 +67,8 @@ class ScanNode : public rclcpp::Node {
 
     const auto sensor = rclcpp::SensorDataQoS().keep_last(1);
     subscriptions_ = {
-        create_subscription<CameraInfo>("depth/camera_info", sensor, [this](CameraInfo::ConstSharedPtr m) { info_ = m; }),
+        create_subscription<CameraInfo>("depth/camera_info", sensor,
+                                        [this](CameraInfo::ConstSharedPtr m) { info_ = m; }),
         create_subscription<Image>("depth/image", sensor, [this](Image::ConstSharedPtr m) { take_image(*m); }),
         create_subscription<Cloud2>("points", sensor, [this](Cloud2::ConstSharedPtr m) { take_points(*m); }),
         create_subscription<JointState>("joint_states", 1, [this](JointState::ConstSharedPtr m) {
@@ -154,7 +153,8 @@ class ScanNode : public rclcpp::Node {
   void take_image(const Image& image) {
     if (!info_) return;
     guarded([&] {
-      const auto pose = pose_if_arrived(optical_frame_.empty() ? image.header.frame_id : optical_frame_, image.header.stamp);
+      const auto pose =
+          pose_if_arrived(optical_frame_.empty() ? image.header.frame_id : optical_frame_, image.header.stamp);
       if (!pose) return;
       session_->observe(interop::depth_frame(image, *info_, rectified_), *pose, seconds());
       publish();
@@ -181,8 +181,7 @@ class ScanNode : public rclcpp::Node {
 
   Pose lookup_pose(const std::string& frame, const rclcpp::Time& stamp) const {
     const tf2::TimePoint time{std::chrono::nanoseconds(stamp.nanoseconds())};
-    return pose_of(
-        buffer_.lookupTransform(world_frame_, frame, time, tf2::durationFromSec(0.2)).transform);
+    return pose_of(buffer_.lookupTransform(world_frame_, frame, time, tf2::durationFromSec(0.2)).transform);
   }
 
   std::optional<Pose> pose_if_arrived(const std::string& frame, const rclcpp::Time& stamp) const {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Results as ROS messages. The message types are template parameters, so that ROS 1 and ROS 2 fit alike; headers are the
-// caller's.
+// Results as ROS messages. The message types are template parameters, so that ROS 1 and ROS 2 fit alike; headers are
+// the caller's.
 #pragma once
 
 #include <agrisee/interop/ros.hpp>
@@ -78,8 +78,7 @@ template <typename PoseArray, typename Header>
 PoseArray pose_array(const Header& header, const std::vector<Pose>& poses) {
   PoseArray out;
   out.header = header;
-  for (const Pose& p : poses)
-    out.poses.push_back(pose_message<typename decltype(PoseArray::poses)::value_type>(p));
+  for (const Pose& p : poses) out.poses.push_back(pose_message<typename decltype(PoseArray::poses)::value_type>(p));
   return out;
 }
 
@@ -147,8 +146,7 @@ class MarkerMaker {
       const bool arrow_drawn = f.picking && f.picking->reachable;
       Pose label = Pose::Identity();
       label.translation() = center + Eigen::Vector3d(0.0, 0.0, 1.3 * radius);
-      if (arrow_drawn)
-        label.translation() = f.picking->world_T_pre_grasp.translation() - 0.015 * f.picking->direction;
+      if (arrow_drawn) label.translation() = f.picking->world_T_pre_grasp.translation() - 0.015 * f.picking->direction;
       add("ids", Marker::TEXT_VIEW_FACING, label, Eigen::Vector3d(0.0, 0.0, 0.025), {20, 20, 20}, 1.0).text =
           std::to_string(f.id);
       if (arrow_drawn) {

@@ -26,14 +26,14 @@ struct Parameters {
   bool adaptive_normals = true;    ///< derive the normals' radius from the cloud's spacing
   double normal_reach = 3.0;       ///< adaptive: that many spacings
   bool growth_axis = true;         ///< pose frames: z towards the calyx; off: towards the cloud's highest point (paper)
-  sensor::SurfaceParameters surface;  ///< a surface from each frame
-  SurfelParameters surfels;           ///< fusing views
-  IcpParameters icp;                  ///< registration of views
-  SorParameters sor{20, 6.0, false};  ///< a wider gate than the paper's, which costs the borders of what was seen
-  NormalParameters normals;           ///< of clouds without any
-  SplitParameters split;              ///< which points are which fruit
-  GrowthAxisParameters axis;          ///< z of the pose frames
-  MassParameters mass;                ///< for yield
+  sensor::SurfaceParameters surface;     ///< a surface from each frame
+  SurfelParameters surfels;              ///< fusing views
+  IcpParameters icp;                     ///< registration of views
+  SorParameters sor{20, 6.0, false};     ///< a wider gate than the paper's, which costs the borders of what was seen
+  NormalParameters normals;              ///< of clouds without any
+  SplitParameters split;                 ///< which points are which fruit
+  GrowthAxisParameters axis;             ///< z of the pose frames
+  MassParameters mass;                   ///< for yield
   plan::FreeSpaceParameters free_space;  ///< evidence of what sight lines went through
   plan::GainPlannerParameters gain;      ///< the default planner
   plan::PickingParameters picking;       ///< how to approach each fruit

@@ -236,9 +236,9 @@ class Pipeline {
     {
       const Stopwatch watch(spent);
       const bool known = !views_.empty() && views_.back().joints;
-      const auto plan = detail::picking_of(out, workcell_.keep_out, workcell_.world_T_base.translation(),
-                                           known ? *views_.back().joints : workcell_.start, approach_,
-                                           parameters_.picking);
+      const auto plan =
+          detail::picking_of(out, workcell_.keep_out, workcell_.world_T_base.translation(),
+                             known ? *views_.back().joints : workcell_.start, approach_, parameters_.picking);
       for (std::size_t i = 0; i < plan.size(); ++i) out.fruits[i].picking = plan[i];
     }
     out.seconds.locate += spent;
@@ -303,11 +303,11 @@ class Pipeline {
   plan::ReachApproach approach_;
   std::unique_ptr<plan::Planner> planner_;
   int threads_;
-  FusedViews fused_;                // fused surfaces
-  std::vector<float> last_frame_;   // the last that showed anything
-  SeparatedCloud points_;           // or merged raw points
-  Cloud raw_;                       // all of them, filtered away later or not
-  Cloud cloud_;                     // what is merged so far
+  FusedViews fused_;               // fused surfaces
+  std::vector<float> last_frame_;  // the last that showed anything
+  SeparatedCloud points_;          // or merged raw points
+  Cloud raw_;                      // all of them, filtered away later or not
+  Cloud cloud_;                    // what is merged so far
   std::vector<View> views_;
   int refusals_ = 0;  // since the last view
   StopReason stop_reason_ = StopReason::not_stopped;

@@ -109,8 +109,8 @@ inline const char* to_string(PickingReason reason) {
 
 /// How to pick a fruit: the tool moves straight from the pre-grasp pose along the direction towards the fruit's centre.
 struct Picking {
-  int order = 0;  ///< from 1 over all fruit of a result; those that cannot be picked come last
-  bool reachable = false;                               ///< it can be picked
+  int order = 0;           ///< from 1 over all fruit of a result; those that cannot be picked come last
+  bool reachable = false;  ///< it can be picked
   PickingReason reason = PickingReason::not_tested;     ///< if not, why
   Eigen::Vector3d direction = Eigen::Vector3d::Zero();  ///< unit, from pre-grasp to the centre; zero without a body
   Pose world_T_pre_grasp =
@@ -186,10 +186,10 @@ struct Timing {
 struct ScanResult {
   std::vector<View> views;                           ///< in the order in which they were taken
   StopReason stop_reason = StopReason::not_stopped;  ///< why there are no more
-  Cloud raw;      ///< the merged cloud before any filtering; `views` filled
-  Cloud cloud;    ///< the consolidated cloud: points, normals, views (world)
-  Labels labels;  ///< one per point of `cloud`: the fruit's id, or 0
-  std::vector<Fruit> fruits;                 ///< from the top of the truss down
+  Cloud raw;                                         ///< the merged cloud before any filtering; `views` filled
+  Cloud cloud;                                       ///< the consolidated cloud: points, normals, views (world)
+  Labels labels;                                     ///< one per point of `cloud`: the fruit's id, or 0
+  std::vector<Fruit> fruits;                         ///< from the top of the truss down
   std::optional<Completeness> completeness;  ///< as the planner believes; absent where it does not reckon with surfaces
   Timing seconds;                            ///< of computing
 };

@@ -20,8 +20,8 @@ struct Workcell {
   Pose tool0_T_optical = pose_from_xyz_rpy({0.0, 0.0, 0.03}, Eigen::Vector3d::Zero());  ///< hand-eye transform
   Joints start = (Joints() << 0.0, -1.57, 1.57, -1.57, -1.57, 0.0).finished();  ///< joints before the first move (rad)
   sensor::L515 sensor;                                                          ///< intrinsics and range
-  Aabb scan_volume;                      ///< world
-  std::vector<KeepOut> keep_out;         ///< neither arm nor sensor may enter
+  Aabb scan_volume;                                                             ///< world
+  std::vector<KeepOut> keep_out;                                                ///< neither arm nor sensor may enter
 };
 
 }  // namespace agrisee

@@ -49,10 +49,9 @@ struct Subject {
 Subject subject_of(const std::string& text) {
   const auto truss = truss_by_name(text);
   const io::SceneFile file = truss ? io::SceneFile{truss->workcell, truss->scene} : io::read_scene(text);
-  const auto known = truss ? std::optional(truss->truth)
-                           : io::read_ground_truth(fs::path(text).parent_path() / "ground_truth.json");
-  return {file.workcell.name, file.workcell,
-          cli::make_truth(file.scene, known, file.workcell.sensor)};
+  const auto known =
+      truss ? std::optional(truss->truth) : io::read_ground_truth(fs::path(text).parent_path() / "ground_truth.json");
+  return {file.workcell.name, file.workcell, cli::make_truth(file.scene, known, file.workcell.sensor)};
 }
 
 template <typename T>
@@ -108,9 +107,8 @@ int run_faults(const FaultOptions& options) {
       [&](std::size_t i) {
         const Job& job = jobs[i];
         const Subject& subject = subjects[job.subject];
-        study::FaultRecord r =
-            cli::scan_with_faults(subject.name, subject.workcell, *subject.truth, parameters, noise, job.faults,
-                                  job.trial);
+        study::FaultRecord r = cli::scan_with_faults(subject.name, subject.workcell, *subject.truth, parameters, noise,
+                                                     job.faults, job.trial);
         const std::lock_guard<std::mutex> lock(mutex);
         std::cerr << "[" << ++done << "/" << jobs.size() << "] " << r.scene << ", " << r.kind << " at "
                   << 100.0 * r.rate << " %: " << r.found << "/" << r.fruit << " fruit, " << r.invented << " invented, "
@@ -126,9 +124,11 @@ int run_faults(const FaultOptions& options) {
 }  // namespace
 
 void add_faults(CLI::App& app, Run& run) {
-  auto* command = app.add_subcommand("faults", "scan while sensor and arm go wrong, and tell what is found all the same");
+  auto* command =
+      app.add_subcommand("faults", "scan while sensor and arm go wrong, and tell what is found all the same");
   auto options = std::make_shared<FaultOptions>();
-  command->add_option("--report", options->report, "Markdown file to write; its tables and plot go in a folder beside it")
+  command
+      ->add_option("--report", options->report, "Markdown file to write; its tables and plot go in a folder beside it")
       ->required();
   command->add_option("--kinds", options->kinds, "faults: any, or one kind alone")
       ->delimiter(',')

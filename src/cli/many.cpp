@@ -218,7 +218,8 @@ int run_inputs(const std::vector<std::string>& inputs, const std::string& shard,
 }
 
 void add_shard_option(CLI::App& command, std::string& shard) {
-  command.add_option("--shard", shard, "I/N: only every N-th of the inputs, from the I-th on; `agrisee merge` joins them");
+  command.add_option("--shard", shard,
+                     "I/N: only every N-th of the inputs, from the I-th on; `agrisee merge` joins them");
 }
 
 void add_merge(CLI::App& app, Run& run) {

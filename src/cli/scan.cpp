@@ -123,7 +123,8 @@ io::ScanTask task_of(const ScanOptions& options) {
   return task;
 }
 
-/// What a scan that was interrupted was asked for. @throws FileError when there is none that this program can go on with
+/// What a scan that was interrupted was asked for. @throws FileError when there is none that this program can go on
+/// with
 io::ScanTask task_to_resume(const ScanOptions& options, const fs::path& path) {
   if (!fs::exists(path)) throw FileError(path.string() + ": no such file, so there is no scan to go on with");
   io::ScanTask task = io::read_scan_task(path);

@@ -48,8 +48,8 @@ std::string table(const Sums& sums) {
   for (const auto& [key, s] : sums)
     out.row({spaced(key.first), report::fixed(100.0 * key.second, 0) + " %", std::to_string(s.scans),
              std::to_string(s.fruit), report::fixed(s.share(), 1) + " %", std::to_string(s.least) + " %",
-             std::to_string(s.invented), std::to_string(s.views), std::to_string(s.faults),
-             std::to_string(s.discarded), std::to_string(s.wrong), std::to_string(s.believed)});
+             std::to_string(s.invented), std::to_string(s.views), std::to_string(s.faults), std::to_string(s.discarded),
+             std::to_string(s.wrong), std::to_string(s.believed)});
   return out.markdown();
 }
 
@@ -63,8 +63,8 @@ std::string csv(const std::vector<FaultRecord>& records) {
     out.cell(r.scene);
     out.cell(r.kind);
     out.cell(r.rate);
-    for (const int n : {r.trial, r.fruit, r.found, r.invented, r.views, r.discarded, r.faults, r.wrong_poses,
-                        r.wrong_believed})
+    for (const int n :
+         {r.trial, r.fruit, r.found, r.invented, r.views, r.discarded, r.faults, r.wrong_poses, r.wrong_believed})
       out.cell(static_cast<std::size_t>(n));
     out.cell(r.stop_reason);
     out.end_row();
@@ -95,7 +95,8 @@ void write_fault_report(const std::filesystem::path& path, std::vector<FaultReco
   const std::string stem = path.stem().string();
   std::string text =
       "# Faults of the world\n\n"
-      "Scans whose sensor and arm go wrong: each view that is asked for is struck at the rate by one fault of the kind, "
+      "Scans whose sensor and arm go wrong: each view that is asked for is struck at the rate by one fault of the "
+      "kind, "
       "or by any,\neach as likely (include/agrisee/study/faults.hpp says what each does). Made by AgriSEE " +
       info.version + " with\n\n```\n" + info.command + "\n```\n\n![Fruit found](" + stem + "/found.svg)\n\n" +
       table(sums) +

@@ -2,9 +2,8 @@
 #include <agrisee/io/files.hpp>
 #include <agrisee/io/ground_truth.hpp>
 
-#include <nlohmann/json.hpp>
-
 #include <array>
+#include <nlohmann/json.hpp>
 
 namespace agrisee::io {
 namespace {

@@ -94,7 +94,8 @@ Json to_json(const Cloud& cloud, const Labels& labels, std::size_t max_points) {
         normals.push_back(static_cast<std::int8_t>(std::lround(127.0f * std::clamp(n[a], -1.0f, 1.0f))));
     }
     if (!labels.empty()) label.push_back(static_cast<std::uint16_t>(std::clamp(at(labels, i), 0, 65535)));
-    if (cloud.views.size() == cloud.size()) view.push_back(static_cast<std::int16_t>(std::clamp(at(cloud.views, i), -1, 32767)));
+    if (cloud.views.size() == cloud.size())
+      view.push_back(static_cast<std::int16_t>(std::clamp(at(cloud.views, i), -1, 32767)));
   }
   Json j;
   j["count"] = points.size();

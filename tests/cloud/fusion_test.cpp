@@ -23,9 +23,9 @@ TEST_CASE("surfels average what was measured of one place by inverse variance") 
   CHECK(map.surfels()[0].position.x() == 0.0f);
   CHECK(map.surfels()[0].seen_by == 2);
   CHECK(map.surfels()[0].sigma() == Approx(0.001 / std::sqrt(2.0)));
-  CHECK(map.add({0.003f, 0, 0}, n, 0.001f, 1));          // beside it
-  CHECK(map.add({0, 0, 0.0005f}, -n, 0.001f, 1));        // the other side of a leaf
-  CHECK(map.add({0, 0, 0.02f}, n, 0.001f, 1));           // far behind
+  CHECK(map.add({0.003f, 0, 0}, n, 0.001f, 1));    // beside it
+  CHECK(map.add({0, 0, 0.0005f}, -n, 0.001f, 1));  // the other side of a leaf
+  CHECK(map.add({0, 0, 0.02f}, n, 0.001f, 1));     // far behind
   CHECK_FALSE(map.add({0, 0, std::nanf("")}, n, 0.001f, 1));
   CHECK_FALSE(map.add({0.1f, 0, 0}, n, 0.0f, 1));
   CHECK(map.size() == 4);
@@ -42,8 +42,7 @@ TEST_CASE("surfels of one surface keep their separation however often it is seen
   const double separation = SurfelParameters{}.separation;
   const auto& s = map.surfels();
   for (std::size_t i = 0; i < s.size(); ++i)
-    for (std::size_t j = 0; j < i; ++j)
-      REQUIRE((s[i].position - s[j].position).head<2>().norm() > 0.95 * separation);
+    for (std::size_t j = 0; j < i; ++j) REQUIRE((s[i].position - s[j].position).head<2>().norm() > 0.95 * separation);
   double mean = 0.0;
   for (const auto& q : s) mean += std::abs(double(q.position.z())) / double(s.size());
   CHECK(mean < 0.0002);
@@ -78,7 +77,8 @@ TEST_CASE("voxels hold the mean of their points") {
 TEST_CASE("the spacing of a cloud is the side of the square that a point stands for") {
   Cloud plane;
   for (int x = 0; x < 60; ++x)
-    for (int y = 0; y < 60; ++y) plane.points.emplace_back(0.002f * static_cast<float>(x), 0.002f * static_cast<float>(y), 0.0f);
+    for (int y = 0; y < 60; ++y)
+      plane.points.emplace_back(0.002f * static_cast<float>(x), 0.002f * static_cast<float>(y), 0.0f);
   CHECK(estimate_spacing(plane) == Approx(0.002).epsilon(0.2));
   CHECK(estimate_spacing(Cloud{}) == 0.0);
   plane.points = {{0, 0, 0}, {1, 0, 0}, {1e30f, 0, 0}};  // its squared distances overflow
@@ -88,7 +88,8 @@ TEST_CASE("the spacing of a cloud is the side of the square that a point stands 
 TEST_CASE("votes of a part of a sphere meet at its centre") {
   Cloud cloud;
   const Sphere truth{{0.2, -0.1, 0.4}, 0.037};
-  test::add_sphere(cloud, truth, 0.003, [](const Eigen::Vector3d& d) { return d.x() > 0.6; }, 0.0003);
+  test::add_sphere(
+      cloud, truth, 0.003, [](const Eigen::Vector3d& d) { return d.x() > 0.6; }, 0.0003);
   const auto centers = vote_for_centers(cloud, 0.02, 0.05, 20);
   REQUIRE_FALSE(centers.empty());
   CHECK((centers[0].center - truth.center).norm() < 0.004);

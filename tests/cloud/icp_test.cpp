@@ -118,7 +118,7 @@ TEMPLATE_TEST_CASE("matches that are kept are those that a search of all points 
   params.max_normal_angle = deg(angle);
   const Grid<S> search(target, S(0.003));
   detail::IcpProblem<S, PointCloud<S>, PointCloud<S>, Grid<S>> problem(source, source.normals, target, target.normals,
-                                                                      params, search, 1);
+                                                                       params, search, 1);
   Pose pose = kSmall;
   double step = 1.0;
   std::size_t changed = 0;
@@ -132,9 +132,9 @@ TEMPLATE_TEST_CASE("matches that are kept are those that a search of all points 
       Index best = -1;
       S best_sq = S(params.max_distance) * S(params.max_distance);
       for (std::size_t j = 0; j < target.size(); ++j) {
-        const bool agrees = problem.normals().empty() || target.normals[j].template cast<double>().dot(
-                                                             pose.linear() * problem.normals()[i]) >=
-                                                             std::cos(params.max_normal_angle);
+        const bool agrees = problem.normals().empty() ||
+                            target.normals[j].template cast<double>().dot(pose.linear() * problem.normals()[i]) >=
+                                std::cos(params.max_normal_angle);
         const S d_sq = distance_sq<S>(target.points[j], q);
         if (agrees && d_sq <= best_sq && (d_sq < best_sq || best < 0)) best = static_cast<Index>(j), best_sq = d_sq;
       }

@@ -63,8 +63,8 @@ int main(int argc, char** argv) {
   for (const fuzz::Target& target : fuzz::kTargets)
     if (const fs::path folder = fs::path(argv[1]) / target.name; fs::is_directory(folder))
       for (const fs::directory_entry& entry : fs::directory_iterator(folder))
-        all.push_back({target.name, entry.path().filename().string(),
-                       std::string(io::read_bytes(entry.path()).view())});
+        all.push_back(
+            {target.name, entry.path().filename().string(), std::string(io::read_bytes(entry.path()).view())});
   std::size_t inputs = 0;
   for (const fuzz::Target& target : fuzz::kTargets) {
     std::uint64_t seed = 0;

@@ -36,8 +36,9 @@ Cloud seed_cloud() {
 }
 
 std::string pcd_header(const char* data) {
-  return std::string("# .PCD v0.7\nVERSION 0.7\nFIELDS x y z label\nSIZE 4 4 4 4\nTYPE F F F U\nCOUNT 1 1 1 1\nWIDTH 2\n"
-                     "HEIGHT 1\nVIEWPOINT 0 0 0 1 0 0 0\nPOINTS 2\nDATA ") +
+  return std::string(
+             "# .PCD v0.7\nVERSION 0.7\nFIELDS x y z label\nSIZE 4 4 4 4\nTYPE F F F U\nCOUNT 1 1 1 1\nWIDTH 2\n"
+             "HEIGHT 1\nVIEWPOINT 0 0 0 1 0 0 0\nPOINTS 2\nDATA ") +
          data + "\n";
 }
 
@@ -67,14 +68,16 @@ void add_clouds(std::vector<Seed>& seeds, const fs::path& folder) {
   io::write_raw_ply(folder / "raw", cloud);
   io::write_ply_mesh(folder / "mesh", seed_mesh());
   for (const char* name : {"cloud", "raw", "mesh"}) seeds.push_back({"ply", name, bytes_of(folder / name)});
-  std::string big = "ply\nformat binary_big_endian 1.0\nelement vertex 1\nproperty double x\nproperty short y\n"
-                    "property uchar z\nproperty list uchar int more\nend_header\n";
+  std::string big =
+      "ply\nformat binary_big_endian 1.0\nelement vertex 1\nproperty double x\nproperty short y\n"
+      "property uchar z\nproperty list uchar int more\nend_header\n";
   big += std::string("\x3f\xf0\0\0\0\0\0\0", 8) + std::string("\1\2\7\1\0\0\0\5", 8);
   seeds.push_back({"ply", "big_endian", big});
-  seeds.push_back({"ply", "ascii",
-                   "ply\nformat ascii 1.0\ncomment c\nobj_info o\nelement vertex 3\nproperty float x\nproperty float y\n"
-                   "property float z\nproperty int label\nelement face 1\nproperty list uchar int vertex_indices\n"
-                   "end_header\n0 0 0 1\n1 nan 0 2\n0 1e-3 0 -1\n3 0 1 2\n"});
+  seeds.push_back(
+      {"ply", "ascii",
+       "ply\nformat ascii 1.0\ncomment c\nobj_info o\nelement vertex 3\nproperty float x\nproperty float y\n"
+       "property float z\nproperty int label\nelement face 1\nproperty list uchar int vertex_indices\n"
+       "end_header\n0 0 0 1\n1 nan 0 2\n0 1e-3 0 -1\n3 0 1 2\n"});
 
   seeds.push_back({"pcd", "ascii", pcd_header("ascii") + "1 2 3 4\nnan 1e5 -0.5 0\n"});
   std::string binary;
@@ -114,14 +117,16 @@ void add_texts(std::vector<Seed>& seeds, const fs::path& folder) {
   scene.scene.objects.push_back({1, ObjectClass::fruit, seed_mesh()});
   io::write_scene(folder / "scene.yaml", scene);
   seeds.push_back({"scene", "written", bytes_of(folder / "scene.yaml")});
-  seeds.push_back({"scene", "moved",
-                   "name: a\nrobot:\n  base: {xyz: [0, 0, 0], rpy: [0, 0, 0.5]}\nscan_volume: {min: [0, 0, 0], max: [1, 1, 1]}\n"
-                   "objects:\n  - &o {id: 1, class: fruit, mesh: fruit_1.stl, xyz: [1, 2, 3], rpy: [0, 0, 0.4], scale: 2}\n"
-                   "  - {id: 0, class: leaf, mesh: ./fruit_1.stl}\n"});
+  seeds.push_back(
+      {"scene", "moved",
+       "name: a\nrobot:\n  base: {xyz: [0, 0, 0], rpy: [0, 0, 0.5]}\nscan_volume: {min: [0, 0, 0], max: [1, 1, 1]}\n"
+       "objects:\n  - &o {id: 1, class: fruit, mesh: fruit_1.stl, xyz: [1, 2, 3], rpy: [0, 0, 0.4], scale: 2}\n"
+       "  - {id: 0, class: leaf, mesh: ./fruit_1.stl}\n"});
 
   for (const char* preset : {"default", "paper"})
     seeds.push_back({"parameters", preset, io::parameters_to_yaml(Parameters::named(preset))});
-  seeds.push_back({"parameters", "few", "preset: paper\nmax_views: 3\nsor: {mean_k: 12, std_ratio: 1.5}\nicp:\n  kernel: huber\n"});
+  seeds.push_back(
+      {"parameters", "few", "preset: paper\nmax_views: 3\nsor: {mean_k: 12, std_ratio: 1.5}\nicp:\n  kernel: huber\n"});
 
   io::ScanTask task;
   task.scene = "/s.yaml";

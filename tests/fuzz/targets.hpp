@@ -20,16 +20,16 @@ void stl(const std::uint8_t* data, std::size_t size);
 void obj(const std::uint8_t* data, std::size_t size);
 void scene(const std::uint8_t* data, std::size_t size);
 void parameters(const std::uint8_t* data, std::size_t size);
-void records(const std::uint8_t* data, std::size_t size);  ///< result files; the first byte chooses which
+void records(const std::uint8_t* data, std::size_t size);   ///< result files; the first byte chooses which
 void messages(const std::uint8_t* data, std::size_t size);  ///< ROS messages; the first byte chooses cloud or image
 
 struct Target {
   const char* name;
   void (*run)(const std::uint8_t*, std::size_t);
 };
-constexpr Target kTargets[] = {{"ply", ply},     {"pcd", pcd},         {"stl", stl},        {"obj", obj},
-                               {"scene", scene}, {"parameters", parameters}, {"records", records},
-                               {"messages", messages}};
+constexpr Target kTargets[] = {{"ply", ply},         {"pcd", pcd},          {"stl", stl},
+                               {"obj", obj},         {"scene", scene},      {"parameters", parameters},
+                               {"records", records}, {"messages", messages}};
 
 /// The bytes as a file; without a disk. There is one at a time.
 std::filesystem::path as_file(const std::uint8_t* data, std::size_t size);

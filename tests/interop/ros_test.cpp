@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Messages of both ROS generations: structs of our own with the same members and, where ROS 1 is installed, the real ones.
+// Messages of both ROS generations: structs of our own with the same members and, where ROS 1 is installed, the real
+// ones.
 #include <agrisee/interop/ros.hpp>
 #include <agrisee/process.hpp>
 
@@ -23,13 +24,13 @@ constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
 
 /// How a message lays its points out.
 struct Layout {
-  bool wide = false;            ///< float64
-  bool big = false;             ///< big-endian
-  std::uint32_t lead = 0;       ///< bytes before x
-  std::uint32_t tail = 0;       ///< bytes after z
-  std::uint32_t row_tail = 0;   ///< bytes after each row
+  bool wide = false;           ///< float64
+  bool big = false;            ///< big-endian
+  std::uint32_t lead = 0;      ///< bytes before x
+  std::uint32_t tail = 0;      ///< bytes after z
+  std::uint32_t row_tail = 0;  ///< bytes after each row
   std::uint32_t height = 1;
-  bool reversed = false;        ///< z first, in the fields and in the point
+  bool reversed = false;  ///< z first, in the fields and in the point
 };
 
 template <typename T>
@@ -82,9 +83,9 @@ std::vector<Layout> layouts() {
   return all;
 }
 
-const std::vector<Eigen::Vector3f> kPoints = {{1.0f, 2.0f, 3.0f},    {-0.25f, 1e-7f, 4e8f}, {kNaN, 0.0f, 1.0f},
+const std::vector<Eigen::Vector3f> kPoints = {{1.0f, 2.0f, 3.0f},     {-0.25f, 1e-7f, 4e8f}, {kNaN, 0.0f, 1.0f},
                                               {0.5f, -0.125f, 0.75f}, {0.1f, 0.2f, 0.3f},    {4.0f, 5.0f, -6.0f},
-                                              {0.0f, 0.0f, 0.0f},    {7.0f, 8.0f, 9.0f}};
+                                              {0.0f, 0.0f, 0.0f},     {7.0f, 8.0f, 9.0f}};
 
 bool same(const Eigen::Vector3f& a, const Eigen::Vector3f& b) { return std::memcmp(a.data(), b.data(), 12) == 0; }
 
@@ -205,8 +206,7 @@ void reads_frames() {
       const sensor::DepthFrame frame = interop::depth_frame(image, info);
       check(frame);
       REQUIRE(frame.depth.size() == 12);
-      for (std::size_t i = 0; i < 12; ++i)
-        CHECK(frame.depth[i] == Approx(0.25 * static_cast<double>(i)).margin(1e-6));
+      for (std::size_t i = 0; i < 12; ++i) CHECK(frame.depth[i] == Approx(0.25 * static_cast<double>(i)).margin(1e-6));
       CHECK_FALSE(sensor::DepthFrame::valid(frame.at(0, 0)));
       CHECK(frame.at(1, 2) == Approx(2.25));
       CHECK((frame.intrinsics.fx == 100.0 && frame.intrinsics.fy == 110.0));
@@ -268,7 +268,12 @@ TEST_CASE("a malformed PointCloud2 is refused, and nothing outside of its data i
   refuses([](M& m) { m.row_step = 0; }, "below width * point_step");
   refuses([](M& m) { m.height = m.width = 0xffffffffu; }, "too many");
   refuses([](M& m) { m.width = 0x40000000u; }, "too many");
-  refuses([](M& m) { m.height = 0x10000000u; m.row_step = 0xffffffffu; }, "row_step * height");
+  refuses(
+      [](M& m) {
+        m.height = 0x10000000u;
+        m.row_step = 0xffffffffu;
+      },
+      "row_step * height");
   refuses([](M& m) { m.point_step = 0; }, "outside of point_step");
   refuses([](M& m) { m.point_step = 8; }, "outside of point_step");
   refuses([](M& m) { m.fields[3].offset = 13; }, "outside of point_step");

@@ -156,7 +156,8 @@ TEST_CASE("texts of a report cannot become markup") {
   ScanResult result = scanned(10, 1);
   Workcell workcell = cell();
   io::RunInfo info;
-  const std::string hostile = "</script><script>alert(1)</script><!-- <img src=x onerror=alert(1)> \" ' & \xff\xe2\x80\xa8";
+  const std::string hostile =
+      "</script><script>alert(1)</script><!-- <img src=x onerror=alert(1)> \" ' & \xff\xe2\x80\xa8";
   info.scene = info.noise = info.planner = info.preset = hostile;
   info.parameters_json = R"({"</script>": "<!--"})";
   result.fruits[0].found_by = hostile;

@@ -26,8 +26,10 @@ TEST_CASE("a recorded view is read back bit by bit") {
   const float nan = std::numeric_limits<float>::quiet_NaN(), inf = std::numeric_limits<float>::infinity();
   const test::TempFolder folder;
   std::size_t number = 0;
-  for (const std::vector<float>& depth : {std::vector<float>{0, 0, 0, 0, 0, 0, 0, 0}, {1, 2, 3, 4, 5, 6, 7, 8},
-                                          {0, 0, 1.5f, 0, nan, -1, -0.0f, inf}, {1e-40f, 0, 0, 0, 0, 0, 0, 2}}) {
+  for (const std::vector<float>& depth : {std::vector<float>{0, 0, 0, 0, 0, 0, 0, 0},
+                                          {1, 2, 3, 4, 5, 6, 7, 8},
+                                          {0, 0, 1.5f, 0, nan, -1, -0.0f, inf},
+                                          {1e-40f, 0, 0, 0, 0, 0, 0, 2}}) {
     io::ViewRecord record = record_of(depth);
     if (number % 2) record.joints = (Joints() << 0.1, -1.0 / 3.0, 2, 3, 4, 5e-17).finished();
     io::write_view_record(folder.path(), number, record, "scan");

@@ -222,7 +222,8 @@ TEST_CASE("a relative mesh path stays in the scene's folder, an absolute one may
   const SceneFolder folder;
   for (const char* path : {"../fruit.stl", "a/../../fruit.stl", "./../fruit.stl", ".."})
     folder.refuse(replaced(kScene, "mesh: fruit.stl", std::string("mesh: ") + path), "leaves the scene's folder");
-  for (const std::string& path : {std::string("./fruit.stl"), std::string("a/../fruit.stl"), (folder / "fruit.stl").string()}) {
+  for (const std::string& path :
+       {std::string("./fruit.stl"), std::string("a/../fruit.stl"), (folder / "fruit.stl").string()}) {
     std::filesystem::create_directory(folder / "a");
     CHECK(folder.read(replaced(kScene, "mesh: fruit.stl", "mesh: " + path)).scene.objects.size() == 1);
   }
@@ -230,12 +231,12 @@ TEST_CASE("a relative mesh path stays in the scene's folder, an absolute one may
 
 TEST_CASE("YAML that nests without end is refused") {
   const SceneFolder folder;
-  for (const std::string& deep : {std::string(100000, '['), std::string(100000, '{'), "a: " + std::string(100, '['),
-                                  std::string(3000, '-'), [] {
-                                    std::string text;
-                                    for (int i = 0; i < 20000; ++i) text += "- ";
-                                    return text;
-                                  }()})
+  for (const std::string& deep :
+       {std::string(100000, '['), std::string(100000, '{'), "a: " + std::string(100, '['), std::string(3000, '-'), [] {
+          std::string text;
+          for (int i = 0; i < 20000; ++i) text += "- ";
+          return text;
+        }()})
     folder.refuse(deep, "");
 }
 

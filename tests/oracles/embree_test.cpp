@@ -55,7 +55,8 @@ Triangle corners(const Mesh& mesh, std::uint32_t i) {
 Mesh spheres() {
   Rng rng(2);
   Mesh mesh;
-  for (int i = 0; i < 12; ++i) append(mesh, shapes::sphere(shapes::random_vector(rng, 0.15), rng.uniform(0.02, 0.05), 40));
+  for (int i = 0; i < 12; ++i)
+    append(mesh, shapes::sphere(shapes::random_vector(rng, 0.15), rng.uniform(0.02, 0.05), 40));
   return mesh;
 }
 

@@ -61,11 +61,14 @@ void check_found(const ScanResult& result) {
 
 }  // namespace
 
-TEST_CASE("views that are right are believed") { CHECK(discarded(look_around(8, {}, Eigen::Vector3d::Zero())).empty()); }
+TEST_CASE("views that are right are believed") {
+  CHECK(discarded(look_around(8, {}, Eigen::Vector3d::Zero())).empty());
+}
 
 TEST_CASE("a view whose reported pose is 50 mm off is discarded, in whatever direction") {
-  for (const Eigen::Vector3d& direction : {Eigen::Vector3d(1, 0, 0), Eigen::Vector3d(0, 1, 0), Eigen::Vector3d(0, -1, 0),
-                                           Eigen::Vector3d(0, 0, 1), Eigen::Vector3d(-0.6, 0.0, -0.8)}) {
+  for (const Eigen::Vector3d& direction :
+       {Eigen::Vector3d(1, 0, 0), Eigen::Vector3d(0, 1, 0), Eigen::Vector3d(0, -1, 0), Eigen::Vector3d(0, 0, 1),
+        Eigen::Vector3d(-0.6, 0.0, -0.8)}) {
     INFO(direction.transpose());
     const ScanResult result = look_around(8, {3, 6}, 0.05 * direction);
     CHECK(discarded(result) == std::set<int>{3, 6});

@@ -36,8 +36,8 @@ ScanResult run(const Parameters& parameters, Fault&& fault, Refuse&& refuse, int
       continue;
     }
     joints = *next->joints;
-    auto frame =
-        test::render(test::kThreeFruit, w.sensor.intrinsics, next->world_T_optical, 0.001, static_cast<std::uint64_t>(asked));
+    auto frame = test::render(test::kThreeFruit, w.sensor.intrinsics, next->world_T_optical, 0.001,
+                              static_cast<std::uint64_t>(asked));
     fault(static_cast<int>(pipeline.views().size()), frame);
     pipeline.observe(frame, next->world_T_optical, joints);
   }
@@ -162,7 +162,8 @@ TEST_CASE("the planner says how complete the scan is") {
       seen.push_back(c->seen);
     }
     joints = *next->joints;
-    pipeline.observe(test::render(test::kThreeFruit, w.sensor.intrinsics, next->world_T_optical), next->world_T_optical, joints);
+    pipeline.observe(test::render(test::kThreeFruit, w.sensor.intrinsics, next->world_T_optical), next->world_T_optical,
+                     joints);
   }
   const ScanResult result = pipeline.result();
   REQUIRE(result.completeness);

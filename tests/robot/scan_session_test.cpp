@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // What the ROS nodes share, without ROS: when a frame is taken, refusals, stop and reset, parameters by name.
+#include "scan_session.hpp"
+
 #include <map>
 #include <variant>
 
 #include "catch.hpp"
 #include "joint_names.hpp"
 #include "read_parameters.hpp"
-#include "scan_session.hpp"
 #include "spheres.hpp"
 #include "support/says.hpp"
 
@@ -48,13 +49,13 @@ TEST_CASE("a frame is taken once the sensor has arrived and stands still") {
   const Pose goal = session.goal()->world_T_optical;
   const auto moved = [&](double x, double turn) { return Pose(goal * pose_from_xyz_rpy({x, 0, 0}, {0, 0, turn})); };
   CHECK(session.arrived(10.31, goal, goal));
-  CHECK_FALSE(session.arrived(10.29, goal, goal));                            // stood there before it was asked
-  CHECK_FALSE(session.arrived(12.0, moved(0.021, 0.0), moved(0.021, 0.0)));   // elsewhere
-  CHECK_FALSE(session.arrived(12.0, moved(0.0, 0.06), moved(0.0, 0.06)));     // turned
-  CHECK_FALSE(session.arrived(12.0, goal, moved(0.001, 0.0)));                // moving
-  CHECK_FALSE(session.arrived(12.0, goal, moved(0.0, 0.005)));                // turning
-  CHECK(session.arrived(12.0, moved(0.01, 0.03), moved(0.01, 0.03)));         // near enough
-  session.set_joints(cell().start, 11.6);  // where the arm was before it stood
+  CHECK_FALSE(session.arrived(10.29, goal, goal));                           // stood there before it was asked
+  CHECK_FALSE(session.arrived(12.0, moved(0.021, 0.0), moved(0.021, 0.0)));  // elsewhere
+  CHECK_FALSE(session.arrived(12.0, moved(0.0, 0.06), moved(0.0, 0.06)));    // turned
+  CHECK_FALSE(session.arrived(12.0, goal, moved(0.001, 0.0)));               // moving
+  CHECK_FALSE(session.arrived(12.0, goal, moved(0.0, 0.005)));               // turning
+  CHECK(session.arrived(12.0, moved(0.01, 0.03), moved(0.01, 0.03)));        // near enough
+  session.set_joints(cell().start, 11.6);                                    // where the arm was before it stood
   CHECK_FALSE(session.arrived(12.0, goal, goal));
   session.set_joints(*session.goal()->joints, 11.8);
   CHECK(session.arrived(12.0, goal, goal));
@@ -161,7 +162,8 @@ TEST_CASE("session parameters are checked") {
 
 TEST_CASE("parameters are looked up by the names of the YAML files") {
   using Value = std::variant<bool, int, double, std::string>;
-  const auto read = [](const std::map<std::string, Value>& server, const char* separator, std::set<std::string>& known) {
+  const auto read = [](const std::map<std::string, Value>& server, const char* separator,
+                       std::set<std::string>& known) {
     const auto lookup = [&](const std::string& name, auto& field) {
       const auto found = server.find(name);
       if (found == server.end()) return;
@@ -173,11 +175,9 @@ TEST_CASE("parameters are looked up by the names of the YAML files") {
     return robot::read_parameters(lookup, separator, known);
   };
   std::set<std::string> known;
-  Parameters p = read({{"max_views", 7},
-                       {"split/bodies/radius_min", 0.01},
-                       {"register_views", false},
-                       {"planner", std::string("see")}},
-                      "/", known);
+  Parameters p = read(
+      {{"max_views", 7}, {"split/bodies/radius_min", 0.01}, {"register_views", false}, {"planner", std::string("see")}},
+      "/", known);
   CHECK(p.max_views == 7);
   CHECK(p.split.bodies.radius_min == 0.01);
   CHECK_FALSE(p.register_views);
@@ -202,7 +202,7 @@ TEST_CASE("joints are found by name") {
     std::vector<double> position;
   } state;
   CHECK_FALSE(robot::joints_of(state));
-  state.name = {"gripper", "wrist_3_joint",  "wrist_2_joint",       "wrist_1_joint",
+  state.name = {"gripper",     "wrist_3_joint",       "wrist_2_joint",     "wrist_1_joint",
                 "elbow_joint", "shoulder_lift_joint", "shoulder_pan_joint"};
   state.position = {9, 6, 5, 4, 3, 2, 1};
   REQUIRE(robot::joints_of(state));

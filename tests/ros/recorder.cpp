@@ -1,16 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Drives the node by its services, records what it publishes and compares it with the folder that `agrisee scan` left of
-// the same scene. Usage: recorder RESULT TOLERANCE_M SAME_VIEWS(0|1)
+// Drives the node by its services, records what it publishes and compares it with the folder that `agrisee scan` left
+// of the same scene. Usage: recorder RESULT TOLERANCE_M SAME_VIEWS(0|1)
 #include <agrisee/arm/ur3.hpp>
 #include <agrisee/interop/ros.hpp>
 #include <agrisee/io/results.hpp>
-
-#include <ros/ros.h>
 
 #include <deque>
 #include <functional>
 #include <geometry_msgs/PoseArray.h>
 #include <iostream>
+#include <ros/ros.h>
 #include <sensor_msgs/JointState.h>
 #include <sensor_msgs/PointCloud2.h>
 #include <std_msgs/String.h>
@@ -113,8 +112,8 @@ int main(int argc, char** argv) {
   std::size_t postures = 0;
   std::deque<std::pair<ros::Time, Joints>> lately;
   Joints compared = Joints::Constant(99.0);
-  ros::Subscriber take_joints = node.subscribe<sensor_msgs::JointState>(
-      "/joint_states", 50, [&](const sensor_msgs::JointStateConstPtr& m) {
+  ros::Subscriber take_joints =
+      node.subscribe<sensor_msgs::JointState>("/joint_states", 50, [&](const sensor_msgs::JointStateConstPtr& m) {
         const auto q = robot::joints_of(*m);
         if (!q) return;
         lately.emplace_back(m->header.stamp, *q);
@@ -123,7 +122,8 @@ int main(int argc, char** argv) {
         const ros::Time then = lately[10].first;
         if (lately.front().second != *q || *q == compared || !buffer.canTransform("base_link", "tool0", then)) return;
         const arm::LinkFrames frames = arm::link_frames(*q);
-        const char* links[] = {"shoulder_link", "upper_arm_link", "forearm_link", "wrist_1_link", "wrist_2_link", "tool0"};
+        const char* links[] = {"shoulder_link", "upper_arm_link", "forearm_link",
+                               "wrist_1_link",  "wrist_2_link",   "tool0"};
         for (std::size_t i = 0; i < 6; ++i) {
           const Pose by_tf = robot::pose_of(buffer.lookupTransform("base_link", links[i], then).transform);
           worst_tf = std::max(worst_tf, (by_tf.matrix() - frames[i].matrix()).cwiseAbs().maxCoeff());
@@ -141,7 +141,8 @@ int main(int argc, char** argv) {
   };
 
   // All processes have to find each other first, which takes long on a busy machine.
-  expect(spin_until(240.0, [&] { return says("idle") && take_goals.getNumPublishers() > 0; }), "the node says that it is idle");
+  expect(spin_until(240.0, [&] { return says("idle") && take_goals.getNumPublishers() > 0; }),
+         "the node says that it is idle");
   expect(spin_until(240.0, [&] { return postures > 0; }), "tf tells of the arm");
   if (failures) return 1;
   expect(!call("stop") && !call("skip_view"), "what is not going on cannot be stopped or skipped");
@@ -158,8 +159,8 @@ int main(int argc, char** argv) {
          "all topics were heard");
   if (failures) return 1;
   expect(fruits.last()->header.frame_id == "world", "poses are in world");
-  expect(fruits.last()->poses.size() == expected.size(),
-         std::to_string(fruits.last()->poses.size()) + " fruit, " + std::to_string(expected.size()) + " by agrisee scan");
+  expect(fruits.last()->poses.size() == expected.size(), std::to_string(fruits.last()->poses.size()) + " fruit, " +
+                                                             std::to_string(expected.size()) + " by agrisee scan");
   double worst_centroid = 0.0, worst_center = 0.0;
   std::size_t reachable = 0;
   for (const Fruit& f : expected) {
@@ -167,7 +168,8 @@ int main(int argc, char** argv) {
     if (f.body) worst_center = std::max(worst_center, nearest(f.body->center, *bodies.last()));
     reachable += f.picking && f.picking->reachable;
   }
-  expect(worst_center < tolerance, "bodies are where agrisee scan has them: " + std::to_string(1e3 * worst_center) + " mm");
+  expect(worst_center < tolerance,
+         "bodies are where agrisee scan has them: " + std::to_string(1e3 * worst_center) + " mm");
   // The centroid of what was seen moves with every point, the body does not.
   expect(worst_centroid < 3.0 * tolerance, "so are the poses: " + std::to_string(1e3 * worst_centroid) + " mm");
   if (same_views) {
@@ -200,12 +202,14 @@ int main(int argc, char** argv) {
   };
   expect(finite == points.size() && about(points.size(), run.filtered) && about(labelled, run.labelled),
          std::to_string(points.size()) + " points, " + std::to_string(labelled) + " of them of fruit");
-  expect(postures > goals.size() / 2 && worst_tf < 1e-9, "tf agrees with our kinematics at " + std::to_string(postures) +
+  expect(postures > goals.size() / 2 && worst_tf < 1e-9, "tf agrees with our kinematics at " +
+                                                             std::to_string(postures) +
                                                              " postures: " + std::to_string(1e12 * worst_tf) + " pm");
 
   const std::size_t before = goals.size();
   expect(call("reset"), "it is reset");
-  expect(spin_until(60.0, [&] { return says("idle, 0 views") && fruits.last()->poses.empty(); }), "nothing is known then");
+  expect(spin_until(60.0, [&] { return says("idle, 0 views") && fruits.last()->poses.empty(); }),
+         "nothing is known then");
   expect(call("start") && spin_until(60.0, [&] { return goals.size() == before + 1; }), "it starts anew");
   expect(call("skip_view") && spin_until(60.0, [&] { return goals.size() == before + 2; }) &&
              (goals[before] - goals[before + 1]).norm() > 1e-3,

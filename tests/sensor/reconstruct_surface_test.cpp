@@ -52,8 +52,8 @@ Quality quality(const SurfaceImage& image) {
 
 TEST_CASE("a surface is recovered from noise that is larger than its detail") {
   const Intrinsics k = intrinsics_from_fov(640, 480, deg(50), deg(39));
-  const auto [noise, mean_limit, limit95] = GENERATE(table<double, double, double>(
-      {{0.0, 0.0001, 0.0004}, {0.0015, 0.0003, 0.0008}, {0.010, 0.0009, 0.0025}}));
+  const auto [noise, mean_limit, limit95] = GENERATE(
+      table<double, double, double>({{0.0, 0.0001, 0.0004}, {0.0015, 0.0003, 0.0008}, {0.010, 0.0009, 0.0025}}));
   INFO(noise);
   const SurfaceImage image = reconstruct_surface(test::render(kSpheres, k, kPose, noise), kPose, volume());
   const Quality q = quality(image);
@@ -90,7 +90,8 @@ TEST_CASE("cells and pixels agree where a point is seen") {
 TEST_CASE("surfaces do not depend on threads") {
   const Intrinsics k = intrinsics_from_fov(320, 240, deg(50), deg(39));
   const DepthFrame frame = test::render(kSpheres, k, kPose, 0.005);
-  const SurfaceImage a = reconstruct_surface(frame, kPose, volume(), {}, 1), b = reconstruct_surface(frame, kPose, volume(), {}, 3);
+  const SurfaceImage a = reconstruct_surface(frame, kPose, volume(), {}, 1),
+                     b = reconstruct_surface(frame, kPose, volume(), {}, 3);
   CHECK(a.points == b.points);
   CHECK(a.sigma == b.sigma);
 }

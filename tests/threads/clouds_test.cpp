@@ -45,7 +45,8 @@ TEST_CASE("threads: grids") {  // large enough to be divided, with gaps and poin
   Rng rng(8);
   std::vector<Eigen::Vector3f> points;
   for (int i = 0; i < 90000; ++i)
-    points.push_back(i % 7 == 0 && i > 0 ? points.back() : Eigen::Vector3f((0.1 * rng.uniform() * rng.direction()).cast<float>()));
+    points.push_back(i % 7 == 0 && i > 0 ? points.back()
+                                         : Eigen::Vector3f((0.1 * rng.uniform() * rng.direction()).cast<float>()));
   for (std::size_t i = 0; i < points.size(); i += 997) points[i].y() = std::nanf("");
   for (const float cell : {0.002f, 0.02f, 0.5f}) {
     const Grid one(points, cell);

@@ -74,7 +74,7 @@ inline const std::array<Piece, 15>& ur3_pieces() {
 /// Two things that overlap.
 struct Contact {
   Part part = Part::shoulder;  ///< the one that touches
-  std::string_view with;  ///< a part or the name of a space, valid as long as the Mount
+  std::string_view with;       ///< a part or the name of a space, valid as long as the Mount
 };
 
 namespace detail {

@@ -30,7 +30,7 @@ constexpr double a3 = -0.21325;  ///< forearm
 constexpr double d4 = 0.11235;   ///< wrist 1, along the joint's axis
 constexpr double d5 = 0.08535;   ///< wrist 2
 constexpr double d6 = 0.0819;    ///< wrist 3 to tool0
-}
+}  // namespace ur3
 
 /// Below this |sin q5| joints 4 and 6 turn about one line: a wrist singularity.
 constexpr double kWristSingularity = 1e-10;

@@ -31,7 +31,7 @@ struct Sphere {
 /// An ellipsoid in the form that the fit works with.
 struct Ellipsoid {
   Eigen::Vector3d center = Eigen::Vector3d::Zero();  ///< m
-  Eigen::Matrix3d A = Eigen::Matrix3d::Identity();  ///< symmetric; its eigenvalues are the inverse semi-axes (1/m)
+  Eigen::Matrix3d A = Eigen::Matrix3d::Identity();   ///< symmetric; its eigenvalues are the inverse semi-axes (1/m)
 
   Ellipsoid() = default;
   /// A sphere as an ellipsoid.
@@ -82,8 +82,8 @@ struct EllipsoidFit {
   Eigen::Matrix3d center_covariance = Eigen::Matrix3d::Zero();  ///< m2
   /// Of body.A as (xx, yy, zz, xy, xz, yz) (1/m2), what was expected of its shape included.
   Eigen::Matrix<double, 6, 6> shape_covariance = Eigen::Matrix<double, 6, 6>::Zero();
-  double rms = 0.0;                                             ///< of the inliers (m)
-  std::size_t inliers = 0;                                      ///< points within three noises whose normals agree
+  double rms = 0.0;         ///< of the inliers (m)
+  std::size_t inliers = 0;  ///< points within three noises whose normals agree
 };
 
 /// The sphere through points with outward normals: p = c + r n is linear in c and r, so r is the regression of points

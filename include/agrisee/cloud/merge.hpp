@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// @file
-/// Merges views by minimum separation: a new point is kept if no kept point is nearer than epsilon; the first wins, nothing
-/// is averaged (SEE++). Metres. Cost: a few cells a point.
+/// Merges views by minimum separation: a new point is kept if no kept point is nearer than epsilon; the first wins,
+/// nothing is averaged (SEE++). Metres. Cost: a few cells a point.
 #pragma once
 
 #include <agrisee/core/hash_grid.hpp>

@@ -257,9 +257,9 @@ struct GrowthAxisParameters {
 
 /// Parameters of SurfelMap.
 struct SurfelParameters {
-  double separation = 0.0024;    ///< least distance between surfels of one surface (m)
-  double max_angle = deg(60);    ///< samples whose normals differ by more belong to another surface (rad)
-  double agreement = 0.0015;     ///< samples this far off along the normal agree in any case (m), beside 3 sigma
+  double separation = 0.0024;  ///< least distance between surfels of one surface (m)
+  double max_angle = deg(60);  ///< samples whose normals differ by more belong to another surface (rad)
+  double agreement = 0.0015;   ///< samples this far off along the normal agree in any case (m), beside 3 sigma
 
   /// @throws ParameterError
   void check() const {

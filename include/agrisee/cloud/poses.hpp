@@ -54,13 +54,15 @@ template <typename C>
 Index highest_point(const C& cloud) {
   Index best = -1;
   for (std::size_t i = 0; i < agrisee::size(cloud); ++i)
-    if (is_finite(point(cloud, i)) && (best < 0 || point(cloud, i).z() > point(cloud, static_cast<std::size_t>(best)).z()))
+    if (is_finite(point(cloud, i)) &&
+        (best < 0 || point(cloud, i).z() > point(cloud, static_cast<std::size_t>(best)).z()))
       best = static_cast<Index>(i);
   return best;
 }
 
-/// The axes (columns x, y, z) of a frame whose z points along `z` and whose x points towards `x_hint`, made orthogonal to z;
-/// y completes a right-handed frame. Directions of no length fall back: z to up, x to any direction at right angles.
+/// The axes (columns x, y, z) of a frame whose z points along `z` and whose x points towards `x_hint`, made orthogonal
+/// to z; y completes a right-handed frame. Directions of no length fall back: z to up, x to any direction at right
+/// angles.
 inline Eigen::Matrix3d frame_from_z_and_x(Eigen::Vector3d z, const Eigen::Vector3d& x_hint) {
   z = z.norm() > 1e-12 ? z.normalized() : Eigen::Vector3d(Eigen::Vector3d::UnitZ());
   Eigen::Vector3d x = x_hint - z * z.dot(x_hint);
@@ -88,25 +90,27 @@ Eigen::Vector3d densest_point(const PointCloud<S>& cloud, const Indices& indices
   return part.points[best].template cast<double>();
 }
 
-/// The paper's pose frame: origin at the centroid (not returned), z towards the highest point of the whole cloud, x towards
-/// the densest part (within `radius`, m) of the fruit's points, y completing a right-handed frame.
+/// The paper's pose frame: origin at the centroid (not returned), z towards the highest point of the whole cloud, x
+/// towards the densest part (within `radius`, m) of the fruit's points, y completing a right-handed frame.
 template <typename S>
 Eigen::Matrix3d paper_pose_frame(const PointCloud<S>& cloud, const Indices& indices, const Eigen::Vector3d& mean,
                                  double radius = 0.006) {
   const Index top = highest_point(cloud);
   const Eigen::Vector3d z =
-      top < 0 ? Eigen::Vector3d(Eigen::Vector3d::UnitZ()) : Eigen::Vector3d(cloud.points[static_cast<std::size_t>(top)].template cast<double>() - mean);
+      top < 0 ? Eigen::Vector3d(Eigen::Vector3d::UnitZ())
+              : Eigen::Vector3d(cloud.points[static_cast<std::size_t>(top)].template cast<double>() - mean);
   return frame_from_z_and_x(z, densest_point(cloud, indices, radius) - mean);
 }
 
 /// A line through a body's centre, and how well it is known.
 struct BodyAxis {
-  Eigen::Vector3d direction = Eigen::Vector3d::UnitZ();  ///< unit; its sign means nothing
+  Eigen::Vector3d direction = Eigen::Vector3d::UnitZ();       ///< unit; its sign means nothing
   double variance = std::numeric_limits<double>::infinity();  ///< of its direction (rad2)
 };
 
 /// The axis about which a body is closest to round: that of the semi-axis that stands apart from the other two. Its
-/// variance is that of the fit, and grows as the other two differ; a sphere, and a body of unknown covariance, has none.
+/// variance is that of the fit, and grows as the other two differ; a sphere, and a body of unknown covariance, has
+/// none.
 inline BodyAxis symmetry_axis(const EllipsoidFit& fit) {
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(fit.body.A);
   const Eigen::Vector3d& inverse = solver.eigenvalues();  // of the semi-axes, ascending

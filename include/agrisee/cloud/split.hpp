@@ -23,24 +23,24 @@ namespace agrisee {
 
 /// What the split found. `labels` count from 1 in the order of `found`.
 struct Split {
-  Labels labels;                              ///< one per point: the fruit, 0 = none
-  std::vector<FoundBody> found;               ///< one per fruit; without bodies only `found_by` is set
-  Labels regions;                             ///< what region growing alone found
-  std::size_t residual = 0;                   ///< points that region growing left to DBSCAN
-  int regions_found = 0;                      ///< instances from region growing
-  int clusters_found = 0;                     ///< and from DBSCAN on its residual
+  Labels labels;                 ///< one per point: the fruit, 0 = none
+  std::vector<FoundBody> found;  ///< one per fruit; without bodies only `found_by` is set
+  Labels regions;                ///< what region growing alone found
+  std::size_t residual = 0;      ///< points that region growing left to DBSCAN
+  int regions_found = 0;         ///< instances from region growing
+  int clusters_found = 0;        ///< and from DBSCAN on its residual
 };
 
 /// What the paper's two stages run with on a certain cloud.
 struct StageParameters {
   RegionGrowingParameters growing;  ///< first stage
   DbscanParameters clustering;      ///< second stage
-  std::size_t min_residual = 0;  ///< DBSCAN runs when the residual holds more points than this
-  int min_cluster = 1;           ///< smaller clusters are noise
+  std::size_t min_residual = 0;     ///< DBSCAN runs when the residual holds more points than this
+  int min_cluster = 1;              ///< smaller clusters are noise
 };
 
-/// The stages' parameters for a cloud of such spacing (m, see estimate_spacing): as given, or derived from it where they
-/// are adaptive; none then for a cloud that has no spacing (no two different points).
+/// The stages' parameters for a cloud of such spacing (m, see estimate_spacing): as given, or derived from it where
+/// they are adaptive; none then for a cloud that has no spacing (no two different points).
 inline std::optional<StageParameters> stages_for(double spacing, const SplitParameters& parameters) {
   StageParameters stages{parameters.growing, parameters.clustering, static_cast<std::size_t>(parameters.min_residual),
                          1};

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// @file
-/// Fuses the surfaces of many views into one: surfels at a minimum separation, each the weighted average of all that was
-/// measured of its place (point-based fusion, cf. Keller et al., 3DV 2013).
+/// Fuses the surfaces of many views into one: surfels at a minimum separation, each the weighted average of all that
+/// was measured of its place (point-based fusion, cf. Keller et al., 3DV 2013).
 ///
 /// A sample that falls within the separation of a surfel and whose normal agrees moves it along its normal, by inverse
-/// variance; any other founds a new surfel. So density stays even however often a place is seen, and noise averages out.
-/// Metres, world. Cost: a few cells a sample; memory about 80 bytes a surfel.
+/// variance; any other founds a new surfel. So density stays even however often a place is seen, and noise averages
+/// out. Metres, world. Cost: a few cells a sample; memory about 80 bytes a surfel.
 #pragma once
 
 #include <agrisee/cloud/parameters.hpp>
@@ -64,7 +64,8 @@ class SurfelMap {
             const Eigen::Vector3f d = p - s.position;
             const float along = s.normal.dot(d);
             const float across_sq = d.squaredNorm() - along * along;
-            const float off = static_cast<float>(parameters_.agreement) + 3.0f * std::sqrt(sigma * sigma + 1.0f / s.weight);
+            const float off =
+                static_cast<float>(parameters_.agreement) + 3.0f * std::sqrt(sigma * sigma + 1.0f / s.weight);
             if (std::abs(along) > off) continue;
             if (across_sq < best_sq || (across_sq == best_sq && i < best)) {
               best = i;

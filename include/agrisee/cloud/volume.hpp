@@ -37,9 +37,8 @@ double relative_volume_error(const PointCloud<S>& cloud, const Indices& indices,
   double weights = 0.0;
   for (std::size_t k = 0; k < used; ++k) {
     const auto i = static_cast<std::size_t>(indices[k * indices.size() / used]);
-    const auto row =
-        detail::ellipsoid_row(body, cloud.points[i].template cast<double>(), cloud.normals[i].template cast<double>(),
-                              size, gate, cos_max);
+    const auto row = detail::ellipsoid_row(body, cloud.points[i].template cast<double>(),
+                                           cloud.normals[i].template cast<double>(), size, gate, cos_max);
     if (!(row.weight > 0.0)) continue;
     information.noalias() += (row.weight * row.derivatives).lazyProduct(row.derivatives.transpose());
     weights += row.weight;

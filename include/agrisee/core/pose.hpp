@@ -16,10 +16,10 @@ using Pose = Eigen::Isometry3d;
 /// Pose from a translation (m) and URDF's roll, pitch, yaw (rad; rotations about the fixed axes x, y, z in turn).
 inline Pose pose_from_xyz_rpy(const Eigen::Vector3d& xyz, const Eigen::Vector3d& rpy) {
   Pose pose = Pose::Identity();
-  pose.linear() = (Eigen::AngleAxisd(rpy.z(), Eigen::Vector3d::UnitZ()) *
-                   Eigen::AngleAxisd(rpy.y(), Eigen::Vector3d::UnitY()) *
-                   Eigen::AngleAxisd(rpy.x(), Eigen::Vector3d::UnitX()))
-                      .toRotationMatrix();
+  pose.linear() =
+      (Eigen::AngleAxisd(rpy.z(), Eigen::Vector3d::UnitZ()) * Eigen::AngleAxisd(rpy.y(), Eigen::Vector3d::UnitY()) *
+       Eigen::AngleAxisd(rpy.x(), Eigen::Vector3d::UnitX()))
+          .toRotationMatrix();
   pose.translation() = xyz;
   return pose;
 }
@@ -36,7 +36,8 @@ Vector3<S> any_orthogonal(const Vector3<S>& n) {
 /// `world_T_optical` of a sensor at `position` that looks along `direction` (need not be unit length).
 ///
 /// The optical frame is REP-103's: z forward, x right, y down. With `roll` = 0 the image's y axis points down
-/// (towards -z of world); `roll` (rad) turns the camera about its own z axis. Looking straight up or down, x is world's x.
+/// (towards -z of world); `roll` (rad) turns the camera about its own z axis. Looking straight up or down, x is world's
+/// x.
 /// @throws InputError when `direction` is zero or not finite
 inline Pose look_along(const Eigen::Vector3d& position, const Eigen::Vector3d& direction, double roll = 0.0) {
   const double length = direction.norm();

@@ -10,8 +10,8 @@
 
 namespace agrisee {
 
-/// One row of cells about a cell: the cells x - outer .. x + outer at y + dy, z + dz; of these x - inner .. x + inner lie
-/// wholly within reach, none where `inner` is negative.
+/// One row of cells about a cell: the cells x - outer .. x + outer at y + dy, z + dz; of these x - inner .. x + inner
+/// lie wholly within reach, none where `inner` is negative.
 struct StencilRow {
   int dy;     ///< cells along y
   int dz;     ///< cells along z

@@ -33,9 +33,7 @@ struct Aabb {
     max = max.cwiseMax(p);
   }
   /// Distance (m) from p to the box, 0 inside.
-  double distance(const Eigen::Vector3d& p) const {
-    return (min - p).cwiseMax(p - max).cwiseMax(0.0).norm();
-  }
+  double distance(const Eigen::Vector3d& p) const { return (min - p).cwiseMax(p - max).cwiseMax(0.0).norm(); }
 };
 
 /// The cluster frame's origin {R} in world: the corner of the scan volume that is lowest, leftmost and farthest as seen

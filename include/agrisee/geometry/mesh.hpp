@@ -11,7 +11,7 @@ namespace agrisee {
 
 /// Indexed triangles; counter-clockwise seen from outside.
 struct Mesh {
-  std::vector<Eigen::Vector3f> vertices;             ///< metres
+  std::vector<Eigen::Vector3f> vertices;                ///< metres
   std::vector<std::array<std::uint32_t, 3>> triangles;  ///< indices into `vertices`
 };
 

@@ -17,9 +17,9 @@ constexpr double kTouch = 1e-6;
 /// A flat-ended solid cylinder (m) whose axis points anywhere.
 struct OrientedCylinder {
   Eigen::Vector3d center = Eigen::Vector3d::Zero();  ///< m
-  Eigen::Vector3d axis = Eigen::Vector3d::UnitZ();  ///< unit
-  double radius = 0.0;                              ///< m
-  double height = 0.0;  ///< full height, half of it on either side of the centre
+  Eigen::Vector3d axis = Eigen::Vector3d::UnitZ();   ///< unit
+  double radius = 0.0;                               ///< m
+  double height = 0.0;                               ///< full height, half of it on either side of the centre
 };
 
 /// A capsule that encloses a cylinder: on the same axis, its segment half a radius short of either end, so that it is

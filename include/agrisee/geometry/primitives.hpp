@@ -18,14 +18,14 @@ namespace agrisee {
 /// An axis-aligned solid box (m).
 struct Box {
   Eigen::Vector3d center = Eigen::Vector3d::Zero();  ///< m
-  Eigen::Vector3d size = Eigen::Vector3d::Zero();  ///< full edge lengths
+  Eigen::Vector3d size = Eigen::Vector3d::Zero();    ///< full edge lengths
 };
 
 /// A solid cylinder (m) whose axis is parallel to world's z.
 struct Cylinder {
   Eigen::Vector3d center = Eigen::Vector3d::Zero();  ///< m
   double radius = 0.0;                               ///< m
-  double height = 0.0;  ///< full height, half of it on either side of the centre
+  double height = 0.0;                               ///< full height, half of it on either side of the centre
 };
 
 /// A space that neither arm nor sensor may enter; it does not hide anything from the sensor.

@@ -14,7 +14,7 @@ enum class ObjectClass { fruit, stem, leaf, other };
 
 /// One object of a scene; its mesh is in world coordinates.
 struct Object {
-  int id = 0;  ///< unique and positive for fruit, 0 for everything else
+  int id = 0;                            ///< unique and positive for fruit, 0 for everything else
   ObjectClass cls = ObjectClass::other;  ///< what it is
   Mesh mesh;                             ///< world
 };

@@ -21,9 +21,9 @@ inline Eigen::Vector3d area_normal(const Triangle& t) {
 
 /// Where a ray meets the plane of a triangle.
 struct TriangleHit {
-  double t;     ///< distance in units of the ray's direction
-  double u;     ///< barycentric coordinates: the point is (1 - u - v) a + u b + v c
-  double v;     ///< the other of them
+  double t;  ///< distance in units of the ray's direction
+  double u;  ///< barycentric coordinates: the point is (1 - u - v) a + u b + v c
+  double v;  ///< the other of them
 };
 
 /// A triangle as seen from a point: what all rays from one origin share.
@@ -35,11 +35,11 @@ struct TriangleHit {
 /// Exact to 1e-6 of a triangle's size while that is above 1e-5 of its distance from the origin (a float's own limit is
 /// near).
 struct SeenTriangle {
-  Eigen::Vector3d bc;          ///< cross product of corners b and c, relative to the origin
-  Eigen::Vector3d ca;          ///< of c and a
-  Eigen::Vector3d ab;          ///< of a and b
-  Eigen::Vector3d normal;      ///< area_normal
-  double offset;               ///< of the plane: a . normal
+  Eigen::Vector3d bc;      ///< cross product of corners b and c, relative to the origin
+  Eigen::Vector3d ca;      ///< of c and a
+  Eigen::Vector3d ab;      ///< of a and b
+  Eigen::Vector3d normal;  ///< area_normal
+  double offset;           ///< of the plane: a . normal
 
   SeenTriangle() = default;
   /// As seen from `origin` (m).

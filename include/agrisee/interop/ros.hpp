@@ -51,18 +51,18 @@ struct InRos1<Info, std::void_t<decltype(std::declval<const Info&>().K)>> : std:
 
 }  // namespace detail
 
-/// The points of a `sensor_msgs/PointCloud2` where they lie: a cloud (see core/traits.hpp) of scalar S whose fields x, y
-/// and z are all float32 or all float64, at any offsets, strides and byte order. Other fields are passed over. Points that are
-/// not finite (a sensor's pixels without return) stay where they are, as in every cloud of the library: indices are those
-/// of the message, row by row, and each stage leaves such points out.
+/// The points of a `sensor_msgs/PointCloud2` where they lie: a cloud (see core/traits.hpp) of scalar S whose fields x,
+/// y and z are all float32 or all float64, at any offsets, strides and byte order. Other fields are passed over. Points
+/// that are not finite (a sensor's pixels without return) stay where they are, as in every cloud of the library:
+/// indices are those of the message, row by row, and each stage leaves such points out.
 ///
 /// Holds a reference: the message has to live, unchanged, as long as the view.
 template <typename Message, typename S = float>
 class PointCloud2View {
  public:
   /// O(number of fields).
-  /// @throws InputError for a message without x, y or z, of another datatype, whose fields exceed the point, whose points
-  /// exceed the row, whose data are shorter than its rows, or with more points than an Index counts
+  /// @throws InputError for a message without x, y or z, of another datatype, whose fields exceed the point, whose
+  /// points exceed the row, whose data are shorter than its rows, or with more points than an Index counts
   explicit PointCloud2View(const Message& message) : data_(message.data.data()) {
     const std::uint64_t width = message.width, height = message.height, step = message.point_step,
                         row = message.row_step;
@@ -85,8 +85,7 @@ class PointCloud2View {
       const auto has_name = [&](const auto& f) { return f.name == name; };
       const auto field = std::find_if(message.fields.begin(), message.fields.end(), has_name);
       check(field != message.fields.end(), "no field '" + name + "'");
-      check(std::count_if(message.fields.begin(), message.fields.end(), has_name) == 1,
-            "field '" + name + "' twice");
+      check(std::count_if(message.fields.begin(), message.fields.end(), has_name) == 1, "field '" + name + "' twice");
       const int datatype = field->datatype;
       check(datatype == kFloat32 || datatype == kFloat64,
             "field '" + name + "' is neither FLOAT32 nor FLOAT64 but type " + std::to_string(datatype));
@@ -106,8 +105,7 @@ class PointCloud2View {
   std::size_t size() const { return size_; }
   /// Point i < size() (m, in the frame that the message's header names).
   Vector3<S> point(std::size_t i) const {
-    const std::size_t start =
-        gapless_ ? i * point_step_ : (i / width_) * row_step_ + (i % width_) * point_step_;
+    const std::size_t start = gapless_ ? i * point_step_ : (i / width_) * row_step_ + (i % width_) * point_step_;
     return {read(start + offsets_[0]), read(start + offsets_[1]), read(start + offsets_[2])};
   }
 

@@ -22,13 +22,13 @@ struct ScanHistory {
   std::vector<Eigen::Vector3f> frontier;  ///< points where a planner would have looked on (m, world)
 };
 
-/// The report as HTML: a page of its own that loads nothing, from a disk or from a network. It shows the cloud by fruit,
-/// what was left over, the merged cloud, the frontier, fitted bodies, pose frames, sensors, path and arm view by view,
-/// a table of fruit, curves over the views, times and parameters.
+/// The report as HTML: a page of its own that loads nothing, from a disk or from a network. It shows the cloud by
+/// fruit, what was left over, the merged cloud, the frontier, fitted bodies, pose frames, sensors, path and arm view by
+/// view, a table of fruit, curves over the views, times and parameters.
 ///
 /// Any result can be reported, also an empty one. Coordinates are stored in 16 bits an axis (an extent of 10 m in steps
-/// of 0.15 mm; larger clouds as single precision). Points that are not finite are left out; of more than `max_points` in
-/// a cloud every k-th is shown, and the page says so. Links are drawn for views whose UR3 joints are known. Equal
+/// of 0.15 mm; larger clouds as single precision). Points that are not finite are left out; of more than `max_points`
+/// in a cloud every k-th is shown, and the page says so. Links are drawn for views whose UR3 joints are known. Equal
 /// arguments give equal bytes. About 0.6 MB and 18 bytes a point of the consolidated, 11 of the merged cloud.
 /// @throws InputError for a result that write_result would refuse  @throws ParameterError when `max_points` is 0
 std::string report_html(const ScanResult& result, const Workcell& workcell, const RunInfo& info,

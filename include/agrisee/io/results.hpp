@@ -14,14 +14,14 @@ namespace agrisee::io {
 
 /// How a scan was made.
 struct RunInfo {
-  std::string scene;    ///< name of the scene, or file of a ready cloud
-  std::string version;  ///< of AgriSEE
-  std::uint64_t seed = 0;      ///< of everything random
-  int threads = 1;             ///< the result does not depend on it
-  std::string noise = "none";  ///< model of the simulated sensor's noise
+  std::string scene;               ///< name of the scene, or file of a ready cloud
+  std::string version;             ///< of AgriSEE
+  std::uint64_t seed = 0;          ///< of everything random
+  int threads = 1;                 ///< the result does not depend on it
+  std::string noise = "none";      ///< model of the simulated sensor's noise
   std::string preset = "default";  ///< see Parameters::preset
   std::string planner;             ///< see Parameters::planner
-  std::string parameters_json;  ///< all parameters as a JSON value; empty = {}
+  std::string parameters_json;     ///< all parameters as a JSON value; empty = {}
 };
 
 /// What run.json says.

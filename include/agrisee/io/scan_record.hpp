@@ -21,11 +21,11 @@ namespace agrisee::io {
 
 /// What a scan was asked to do, and of what.
 struct ScanTask {
-  std::string scene;    ///< scene file, as an absolute path
-  std::string content;  ///< fingerprint of the scene file and its meshes
-  std::string version;  ///< of AgriSEE
-  std::uint64_t seed = 0;  ///< of everything random
-  int threads = 1;         ///< the result does not depend on it
+  std::string scene;           ///< scene file, as an absolute path
+  std::string content;         ///< fingerprint of the scene file and its meshes
+  std::string version;         ///< of AgriSEE
+  std::uint64_t seed = 0;      ///< of everything random
+  int threads = 1;             ///< the result does not depend on it
   std::string noise = "none";  ///< model of the simulated sensor's noise
   std::string planner;         ///< see Parameters::planner, or greedy
   Parameters parameters;       ///< all of them
@@ -36,10 +36,10 @@ struct ScanTask {
 
 /// A view as it was taken.
 struct ViewRecord {
-  sensor::DepthFrame frame;                         ///< as measured
-  Pose world_T_optical_asked = Pose::Identity();    ///< where the planner wanted the sensor
-  Pose world_T_optical = Pose::Identity();          ///< where the robot says that it was
-  std::optional<Joints> joints;                     ///< asked for; absent without an arm
+  sensor::DepthFrame frame;                       ///< as measured
+  Pose world_T_optical_asked = Pose::Identity();  ///< where the planner wanted the sensor
+  Pose world_T_optical = Pose::Identity();        ///< where the robot says that it was
+  std::optional<Joints> joints;                   ///< asked for; absent without an arm
 };
 
 /// Write scan.json. @throws FileError when it cannot be written

@@ -14,7 +14,7 @@ namespace agrisee::io {
 /// A scene file in memory.
 struct SceneFile {
   Workcell workcell;  ///< all but the objects
-  Scene scene;  ///< meshes in world coordinates; object i is the i-th of the file
+  Scene scene;        ///< meshes in world coordinates; object i is the i-th of the file
 };
 
 /// Read a scene and its meshes (relative to the scene file; a mesh named several times is read once).

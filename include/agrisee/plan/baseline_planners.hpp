@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// @file
-/// Baselines that do not look at what they see: a fixed ring of well spread reachable views, and random reachable views.
+/// Baselines that do not look at what they see: a fixed ring of well spread reachable views, and random reachable
+/// views.
 #pragma once
 
 #include <agrisee/core/random.hpp>
@@ -8,8 +9,8 @@
 
 namespace agrisee::plan {
 
-/// Views chosen once, before the first: `count` reachable directions, each as far as possible from those before it, beginning
-/// with the one nearest to frontal (farthest-point sampling); taken in the order of the shortest next move.
+/// Views chosen once, before the first: `count` reachable directions, each as far as possible from those before it,
+/// beginning with the one nearest to frontal (farthest-point sampling); taken in the order of the shortest next move.
 class FixedPlanner : public Planner {
  public:
   /// `count` views of the middle of `volume`, about the line from `eye`; distances from `band`.

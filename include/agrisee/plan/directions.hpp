@@ -42,9 +42,8 @@ inline std::optional<ReachableView> first_view(const Aabb& volume, const Eigen::
   const Eigen::Vector3d frontal = frontal_direction(volume, eye);
   std::vector<Eigen::Vector3d> directions = spread_directions(600);
   directions.push_back(frontal);
-  std::stable_sort(directions.begin(), directions.end(), [&](const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
-    return a.dot(frontal) > b.dot(frontal);
-  });
+  std::stable_sort(directions.begin(), directions.end(),
+                   [&](const Eigen::Vector3d& a, const Eigen::Vector3d& b) { return a.dot(frontal) > b.dot(frontal); });
   band.target = volume.center();
   for (const Eigen::Vector3d& d : directions) {
     throw_if_cancelled();

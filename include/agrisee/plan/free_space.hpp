@@ -15,9 +15,9 @@ namespace agrisee::plan {
 
 /// What one view says of a place.
 enum class Sight {
-  unknown,   ///< outside the image, or hidden behind something
-  surface,   ///< the sight line ends there
-  through    ///< it goes on behind
+  unknown,  ///< outside the image, or hidden behind something
+  surface,  ///< the sight line ends there
+  through   ///< it goes on behind
 };
 
 /// What `view` says of the point p (m, world).
@@ -32,8 +32,8 @@ inline Sight sight(const sensor::SurfaceImage& view, const Eigen::Vector3d& p, c
   return measured > z - margin ? Sight::surface : Sight::unknown;
 }
 
-/// True when all sight lines of `view` around the point p (m, world; the 3 x 3 cells about it) went through: the surfaces'
-/// borders, where a cell sees both sides, refute nothing.
+/// True when all sight lines of `view` around the point p (m, world; the 3 x 3 cells about it) went through: the
+/// surfaces' borders, where a cell sees both sides, refute nothing.
 inline bool refutes(const sensor::SurfaceImage& view, const Eigen::Vector3d& p, const FreeSpaceParameters& parameters) {
   double z = 0.0;
   const std::ptrdiff_t c = view.cell(p, &z);

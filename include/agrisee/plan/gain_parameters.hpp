@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// @file
-/// Parameters of the default planner (gain_planner.hpp) and of what it expects to see (expected_surface.hpp), apart from
-/// them so that programs that only read parameters compile fast. Metres, seconds, radians.
+/// Parameters of the default planner (gain_planner.hpp) and of what it expects to see (expected_surface.hpp), apart
+/// from them so that programs that only read parameters compile fast. Metres, seconds, radians.
 #pragma once
 
 #include <agrisee/core/error.hpp>

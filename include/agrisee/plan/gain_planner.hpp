@@ -270,7 +270,7 @@ class GainPlanner : public Planner {
   Eigen::Vector3d eye_;
   ExpectedSurface model_;
   std::vector<Candidate> candidates_;
-  Aabb extent_;  // of the bodies when the candidates were made
+  Aabb extent_;                 // of the bodies when the candidates were made
   std::vector<Scored> ranked_;  // views worth taking after the last frame, best first; empty before they are looked at
   std::vector<ViewRequest> refused_;
   std::optional<ViewRequest> last_;

@@ -12,18 +12,19 @@ namespace agrisee::plan {
 
 /// Parameters of the free-space tests.
 struct FreeSpaceParameters {
-  double margin = 0.006;       ///< a sight line must end this much behind a place to have gone through it (m), and three
-                               ///< standard deviations of the cells' depths (SurfaceImage::noise) where these are more
-  double min_fill = 0.85;      ///< cells without return are evidence when surfaces return at least this share of pixels
+  double margin = 0.006;   ///< a sight line must end this much behind a place to have gone through it (m), and three
+                           ///< standard deviations of the cells' depths (SurfaceImage::noise) where these are more
+  double min_fill = 0.85;  ///< cells without return are evidence when surfaces return at least this share of pixels
   double max_incidence = deg(50);  ///< bodies are tested where a surface would be seen at less than this (rad)
-  int min_refuting = 2;        ///< a surfel goes when this many views looked through it and no more than half saw it
+  int min_refuting = 2;  ///< a surfel goes when this many views looked through it and no more than half saw it
   double max_contradiction = 0.3;  ///< a view is discarded when it contradicts more than this share of what others saw
 
   /// @throws ParameterError
   void check() const {
     check_parameter(margin > 0, "free_space.margin", "positive", margin);
     check_parameter(min_fill >= 0, "free_space.min_fill", ">= 0", min_fill);
-    check_parameter(max_incidence > 0 && max_incidence < kPi / 2, "free_space.max_incidence", "in (0, pi/2)", max_incidence);
+    check_parameter(max_incidence > 0 && max_incidence < kPi / 2, "free_space.max_incidence", "in (0, pi/2)",
+                    max_incidence);
     check_parameter(min_refuting >= 1, "free_space.min_refuting", ">= 1", min_refuting);
     check_parameter(max_contradiction > 0 && max_contradiction <= 1, "free_space.max_contradiction", "in (0, 1]",
                     max_contradiction);

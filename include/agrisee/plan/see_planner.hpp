@@ -8,8 +8,8 @@
 
 namespace agrisee::plan {
 
-/// The paper's planner. A proposal out of reach is replaced by the reachable view of the same point whose direction is nearest
-/// (within `kMaxTurn`); where there is none the controller's own fallbacks follow.
+/// The paper's planner. A proposal out of reach is replaced by the reachable view of the same point whose direction is
+/// nearest (within `kMaxTurn`); where there is none the controller's own fallbacks follow.
 class SeePlanner : public Planner {
  public:
   /// Of a volume to scan, seen from the side of `eye`; distances from `band`.
@@ -84,7 +84,8 @@ class SeePlanner : public Planner {
       for (int k = 0; k < 8; ++k) {
         const double around = kTwoPi * k / 8.0;
         request.direction =
-            (std::cos(turn) * p.direction + std::sin(turn) * (std::cos(around) * a + std::sin(around) * b)).normalized();
+            (std::cos(turn) * p.direction + std::sin(turn) * (std::cos(around) * a + std::sin(around) * b))
+                .normalized();
         const auto view = reach(request, current);
         if (view && (!nearest || view->move_time < nearest->move_time)) nearest = view;
       }

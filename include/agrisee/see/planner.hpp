@@ -147,7 +147,7 @@ class Planner {
   int views_taken() const { return static_cast<int>(sensors_.size()); }
   /// The merged points, their views, densities and classes.
   const DensityMap<float>& map() const { return map_; }
-  const Cloud& cloud() const { return map_.cloud(); }        ///< the points merged so far
+  const Cloud& cloud() const { return map_.cloud(); }       ///< the points merged so far
   const Parameters& parameters() const { return params_; }  ///< as given
   /// Frontiers that have been given up: they count as outliers from then on. Ascending.
   Indices given_up() const {

@@ -14,7 +14,8 @@ struct DepthFrame {
 
   /// Depth z (m) of column u of row v.
   float at(int u, int v) const {
-    return depth[static_cast<std::size_t>(v) * static_cast<std::size_t>(intrinsics.width) + static_cast<std::size_t>(u)];
+    return depth[static_cast<std::size_t>(v) * static_cast<std::size_t>(intrinsics.width) +
+                 static_cast<std::size_t>(u)];
   }
   /// True when a depth counts as a return.
   static bool valid(float z) { return z > 0.0f && std::isfinite(z); }

@@ -26,7 +26,7 @@ struct NoiseModel {
     rough      ///< a harder sensor: correlated noise, range bias, many flying pixels, a wrong pose
   };
   Kind kind = Kind::none;  ///< which
-  double sigma = 0.0;  ///< m; of `gaussian` alone
+  double sigma = 0.0;      ///< m; of `gaussian` alone
 
   /// @throws ParameterError
   void check() const { check_parameter(std::isfinite(sigma) && sigma >= 0.0, "noise sigma", "0 or more", sigma); }

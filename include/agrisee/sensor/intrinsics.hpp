@@ -12,21 +12,19 @@ namespace agrisee::sensor {
 
 /// A pinhole without distortion. Pixel (u, v) is column u of row v, its centre at integer coordinates.
 struct Intrinsics {
-  int width = 0;                     ///< pixels
-  int height = 0;                    ///< pixels
-  double fx = 0.0;                   ///< focal length along u, pixels
-  double fy = 0.0;                   ///< along v
-  double cx = 0.0;                   ///< principal point, pixels
-  double cy = 0.0;                   ///< its row
+  int width = 0;    ///< pixels
+  int height = 0;   ///< pixels
+  double fx = 0.0;  ///< focal length along u, pixels
+  double fy = 0.0;  ///< along v
+  double cx = 0.0;  ///< principal point, pixels
+  double cy = 0.0;  ///< its row
 
   /// Number of pixels.
   std::size_t size() const { return static_cast<std::size_t>(width) * static_cast<std::size_t>(height); }
   /// Point on the ray of a pixel at z = 1 in the optical frame (z forward, x right, y down).
   Eigen::Vector3d ray(double u, double v) const { return {(u - cx) / fx, (v - cy) / fy, 1.0}; }
   /// Pixel coordinates of a point in the optical frame with z > 0.
-  Eigen::Vector2d project(const Eigen::Vector3d& p) const {
-    return {fx * p.x() / p.z() + cx, fy * p.y() / p.z() + cy};
-  }
+  Eigen::Vector2d project(const Eigen::Vector3d& p) const { return {fx * p.x() / p.z() + cx, fy * p.y() / p.z() + cy}; }
 };
 
 /// Intrinsics from full opening angles (rad) over the whole image, the principal point in its middle.

@@ -14,8 +14,8 @@ namespace agrisee::sensor {
 /// incidence.
 struct L515 {
   Intrinsics intrinsics = intrinsics_from_fov(1024, 768, deg(70), deg(55));  ///< of the depth image
-  double range_min = 0.25;         ///< shortest distance along the ray (m)
-  double range_max = 9.0;          ///< longest distance along the ray (m)
+  double range_min = 0.25;                                                   ///< shortest distance along the ray (m)
+  double range_max = 9.0;                                                    ///< longest distance along the ray (m)
   double max_incidence = deg(80);  ///< largest angle between ray and surface normal that still returns (rad)
 
   /// @throws ParameterError naming the field

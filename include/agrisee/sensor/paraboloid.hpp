@@ -53,8 +53,9 @@ struct ParaboloidSums {
   /// False when degenerate.
   template <int N>
   bool solve(Eigen::Matrix<double, 6, 1>& x, double* variance) const {
-    static constexpr std::size_t kMonomial[6][6] = {{0, 1, 2, 3, 4, 5},   {1, 3, 4, 6, 7, 8},    {2, 4, 5, 7, 8, 9},
-                                                    {3, 6, 7, 10, 11, 12}, {4, 7, 8, 11, 12, 13}, {5, 8, 9, 12, 13, 14}};
+    static constexpr std::size_t kMonomial[6][6] = {{0, 1, 2, 3, 4, 5},    {1, 3, 4, 6, 7, 8},
+                                                    {2, 4, 5, 7, 8, 9},    {3, 6, 7, 10, 11, 12},
+                                                    {4, 7, 8, 11, 12, 13}, {5, 8, 9, 12, 13, 14}};
     Eigen::Matrix<double, N, N> a;
     for (int i = 0; i < N; ++i)
       for (int j = 0; j < N; ++j) a(i, j) = m[kMonomial[i][j]];

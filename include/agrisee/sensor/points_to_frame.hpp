@@ -8,8 +8,8 @@
 
 namespace agrisee::sensor {
 
-/// Each point (m, optical frame: z forward, x right, y down) goes to the pixel that sees it; the nearest wins. Points behind the
-/// sensor, outside the image or not finite are left out.
+/// Each point (m, optical frame: z forward, x right, y down) goes to the pixel that sees it; the nearest wins. Points
+/// behind the sensor, outside the image or not finite are left out.
 /// @throws ParameterError for intrinsics without pixels
 template <typename C>
 DepthFrame frame_from_points(const C& points, const Intrinsics& intrinsics) {
@@ -24,7 +24,8 @@ DepthFrame frame_from_points(const C& points, const Intrinsics& intrinsics) {
     const Eigen::Vector2d uv = intrinsics.project(p);
     const double u = std::floor(uv.x() + 0.5), v = std::floor(uv.y() + 0.5);
     if (!(u >= 0 && v >= 0 && u < intrinsics.width && v < intrinsics.height)) continue;
-    float& z = frame.depth[static_cast<std::size_t>(v) * static_cast<std::size_t>(intrinsics.width) + static_cast<std::size_t>(u)];
+    float& z = frame.depth[static_cast<std::size_t>(v) * static_cast<std::size_t>(intrinsics.width) +
+                           static_cast<std::size_t>(u)];
     if (z == 0.0f || static_cast<float>(p.z()) < z) z = static_cast<float>(p.z());
   }
   return frame;

@@ -2,12 +2,12 @@
 /// @file
 /// From a noisy depth image to the surface behind it: cells of a few pixels, each with depth, normal and uncertainty.
 ///
-/// A depth sensor measures far more densely (0.5 mm at arm's length) than a fruit's surface needs, and its error lies along
-/// the ray. So the image is first divided into blocks of b x b pixels of about the wanted spacing; each block keeps the mean
-/// of those of its pixels that agree with its median. A paraboloid is then fitted around each block, over a window that
-/// grows with the noise that the blocks show among themselves, with weights that leave out what lies beyond a depth edge
-/// (iteratively reweighted least squares, Tukey's biweight). The fit's value, slope and covariance at the block are its
-/// depth, normal and sigma. Cost: linear in the pixels, and in the blocks times the window.
+/// A depth sensor measures far more densely (0.5 mm at arm's length) than a fruit's surface needs, and its error lies
+/// along the ray. So the image is first divided into blocks of b x b pixels of about the wanted spacing; each block
+/// keeps the mean of those of its pixels that agree with its median. A paraboloid is then fitted around each block,
+/// over a window that grows with the noise that the blocks show among themselves, with weights that leave out what lies
+/// beyond a depth edge (iteratively reweighted least squares, Tukey's biweight). The fit's value, slope and covariance
+/// at the block are its depth, normal and sigma. Cost: linear in the pixels, and in the blocks times the window.
 #pragma once
 
 #include <agrisee/core/parallel.hpp>
@@ -154,8 +154,8 @@ inline SurfaceImage reconstruct_surface(const DepthFrame& frame, const Pose& wor
   constexpr double kOfMedians = 1.2533;  // sqrt(pi / 2): a median's standard deviation over that of a mean
   out.noise = (b > 1 ? kOfMedians : 1.0) * block_noise;
   const double wanted = 4.0 * block_noise * block_noise / (parameters.target_sigma * parameters.target_sigma);
-  const int w = std::clamp(static_cast<int>(std::ceil(0.5 * (std::sqrt(wanted) - 1.0))), std::min(2, parameters.max_window),
-                           parameters.max_window);
+  const int w = std::clamp(static_cast<int>(std::ceil(0.5 * (std::sqrt(wanted) - 1.0))),
+                           std::min(2, parameters.max_window), parameters.max_window);
   const double steepest = std::tan(parameters.max_incidence);
   const double bend = pitch * pitch / (2.0 * parameters.smallest_radius);
 

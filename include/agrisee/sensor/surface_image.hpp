@@ -14,12 +14,12 @@ namespace agrisee::sensor {
 
 /// Parameters of reconstruct_surface.
 struct SurfaceParameters {
-  double spacing = 0.0022;          ///< wanted distance between cells on the object (m)
-  int max_block = 8;                ///< largest block edge (pixels)
-  double target_sigma = 0.0004;     ///< windows grow until a cell's standard deviation should reach this (m)
-  int max_window = 6;               ///< largest half width of a window (cells)
-  double smallest_radius = 0.012;   ///< smallest radius of curvature to be kept (m)
-  double max_incidence = deg(81);   ///< cells seen at more than this angle are dropped (rad)
+  double spacing = 0.0022;         ///< wanted distance between cells on the object (m)
+  int max_block = 8;               ///< largest block edge (pixels)
+  double target_sigma = 0.0004;    ///< windows grow until a cell's standard deviation should reach this (m)
+  int max_window = 6;              ///< largest half width of a window (cells)
+  double smallest_radius = 0.012;  ///< smallest radius of curvature to be kept (m)
+  double max_incidence = deg(81);  ///< cells seen at more than this angle are dropped (rad)
 
   /// @throws ParameterError
   void check() const {
@@ -28,7 +28,8 @@ struct SurfaceParameters {
     check_parameter(target_sigma > 0, "surface.target_sigma", "positive", target_sigma);
     check_parameter(max_window >= 1 && max_window <= 20, "surface.max_window", "in [1, 20]", max_window);
     check_parameter(smallest_radius > 0, "surface.smallest_radius", "positive", smallest_radius);
-    check_parameter(max_incidence > 0 && max_incidence < kPi / 2, "surface.max_incidence", "in (0, pi/2)", max_incidence);
+    check_parameter(max_incidence > 0 && max_incidence < kPi / 2, "surface.max_incidence", "in (0, pi/2)",
+                    max_incidence);
   }
   /// f(name, field) for every field.
   template <typename P, typename F>
@@ -44,15 +45,15 @@ struct SurfaceParameters {
 
 /// The surface seen in one frame: samples of it, and an image of cells with their raw depths.
 struct SurfaceImage {
-  Intrinsics intrinsics;                   ///< of the cells: pixel (u, v) is cell (u, v)
+  Intrinsics intrinsics;                    ///< of the cells: pixel (u, v) is cell (u, v)
   Pose world_T_optical = Pose::Identity();  ///< of the sensor
-  std::vector<float> depth;                ///< raw depth z of each cell (m), 0 = no return; inside the volume and out
-  std::vector<Eigen::Vector3f> points;     ///< surface points (m, world), in the order of the cells
-  std::vector<Eigen::Vector3f> normals;    ///< their unit normals, towards the sensor (world)
-  std::vector<float> sigma;                ///< their standard deviations along the ray (m), positive
-  std::size_t points_in = 0;               ///< pixels that returned a point inside the volume
-  double noise = 0.0;                      ///< standard deviation of the cells' raw depths (m)
-  double fill = 0.0;                       ///< median share of valid pixels in cells with any
+  std::vector<float> depth;                 ///< raw depth z of each cell (m), 0 = no return; inside the volume and out
+  std::vector<Eigen::Vector3f> points;      ///< surface points (m, world), in the order of the cells
+  std::vector<Eigen::Vector3f> normals;     ///< their unit normals, towards the sensor (world)
+  std::vector<float> sigma;                 ///< their standard deviations along the ray (m), positive
+  std::size_t points_in = 0;                ///< pixels that returned a point inside the volume
+  double noise = 0.0;                       ///< standard deviation of the cells' raw depths (m)
+  double fill = 0.0;                        ///< median share of valid pixels in cells with any
 
   /// Cell at which a point in world is seen, or -1 when it is outside the image or behind the sensor.
   std::ptrdiff_t cell(const Eigen::Vector3d& p_world, double* z = nullptr) const {

@@ -22,11 +22,11 @@ inline std::string file_name(std::string name) {
 
 /// Which scan. The seed of noise and planner is the trial, so that `agrisee scan --seed TRIAL` repeats it.
 struct Cell {
-  std::string scene;  ///< name of the scene
+  std::string scene;               ///< name of the scene
   std::string preset = "default";  ///< `default` or `paper`
-  std::string planner = "gain";  ///< of the preset, or asked for
-  std::string noise = "none";    ///< model of the simulated sensor's noise, as in scan --noise
-  int trial = 1;                 ///< from 1
+  std::string planner = "gain";    ///< of the preset, or asked for
+  std::string noise = "none";      ///< model of the simulated sensor's noise, as in scan --noise
+  int trial = 1;                   ///< from 1
 
   /// f(name, field) for every field.
   template <typename P, typename F>

@@ -14,16 +14,16 @@ namespace agrisee::study {
 
 /// A row of the paper's table "Analysis of AgriSEE scanning and SOR filtering".
 struct PaperScanning {
-  int total;             ///< fruit
-  int hidden;            ///< how many of them are hidden
-  int views;             ///< taken
-  int merged;            ///< points before SOR
-  int filtered;          ///< and after
-  double seconds;        ///< computation time
-  double scanned;        ///< scanned percentage (%)
-  double precision;      ///< %
-  double recall;         ///< %
-  double f1;             ///< %
+  int total;         ///< fruit
+  int hidden;        ///< how many of them are hidden
+  int views;         ///< taken
+  int merged;        ///< points before SOR
+  int filtered;      ///< and after
+  double seconds;    ///< computation time
+  double scanned;    ///< scanned percentage (%)
+  double precision;  ///< %
+  double recall;     ///< %
+  double f1;         ///< %
 };
 
 /// A row of the paper's table "RG and DBSCAN Evaluation".

@@ -18,9 +18,9 @@ namespace agrisee::study {
 
 /// A scene, ready for any number of cells: what it looks like, what is true of it, what can be seen of it.
 struct Subject {
-  std::string name;         ///< of the scene
-  std::string fingerprint;  ///< of the scene and whatever else its records depend on
-  Workcell workcell;        ///< of the scene
+  std::string name;                                    ///< of the scene
+  std::string fingerprint;                             ///< of the scene and whatever else its records depend on
+  Workcell workcell;                                   ///< of the scene
   std::shared_ptr<const Truth> truth;                  ///< what evaluation reads
   std::shared_ptr<const Observability> observability;  ///< what the arm can see
 };

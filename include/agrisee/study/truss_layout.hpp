@@ -86,10 +86,10 @@ inline double interpenetration(const PlacedFruit& a, const PlacedFruit& b, doubl
 
 /// Fruit on a rachis.
 struct TrussLayout {
-  std::vector<PlacedFruit> fruits;      ///< those in front from top to bottom, then the hidden ones
-  std::vector<int> hosts;               ///< for each hidden fruit the one it hides behind
-  std::vector<Eigen::Vector3d> rachis;  ///< polyline from top to bottom
-  double rachis_radius = 0.0025;        ///< m
+  std::vector<PlacedFruit> fruits;                ///< those in front from top to bottom, then the hidden ones
+  std::vector<int> hosts;                         ///< for each hidden fruit the one it hides behind
+  std::vector<Eigen::Vector3d> rachis;            ///< polyline from top to bottom
+  double rachis_radius = 0.0025;                  ///< m
   Eigen::Vector3d eye = Eigen::Vector3d::Zero();  ///< where the hidden fruit must not be seen from (m)
 
   /// Largest interpenetration of any two fruit (m); negative when all are apart.
