@@ -114,7 +114,7 @@ void add_texts(std::vector<Seed>& seeds, const fs::path& folder) {
   scene.workcell.scan_volume.extend(Eigen::Vector3d(0.1, 0.6, 0.3));
   scene.workcell.keep_out.push_back({"box", Box{{0, 0, -1}, {1, 1, 1}}});
   scene.workcell.keep_out.push_back({"post", Cylinder{{0, 1, 0}, 0.1, 1.0}});
-  scene.scene.objects.push_back({1, ObjectClass::fruit, seed_mesh()});
+  scene.scene.objects.push_back({1, study::ObjectClass::fruit, seed_mesh()});
   io::write_scene(folder / "scene.yaml", scene);
   seeds.push_back({"scene", "written", bytes_of(folder / "scene.yaml")});
   seeds.push_back(

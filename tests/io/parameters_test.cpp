@@ -7,6 +7,7 @@
 #include <unistd.h>
 
 #include "catch.hpp"
+#include "support/says.hpp"
 
 using namespace agrisee;
 
@@ -57,18 +58,82 @@ TEST_CASE("mistakes are named with file, line and key") {
   CHECK(error_of("sor:\n  mean_q: 3\n").find(".yaml:2: unknown key 'sor.mean_q'") != std::string::npos);
   CHECK(error_of("max_views: lots\n").find(".yaml:1: 'max_views'") != std::string::npos);
   CHECK(error_of("sor: 3\n").find("'sor' must be a map") != std::string::npos);
-  CHECK(error_of("normals: {radius: -1}\n").find("radius must be positive") != std::string::npos);
   CHECK(error_of("icp: {kernel: soft}\n").find("kernel") != std::string::npos);
   CHECK(error_of("preset: other\n").find("preset") != std::string::npos);
   CHECK(error_of("a: [1, 2\n").find("not YAML") != std::string::npos);
   CHECK_THROWS_AS(io::read_parameters("no_such_file.yaml"), FileError);
 }
 
+TEST_CASE("values out of their range are named with file, line and the whole key") {
+  const auto refused = [](const std::string& text, const std::string& message) {
+    CHECK_THAT(error_of(text), test::says(".yaml" + message));
+  };
+  refused("max_views: 0\n", ":1: 'max_views' must be at least 1, got 0");
+  refused("planner: best\n", ":1: 'planner' must be gain, see, fixed or random, got best");
+  refused("max_views: 3\npreset: other\n", ":2: 'preset' must be default or paper, got other");
+  refused("max_views: 3\n\ngain:\n  dwell: 2\n  min_gain: -0.5\n",
+          ":5: 'gain.min_gain' must be zero or more, got -0.5");
+  refused("gain:\n  expected: {voxel: 0}\n", ":2: 'gain.expected.voxel' must be positive, got 0");
+  refused("split:\n  bodies:\n    fit: {noise: 0}\n", ":3: 'split.bodies.fit.noise' must be positive, got 0");
+  refused("split:\n  growing:\n    radius: 0\n", ":3: 'split.growing.radius' must be positive");
+  refused("see: {radius: -1}\n", ":1: 'see.radius' must be ");
+  refused("normals:\n  radius: -1\n", ":2: 'normals.radius' must be positive, got -1");
+  refused("free_space: {margin: 0}\n", ":1: 'free_space.margin' must be positive, got 0");
+  refused("icp: {degeneracy: 1}\n", ":1: 'icp.degeneracy' must be at least 0 and below 1, got 1");
+  refused("picking:\n  contact: 0.2\n", ":2: 'picking.contact' must be at most stand_off (0.12), got 0.2");
+  refused("normals: {radius: .inf}\n", ":1: 'normals.radius' must be a finite number, got inf");
+  refused("split:\n  bodies:\n    min_roundness: .nan\n",
+          ":3: 'split.bodies.min_roundness' must be a finite number, got nan");
+}
+
+TEST_CASE("where the key at fault is not in the file, the line is that of what encloses it") {
+  CHECK_THAT(error_of("max_views: 9\nsplit:\n  bodies:\n    radius_min: 0.06\n"),
+             test::says(".yaml:4: 'split.bodies.radius_max' must be from radius_min (0.06) to "));
+  CHECK_THAT(error_of("gain:\n  distance_min: 0.5\n"),
+             test::says(".yaml:2: 'gain.distance' must be at least distance_min (0.5), got 0.38"));
+  Parameters bad;
+  bad.max_views = 0;
+  CHECK_THROWS_WITH(io::read_parameters(write("planner: see\n"), bad), test::says(".yaml: 'max_views' must be "));
+}
+
+TEST_CASE("a whole struct is checked by whole keys") {
+  const auto refused = [](auto&& change, const std::string& message) {
+    Parameters p;
+    change(p);
+    CHECK_THROWS_WITH(p.check(), message);
+  };
+  refused([](Parameters& p) { p.gain.min_gain = -1; }, "gain.min_gain must be zero or more, got -1");
+  refused([](Parameters& p) { p.split.bodies.fit.noise = 0; }, "split.bodies.fit.noise must be positive, got 0");
+  refused([](Parameters& p) { p.normals.radius = 0; }, "normals.radius must be positive, got 0");
+  refused([](Parameters& p) { p.split.growing.radius = 0; }, "split.growing.radius must be positive, got 0");
+  refused([](Parameters& p) { p.planner = ""; }, "planner must be gain, see, fixed or random, got ");
+  refused([](Parameters& p) { p.see.psi = 1000; }, "see.upsilon must be at least psi / 100000 (0.01), got 0.005");
+  refused([](Parameters& p) { p.see.radius = 10; },
+          "see.radius must be above 0 and below (1e8 / rho)^(1/3) (3.6840315), got 10");
+  Parameters p;
+  CHECK_THROWS_WITH(p.expect_radii(0.03, 0.02),
+                    "split.bodies.radius_max must be from radius_min (0.03) to 20 times radius_min (0.6), got 0.02");
+  CHECK_THROWS_WITH(NormalParameters({0.0, 25}).check(), "radius must be positive, got 0");
+  CHECK_NOTHROW(Parameters().check());
+  CHECK_NOTHROW(Parameters::paper().check());
+}
+
+TEST_CASE("what fusion needs is gathered from its stages") {
+  Parameters p;
+  p.surface.spacing = 0.5;
+  p.surfels.separation = 0.25;
+  p.icp.min_matches = 7;
+  p.free_space.margin = 0.125;
+  p.register_views = false;
+  const fuse::FusionParameters f = p.fusion();
+  CHECK(f.surface.spacing == 0.5);
+  CHECK(f.surfels.separation == 0.25);
+  CHECK(f.icp.min_matches == 7);
+  CHECK(f.free_space.margin == 0.125);
+  CHECK_FALSE(f.register_views);
+}
+
 TEST_CASE("parameter files that hold more, or other things, than parameters are refused") {
-  CHECK(error_of("normals: {radius: .inf}\n").find(".yaml:1: 'normals.radius': has to be finite, got .inf") !=
-        std::string::npos);
-  CHECK(error_of("split:\n  bodies:\n    min_roundness: .nan\n").find(".yaml:3: 'split.bodies.min_roundness'") !=
-        std::string::npos);
   CHECK(error_of("max_views: 3\n---\nmax_views: 4\n").find("more than one YAML document") != std::string::npos);
   CHECK(error_of("--- {max_views: 3}\n...\n").empty());
   CHECK_FALSE(error_of(",").empty());
@@ -86,12 +151,12 @@ TEST_CASE("expected radii set what follows from them, and only that") {
   CHECK(p.split.bodies.radius_min == 0.03);
   CHECK(p.split.bodies.radius_max == 0.06);
   CHECK(p.surface.spacing == sensor::SurfaceParameters().spacing);
-  CHECK(p.surfels.separation == SurfelParameters().separation);
+  CHECK(p.surfels.separation == fuse::SurfelParameters().separation);
   p.expect_radii(0.01, 0.02);
   CHECK(p.surface.spacing == Approx(0.5 * sensor::SurfaceParameters().spacing));
   CHECK(p.surface.smallest_radius == Approx(0.006));
-  CHECK(p.surfels.separation == Approx(0.5 * SurfelParameters().separation));
-  CHECK(p.surfels.agreement == Approx(0.5 * SurfelParameters().agreement));
+  CHECK(p.surfels.separation == Approx(0.5 * fuse::SurfelParameters().separation));
+  CHECK(p.surfels.agreement == Approx(0.5 * fuse::SurfelParameters().agreement));
   CHECK(p.split.bodies.fit.noise == Approx(0.5 * FitParameters().noise));
   p.expect_radii(0.02, 0.05);  // it is not cumulative
   CHECK(io::parameters_to_yaml(p) == io::parameters_to_yaml(Parameters{}));

@@ -360,10 +360,10 @@ TEST_CASE("result files that are not right are refused by name") {
 
   require_file_error(spoilt(json, "\"reachable\": true", "\"reachable\": 1"), "[0].reachable: expected true or false",
                      fruits);
-  require_file_error(spoilt(json, "\"no_body\"", "\"no_mind\""), "[1].picking_reason: no reason is called 'no_mind'",
+  require_file_error(spoilt(json, "\"no_body\"", "\"no_mind\""), "[1].picking_reason: unknown picking reason 'no_mind'",
                      fruits);
   require_file_error(spoilt(json, "\"picking_order\": 2", "\"picking_order\": 0"),
-                     "[0].picking_order: has to be positive", fruits);
+                     "[0].picking_order: must be from 1 to 1000000", fruits);
   const std::string text = slurp(folder / "run.json");
   require_file_error(spoilt(text, "\"format_version\": 1", "\"format_version\": 2"), "only version 1", run);
   require_file_error(spoilt(text, "\"seed\"", "\"sown\""), "missing key 'seed'", run);

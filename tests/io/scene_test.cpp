@@ -61,7 +61,7 @@ TEST_CASE("a scene with nothing optional has the documented defaults") {
   CHECK(cell.keep_out.empty());
   REQUIRE(file.scene.objects.size() == 1);
   CHECK(file.scene.objects[0].id == 1);
-  CHECK(file.scene.objects[0].cls == ObjectClass::fruit);
+  CHECK(file.scene.objects[0].cls == study::ObjectClass::fruit);
   CHECK(file.scene.objects[0].mesh.triangles.size() == 4);
   CHECK(folder.read(replaced(kScene, kObjects, "objects: []\n")).scene.objects.empty());
 }
@@ -101,9 +101,9 @@ objects:
   CHECK(volume(file.scene.objects[0].mesh) == Approx(volume(wanted)));
   CHECK(area(file.scene.objects[2].mesh) == Approx(0.25 * area(tetrahedron())));
   CHECK(file.scene.objects[3].mesh.vertices[0].x() >= 1.0f);
-  CHECK(file.scene.objects[1].cls == ObjectClass::stem);
-  CHECK(file.scene.objects[2].cls == ObjectClass::leaf);
-  CHECK(file.scene.objects[3].cls == ObjectClass::other);
+  CHECK(file.scene.objects[1].cls == study::ObjectClass::stem);
+  CHECK(file.scene.objects[2].cls == study::ObjectClass::leaf);
+  CHECK(file.scene.objects[3].cls == study::ObjectClass::other);
 }
 
 TEST_CASE("scenes round trip") {
@@ -115,9 +115,9 @@ TEST_CASE("scenes round trip") {
   file.workcell.start[2] = 0.1 + 0.2;
   file.workcell.sensor.intrinsics = sensor::intrinsics_from_fov(320, 200, deg(69.5), deg(41));
   file.workcell.keep_out = {{"null", Box{{0, 1, 2}, {0.1, 0.2, 0.3}}}, {"pot 1", Cylinder{{3, 2, 1}, 0.25, 0.5}}};
-  file.scene.objects.push_back({0, ObjectClass::leaf, tetrahedron(0.02f)});
-  file.scene.objects.push_back({0, ObjectClass::leaf, tetrahedron(0.03f)});
-  file.scene.objects.push_back({12, ObjectClass::fruit, tetrahedron(0.04f)});
+  file.scene.objects.push_back({0, study::ObjectClass::leaf, tetrahedron(0.02f)});
+  file.scene.objects.push_back({0, study::ObjectClass::leaf, tetrahedron(0.03f)});
+  file.scene.objects.push_back({12, study::ObjectClass::fruit, tetrahedron(0.04f)});
   io::write_scene(folder / "out.yaml", file);
   for (const char* mesh : {"fruit_1.stl", "fruit_12.stl", "leaf_1.stl", "leaf_2.stl"})
     CHECK(std::filesystem::exists(folder / mesh));
@@ -173,19 +173,19 @@ TEST_CASE("values out of range are named") {
   const auto refuse = [&](const std::string& what, const std::string& by, const std::string& error) {
     folder.refuse(replaced(kScene, what, by), error);
   };
-  refuse("id: 1", "id: 0", "objects[0].id: a fruit's id has to be positive, got 0");
+  refuse("id: 1", "id: 0", "objects[0].id: the id of a fruit must be from 1 to 1000000, got 0");
   refuse("id: 1", "id: -2", "objects[0].id");
   refuse("id: 1", "id: 1.5", "'1.5' is not a whole number");
-  refuse("class: fruit", "class: stem", "objects[0].id: has to be 0 for all but fruit, got 1");
-  refuse("class: fruit", "class: apple", "objects[0].class: has to be fruit, stem, leaf or other, got 'apple'");
+  refuse("class: fruit", "class: stem", "objects[0].id: must be 0 for objects other than fruit, got 1");
+  refuse("class: fruit", "class: apple", "objects[0].class: must be fruit, stem, leaf or other, got 'apple'");
   refuse("mesh: fruit.stl", "mesh: none.stl", "objects[0].mesh: " + (folder / "none.stl").string() + ": no such file");
   refuse("mesh: fruit.stl", "mesh: scene.yaml", "objects[0].mesh: ");
-  refuse("mesh: fruit.stl", "mesh: fruit.stl, scale: 0", "objects[0].scale: has to be positive, got 0");
+  refuse("mesh: fruit.stl", "mesh: fruit.stl, scale: 0", "objects[0].scale: must be positive, got 0");
   refuse("mesh: fruit.stl", "mesh: fruit.stl, xyz: [1, 2]", "objects[0].xyz: expected a list of 3 numbers");
   refuse("mesh: fruit.stl", "mesh: fruit.stl, xyz: [1, 2, three]", "objects[0].xyz[2]: 'three' is not a number");
-  refuse("mesh: fruit.stl", "mesh: fruit.stl, xyz: [1, 2, nan]", "has to be finite");
+  refuse("mesh: fruit.stl", "mesh: fruit.stl, xyz: [1, 2, nan]", "must be finite");
   refuse("mesh: fruit.stl", "mesh: [fruit.stl]", "objects[0].mesh: expected a text");
-  refuse("max: [0.1, 0.6, 0.3]", "max: [0.1, 0.4, 0.3]", "scan_volume: min has to be below max, but along y");
+  refuse("max: [0.1, 0.6, 0.3]", "max: [0.1, 0.4, 0.3]", "scan_volume: min must be below max, but along y");
   refuse("max: [0.1, 0.6, 0.3]", "max: [0.1, 0.6, -3]", "along z");
   refuse("name: small", "name: []", "name: expected a text");
   refuse(kObjects, "objects: 3\n", "objects: expected a list");
@@ -200,7 +200,7 @@ TEST_CASE("values out of range are named") {
   folder.refuse(kScene + "keep_out: [{name: a}]\n", "keep_out[0]: expected one of 'box' and 'cylinder'");
   folder.refuse(kScene + "keep_out: [{name: a, box: {center: [0, 0, 0], size: [1, 0, 1]}}]\n", "keep_out[0].box.size");
   folder.refuse(kScene + "keep_out: [{name: a, cylinder: {center: [0, 0, 0], radius: -1, height: 1}}]\n",
-                "keep_out[0].cylinder.radius: has to be positive, got -1");
+                "keep_out[0].cylinder.radius: must be positive, got -1");
 }
 
 TEST_CASE("what is no scene at all is refused") {
@@ -252,7 +252,7 @@ TEST_CASE("scenes that the format cannot express are not written") {
     CHECK_FALSE(std::filesystem::exists(folder / "out.yaml"));
   };
   refuse("fruit without id", [](auto& f) { f.scene.objects[0].id = 0; });
-  refuse("stem with id", [](auto& f) { f.scene.objects[0].cls = ObjectClass::stem; });
+  refuse("stem with id", [](auto& f) { f.scene.objects[0].cls = study::ObjectClass::stem; });
   refuse("two ids", [](auto& f) { f.scene.objects.push_back(f.scene.objects[0]); });
   refuse("no mesh", [](auto& f) { f.scene.objects[0].mesh = {}; });
   refuse("empty volume", [](auto& f) { f.workcell.scan_volume = Aabb(); });

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// @file
-/// Point clouds from files of any of the known formats.
+/// Reads a point cloud from a file of any format that AgriSEE knows (PLY, PCD).
 #pragma once
 
 #include <agrisee/core/cloud.hpp>
@@ -9,27 +9,29 @@
 
 namespace agrisee::io {
 
-/// What a reader does with points of which a coordinate is NaN or infinite.
+/// What a reader does with points that have a NaN or infinite coordinate.
 enum class NonFinite {
   drop,  ///< leave them out and count them
   keep   ///< keep them, so that an organised cloud stays organised
 };
 
-/// What a cloud file holds. Coordinates are single precision, in the file's own frame and unit (metres are expected).
+/// The contents of a cloud file. Coordinates are single precision, in the frame and unit of the file (metres are
+/// expected).
 struct CloudFile {
   Cloud cloud;      ///< points; normals and views where the file has them
-  Labels instance;  ///< one per point where the file has a property `instance` (or else `label`); otherwise empty
+  Labels instance;  ///< one per point, from the property `instance` or else `label`; empty if the file has neither
   std::size_t dropped = 0;  ///< number of points left out because they were not finite
-  std::size_t width = 0;    ///< points a row of an organised cloud, row by row; all points of any other
-  std::size_t height = 0;   ///< rows; 1 when the cloud is not organised
+  std::size_t width = 0;    ///< points per row of an organised cloud; the number of points otherwise
+  std::size_t height = 0;   ///< number of rows; 1 when the cloud is not organised
 };
 
-/// Read a cloud; PLY (ASCII, binary) and PCD (ASCII, binary, compressed) are told apart by their first bytes.
+/// Read a cloud. The first bytes of the file say whether it is PLY (ASCII or binary) or PCD (ASCII, binary or
+/// compressed).
 ///
 /// Coordinates may be of any numeric type. Normals (`nx ny nz` or `normal_x normal_y normal_z`) are scaled to unit
-/// length; unusable ones become zero, which means unknown. Everything else in the file is skipped. Cost: one pass over
-/// the file; memory is bounded by its size whatever its header promises.
-/// @throws FileError for anything that is not such a file
+/// length; normals without a direction become zero, which means unknown. Everything else in the file is skipped.
+/// Cost: one pass over the file. Memory is bounded by the size of the file, even when its header claims more points.
+/// @throws FileError when the file cannot be read, is neither PLY nor PCD, or is malformed
 CloudFile read_cloud(const std::filesystem::path& path, NonFinite non_finite = NonFinite::drop);
 
 }  // namespace agrisee::io

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// @file
-/// Whole files in and out. Every reader and writer of this module goes through here, so that all of them fail alike: a
-/// FileError that begins with the path.
+/// Reads and writes whole files. Every reader and writer of agrisee::io uses these functions, so that all of them
+/// report errors in the same way: a FileError whose message begins with the path.
 #pragma once
 
 #include <agrisee/core/error.hpp>
@@ -18,26 +18,27 @@ namespace agrisee::io {
 
 /// The bytes of a file.
 struct Bytes {
-  std::unique_ptr<char[]> data;  ///< the bytes
-  std::size_t size = 0;          ///< how many
+  std::unique_ptr<char[]> data;  ///< `size` bytes
+  std::size_t size = 0;          ///< number of bytes
 
-  /// Them as text.
+  /// The bytes as text; valid as long as this object.
   std::string_view view() const { return {data.get(), size}; }
 };
 
-/// A regular file (or pipe) that is read from its beginning to its end.
+/// A regular file or a pipe, open for reading from its beginning to its end.
 class InputFile {
  public:
   /// @throws FileError when it is missing, a directory, a device, or cannot be opened
   explicit InputFile(const std::filesystem::path& path);
 
-  /// Bytes of the whole file; none for a pipe and for files of the system, whose length nobody knows.
+  /// Size of the file (bytes); none for a pipe and for system files (as in /proc), whose size is not known beforehand.
   std::optional<std::size_t> size() const { return size_; }
-  /// The next bytes, as many as there are. @return how many, less than `size` at the end of the file alone
-  /// @throws FileError when it cannot be read
+  /// Read the next `size` bytes into `to`. @return the number of bytes read; less than `size` only at the end of the
+  /// file
+  /// @throws FileError when the file cannot be read
   std::size_t read(char* to, std::size_t size);
-  /// All bytes that are left. @param before what comes before them, read already
-  /// @throws FileError when it cannot be read
+  /// Read the rest of the file. @param before bytes that were read already; the result begins with them
+  /// @throws FileError when the file cannot be read
   Bytes rest(Bytes before = {});
 
  private:
@@ -49,22 +50,22 @@ class InputFile {
   std::optional<std::size_t> size_;
 };
 
-/// All bytes of a file, read at once.
-/// @throws FileError as InputFile does
+/// Read a whole file.
+/// @throws FileError when it is missing, a directory, a device, or cannot be read
 Bytes read_bytes(const std::filesystem::path& path);
 
-/// What of a file is left after a power cut. Either way it is complete or absent for whoever looks while the machine
-/// runs, however the process that writes it ends.
+/// Whether a file that was written survives a power cut. In both cases other processes see either the complete file or
+/// no file at all, even when the process that writes it is killed.
 enum class Durability {
-  whenever,  ///< the operating system brings it to the disk in its own time
-  now        ///< it is on the disk when the call returns (fsync); some 30 ms
+  whenever,  ///< the operating system writes the file to the disk when it suits
+  now        ///< the file is on the disk when the call returns (fsync); takes some 30 ms
 };
 
-/// A file that appears under its name only when it is complete: it is written to a temporary beside `path`, then
-/// renamed. Without commit() nothing is left behind and an older file stays as it was.
+/// A file that appears under its name only when it is complete: it is written to a temporary file beside `path`, which
+/// commit() renames. Without commit() the temporary file is removed and an older file of that name stays as it was.
 class AtomicFile {
  public:
-  /// @throws FileError when the temporary cannot be created
+  /// @throws FileError when the temporary file cannot be created
   explicit AtomicFile(const std::filesystem::path& path);
   AtomicFile(const AtomicFile&) = delete;
   AtomicFile& operator=(const AtomicFile&) = delete;
@@ -74,7 +75,7 @@ class AtomicFile {
   void write(const void* data, std::size_t size);
   /// Append text. @throws FileError when it cannot be written
   void write(std::string_view text) { write(text.data(), text.size()); }
-  /// Put the file in its place. @throws FileError when that fails
+  /// Give the file its name. @throws FileError when that fails
   void commit(Durability durability = Durability::whenever);
 
  private:
@@ -85,14 +86,14 @@ class AtomicFile {
   std::unique_ptr<std::FILE, Closer> file_;
 };
 
-/// Write a whole file, atomically. @throws FileError
+/// Write a whole file atomically (see AtomicFile). @throws FileError when it cannot be written
 void write_file(const std::filesystem::path& path, std::string_view bytes,
                 Durability durability = Durability::whenever);
 
-/// Bring what was written to a folder's own files to the disk. @throws FileError when the disk refuses
+/// Flush all files of a folder (not of its subfolders) to the disk with fsync. @throws FileError when that fails
 void make_durable(const std::filesystem::path& folder);
 
-/// Remove the temporaries that killed writers left in a folder; other files are not touched.
+/// Remove the temporary files that killed processes left in a folder (see AtomicFile). Other files are not touched.
 void remove_leftovers(const std::filesystem::path& folder);
 
 /// Throw FileError("<path>: <message>").

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// @file
-/// Triangle meshes from and to files: STL, PLY and OBJ.
+/// Reads triangle meshes from STL, PLY and OBJ files; writes STL and PLY.
 #pragma once
 
 #include <agrisee/geometry/mesh.hpp>
@@ -10,26 +10,25 @@
 
 namespace agrisee::io {
 
-/// What to do with the corners of an STL file, which lists three for every facet.
+/// How the corners of an STL file, which lists three per facet, become vertices.
 enum class StlCorners {
   merge,  ///< corners with exactly the same coordinates become one vertex, in order of first appearance
-  keep    ///< three vertices a facet
+  keep    ///< three separate vertices per facet
 };
 
-/// Read a mesh; the format follows from the first bytes (PLY), else from the extension (.stl, .obj), else from the
-/// content.
+/// Read a mesh. A file is PLY if it begins like one or is called .ply, OBJ if it is called .obj, and STL otherwise.
 ///
-/// STL may be binary (also where it begins with `solid`) or ASCII; PLY as in read_ply; polygons of PLY and OBJ files
-/// become fans of triangles. Coordinates are finite and indices in range, or the file is refused. Degenerate triangles
-/// stay.
-/// @throws FileError when it cannot be read, holds no triangle, or is malformed
+/// STL may be binary (even if it begins with `solid`) or ASCII; PLY may be ASCII or binary. Polygons of PLY and OBJ
+/// files become fans of triangles. A file with coordinates that are not finite or indices out of range is rejected.
+/// Degenerate triangles are kept.
+/// @throws FileError when the file cannot be read, holds no triangle, or is malformed
 Mesh read_mesh(const std::filesystem::path& path, StlCorners corners = StlCorners::merge);
 
-/// Read one format, whatever the file is called. @throws FileError as read_mesh
+/// Read an STL file, whatever its name. @throws FileError as read_mesh
 Mesh read_stl(const std::filesystem::path& path, StlCorners corners = StlCorners::merge);
-/// Read an OBJ file, whatever it is called. @throws FileError as read_mesh
+/// Read an OBJ file, whatever its name. @throws FileError as read_mesh
 Mesh read_obj(const std::filesystem::path& path);
-/// Read a PLY file, whatever it is called. @throws FileError as read_mesh
+/// Read a PLY file, whatever its name. @throws FileError as read_mesh
 Mesh read_ply_mesh(const std::filesystem::path& path);
 
 /// Write a binary STL file with facet normals, atomically.
@@ -38,9 +37,9 @@ Mesh read_ply_mesh(const std::filesystem::path& path);
 void write_stl(const std::filesystem::path& path, const Mesh& mesh);
 
 /// Write a binary little-endian PLY mesh, atomically.
-/// @param path of the file
-/// @param mesh to be written
-/// @param colors one per vertex, or none
+/// @param path the file to write
+/// @param mesh vertices (m) and triangles
+/// @param colors one per vertex, or empty
 /// @throws InputError when an index is out of range, a vertex not finite, or the colours are not one per vertex
 /// @throws FileError when the file cannot be written
 void write_ply_mesh(const std::filesystem::path& path, const Mesh& mesh, const std::vector<Rgb>& colors = {});

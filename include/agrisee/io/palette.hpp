@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// @file
-/// The colours of fruit in files and pictures.
+/// The colours that fruit have in cloud files, pictures and the page of a scan.
 #pragma once
 
 #include <agrisee/core/types.hpp>
@@ -13,8 +13,8 @@ namespace agrisee::io {
 /// Red, green and blue, 0..255.
 using Rgb = std::array<std::uint8_t, 3>;
 
-/// The colour of fruit number `id` (from 1); grey for 0 and below. Ten colours that are easy to tell apart, then the
-/// same ten darker, lighter, darker...
+/// The colour of the fruit `id`, counted from 1; grey for 0 and below. There are ten colours that are easy to tell
+/// apart; after them come darker and lighter versions of the same ten.
 inline Rgb fruit_color(int id) {
   static constexpr Rgb kPalette[] = {{226, 61, 50},  {42, 127, 204}, {245, 166, 35}, {46, 160, 84}, {142, 84, 190},
                                      {23, 178, 188}, {226, 93, 160}, {150, 176, 36}, {155, 96, 62}, {92, 104, 214}};

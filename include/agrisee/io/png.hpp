@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// @file
-/// Colour images, and PNG files of them.
+/// A colour image, and how to write it as a PNG file.
 #pragma once
 
 #include <agrisee/io/palette.hpp>
@@ -10,21 +10,21 @@
 
 namespace agrisee::io {
 
-/// An image, row by row from the top left.
+/// A colour image; pixels are stored row by row from the top left.
 struct Image {
-  int width = 0;            ///< pixels
-  int height = 0;           ///< pixels
-  std::vector<Rgb> pixels;  ///< width * height of them
+  int width = 0;            ///< pixels per row
+  int height = 0;           ///< rows
+  std::vector<Rgb> pixels;  ///< width * height colours
 
-  /// Pixel x of row y, counted from the upper left.
+  /// Pixel x of row y, both counted from the top left.
   const Rgb& at(int x, int y) const {
     return pixels[static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x)];
   }
 };
 
-/// Write an image as PNG, atomically.
-/// @throws InputError when the image is empty or its size and pixels disagree  @throws FileError when it cannot be
-/// written
+/// Write an image as a PNG file, atomically.
+/// @throws InputError when the image is empty, or `pixels` does not have width * height elements
+/// @throws FileError when the file cannot be written
 void write_png(const std::filesystem::path& path, const Image& image);
 
 }  // namespace agrisee::io

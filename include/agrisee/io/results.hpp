@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// @file
-/// The result folder of a scan: views.csv, cloud_raw.ply, cloud.ply, fruits.json, fruits.csv, run.json (docs: result
-/// format). World frame, metres, radians, seconds; quaternions are x y z w. Every number is printed so that it reads
-/// back exactly, and every file appears complete or not at all.
+/// Writes and reads the result folder of a scan: views.csv, cloud_raw.ply, cloud.ply, fruits.json, fruits.csv and
+/// run.json (docs/formats.md describes them). World frame, metres, radians, seconds; quaternions are x y z w. Numbers
+/// are printed so that they read back exactly. Files are written atomically: each is complete or absent.
 #pragma once
 
 #include <agrisee/result.hpp>
@@ -12,71 +12,82 @@
 
 namespace agrisee::io {
 
-/// How a scan was made.
+/// How a scan was made; part of run.json.
 struct RunInfo {
   std::string scene;               ///< name of the scene, or file of a ready cloud
-  std::string version;             ///< of AgriSEE
-  std::uint64_t seed = 0;          ///< of everything random
-  int threads = 1;                 ///< the result does not depend on it
-  std::string noise = "none";      ///< model of the simulated sensor's noise
+  std::string version;             ///< version of AgriSEE
+  std::uint64_t seed = 0;          ///< seed of all random numbers
+  int threads = 1;                 ///< number of threads; the result does not depend on it
+  std::string noise = "none";      ///< noise model of the simulated sensor
   std::string preset = "default";  ///< see Parameters::preset
   std::string planner;             ///< see Parameters::planner
-  std::string parameters_json;     ///< all parameters as a JSON value; empty = {}
+  std::string parameters_json;     ///< all parameters as a JSON object; empty means {}
 };
 
-/// What run.json says.
+/// The contents of run.json.
 struct RunFile {
-  RunInfo info;              ///< how it was made
+  RunInfo info;              ///< how the scan was made
   std::size_t views = 0;     ///< number of views taken
   std::string stop_reason;   ///< see StopReason
   std::size_t merged = 0;    ///< points of the merged cloud
   std::size_t filtered = 0;  ///< points of the consolidated cloud
-  std::size_t labelled = 0;  ///< those of them that belong to a fruit
-  Timing seconds;            ///< per stage
+  std::size_t labelled = 0;  ///< points of the consolidated cloud that belong to a fruit
+  Timing seconds;            ///< computing time per stage
 };
 
-/// Write views.csv; during a scan after every view, so that a scan that fails has left what it took. Row i is view i,
-/// counted from 0 as in the clouds.
+/// Write views.csv: one row per view, numbered from 0 as in the clouds. Call it after every view, so that a scan that
+/// fails leaves the views that it took.
 /// @throws InputError for a view that is not finite  @throws FileError when it cannot be written
 void write_views(const std::filesystem::path& path, const std::vector<View>& views);
 
-/// Write fruits.json. Beside the contract's keys, with a body: `center_covariance_world` (m2, three rows), `rms` (m),
-/// `volume` and `volume_error` (m3), `mass` and `mass_error` (kg); errors are standard errors. Where the picking was
-/// planned: `picking_order` (from 1), `picking_after` (ids of fruit that stand in the way and go before), `reachable`,
-/// `picking_reason` (see PickingReason), and, but for `no_body`, `approach_direction_world` (unit, from the pre-grasp
-/// position to the fruit's centre), `pre_grasp_position_world` (m) and `pre_grasp_orientation_world` (of the tool, z
-/// along the direction), and `pre_grasp_joints` (rad) where the arm's are known.
+/// Write fruits.json: a list with an object per fruit (docs/formats.md).
+///
+/// - Always: `id`, `points`, `found_by`, `centroid_cluster`, `centroid_world`, `sigma_world`, `orientation_world`.
+/// - With a fitted body: `center_world` (m), `radii` (m), `body_orientation_world`, `center_covariance_world` (m2,
+/// three
+///   rows), `rms` (m), `completeness`, `confidence`, `volume` and `volume_error` (m3), `mass` and `mass_error` (kg);
+///   the errors are standard errors.
+/// - With a picking plan: `picking_order` (from 1), `picking_after` (ids of the fruit that are in the way and must be
+///   picked first), `reachable` and `picking_reason` (see PickingReason); unless the reason is `no_body`, also
+///   `approach_direction_world` (unit vector from the pre-grasp position to the centre of the fruit),
+///   `pre_grasp_position_world` (m), `pre_grasp_orientation_world` (of the tool, z along the approach direction) and,
+///   if the arm is known, `pre_grasp_joints` (rad).
 /// @throws InputError for a fruit that is not finite  @throws FileError when it cannot be written
 void write_fruits(const std::filesystem::path& path, const std::vector<Fruit>& fruits);
 
-/// The same as a table; the cells of a body that was not fitted and of what was not planned are empty. Of the
-/// covariance the upper triangle is written, the ids of `picking_after` are separated by spaces.
+/// Write fruits.csv: the values of fruits.json as a table with a row per fruit. Where there is no body or no picking
+/// plan, its cells are empty. Only the upper triangle of the covariance is written; the ids in `picking_after` are
+/// separated by spaces.
+/// @throws FileError when it cannot be written
 void write_fruits_csv(const std::filesystem::path& path, const std::vector<Fruit>& fruits);
 
-/// Write run.json. Beside the contract's keys `views_discarded` counts the views that were not believed, `completeness`
-/// says which share of the fruit's surface the planner believes to have been seen (`seen`) and that the arm can see at
-/// all (`observable`), and `cluster_origin_world` says where the cluster frame {R} is, when the workcell has a scan
-/// volume.
+/// Write run.json: how the scan was made, why it stopped, and how many views and points it has (docs/formats.md).
+/// `views_discarded` counts the views that were discarded because their pose was wrong. `completeness` holds the
+/// planner's estimates of the shares of the fruit's surface that have been seen (`seen`) and that the arm can observe
+/// at all
+/// (`observable`). `cluster_origin_world` is the origin of the cluster frame {R}, if the workcell has a scan volume.
 /// @throws InputError when `parameters_json` is not JSON  @throws FileError when it cannot be written
 void write_run(const std::filesystem::path& path, const ScanResult& result, const Workcell& workcell,
                const RunInfo& info);
 
-/// Write all files of a result into `folder` (made if need be), run.json last: where it is, the result is complete.
-/// @throws InputError for a result that is not finite or whose labels are not one per point; nothing is written then
+/// Write all files of a result into `folder`, which is created if necessary. run.json is written last, so a folder with
+/// run.json holds a complete result.
+/// @throws InputError for a result that is not finite or whose labels are not one per point; then nothing is written
 /// @throws FileError when a file cannot be written
 void write_result(const std::filesystem::path& folder, const ScanResult& result, const Workcell& workcell,
                   const RunInfo& info);
 
-/// Read views.csv; columns may stand in any order, further ones are skipped. @throws FileError
+/// Read views.csv. Columns may be in any order; unknown columns are skipped.
+/// @throws FileError for a missing column, or a cell that is not a number
 std::vector<View> read_views(const std::filesystem::path& path);
 
-/// Read fruits.json; further keys are skipped. A fruit has a body where it has `center_world` and `radii`, a
-/// picking where it has `picking_order`.
+/// Read fruits.json. Unknown keys are skipped. A fruit has a body if it has the keys `center_world` and `radii`, and a
+/// picking plan if it has `picking_order`.
 /// @throws FileError for a missing key, a value of the wrong type, or two fruits with one id
 std::vector<Fruit> read_fruits(const std::filesystem::path& path);
 
-/// Read run.json; further keys are skipped. @throws FileError for a missing key, a value of the wrong type, or another
-/// format version
+/// Read run.json. Unknown keys are skipped.
+/// @throws FileError for a missing key, a value of the wrong type, or another format version
 RunFile read_run(const std::filesystem::path& path);
 
 }  // namespace agrisee::io

@@ -1,37 +1,38 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// @file
-/// Scene files: the robot's cell and what stands in it, as YAML beside meshes (docs: scene format). Metres and radians,
-/// the sensor's opening angles in degrees; `world` is the frame of everything.
+/// Reads and writes scene files: the workcell of the robot and the objects in it, as a YAML file beside mesh files
+/// (docs/formats.md describes them). World frame, metres and radians, except the fields of view of the sensor, which
+/// are in degrees.
 #pragma once
 
-#include <agrisee/geometry/scene.hpp>
+#include <agrisee/study/scene.hpp>
 #include <agrisee/workcell.hpp>
 
 #include <filesystem>
 
 namespace agrisee::io {
 
-/// A scene file in memory.
+/// The contents of a scene file.
 struct SceneFile {
-  Workcell workcell;  ///< all but the objects
-  Scene scene;        ///< meshes in world coordinates; object i is the i-th of the file
+  Workcell workcell;   ///< robot, sensor, scan volume and keep-out solids
+  study::Scene scene;  ///< meshes in world coordinates (m), in the order of the file
 };
 
-/// Read a scene and its meshes (relative to the scene file; a mesh named several times is read once).
+/// Read a scene and its meshes. A mesh that is named several times is read once.
 ///
-/// A mesh's relative path must not leave the scene's folder by `..`; an absolute one may name any file.
-/// Optional keys have the defaults of Workcell. Sizes, ids and classes are checked as the scene format asks.
+/// Relative paths of meshes are relative to the folder of the scene file and must not leave it by `..`; absolute paths
+/// may name any file. Optional keys that are absent have the defaults of Workcell. Sizes, ids and classes are checked.
 /// @throws FileError "<path>:<line>: <key>: ..." for a missing or unknown key, a value out of range, two fruits with
-/// one id,
-///   or a mesh that cannot be read or is named by a relative path out of the folder
+/// the
+///   same id, or a mesh that cannot be read or whose relative path leaves the folder
 SceneFile read_scene(const std::filesystem::path& path);
 
-/// Write a scene; its meshes go beside it, `fruit_<id>.stl` for fruit and `<class>_<number>.stl` for the rest. Meshes
-/// are written before the scene file, each file atomically. Reading it back gives the same scene (mesh vertices in the
-/// order of their first use).
-/// @throws InputError for what the format cannot express or would be refused by read_scene (a fruit's id, an empty
-/// volume,
-///   intrinsics that do not follow from opening angles...)
+/// Write a scene. Its meshes are written into the same folder, as `fruit_<id>.stl` for fruit and
+/// `<class>_<number>.stl` for other objects; the scene file is written last, and each file atomically. Reading the file
+/// gives the same scene, except that mesh vertices are in the order of their first use.
+/// @throws InputError for a scene that the format cannot express or that read_scene would reject (such as a fruit
+/// without
+///   a positive id, an empty scan volume, or intrinsics that do not follow from fields of view)
 /// @throws FileError when a file cannot be written
 void write_scene(const std::filesystem::path& path, const SceneFile& file);
 

@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "io/formats/json_value.hpp"
+
+namespace agrisee::io {
+namespace {
+
+/// Whether a value is a list of numbers, or of lists of numbers.
+bool is_short_list(const Json& json) {
+  if (!json.is_array()) return false;
+  for (const Json& item : json)
+    if (!item.is_number() && !is_short_list(item)) return false;
+  return true;
+}
+
+std::string one_line(const Json& json) { return json.dump(-1, ' ', false, Json::error_handler_t::replace); }
+
+/// Append the text of a value whose line begins with `indent`.
+void dump(const Json& json, const std::string& indent, std::string& out) {
+  if ((!json.is_object() && !json.is_array()) || json.empty() || is_short_list(json)) {
+    out += one_line(json);
+    return;
+  }
+  const std::string inner = indent + "  ";
+  out += json.is_object() ? '{' : '[';
+  bool first = true;
+  for (const auto& item : json.items()) {
+    out += (first ? "\n" : ",\n") + inner;
+    first = false;
+    if (json.is_object()) out += one_line(Json(item.key())) + ": ";
+    dump(item.value(), inner, out);
+  }
+  out += "\n" + indent + (json.is_object() ? '}' : ']');
+}
+
+}  // namespace
+
+Json parse_json(std::string_view text) {
+  constexpr int kDeepest = 64;
+  return Json::parse(text, [](int depth, Json::parse_event_t, Json&) {
+    // Copying and writing a document recurse over its levels.
+    if (depth > kDeepest) throw InputError("nested deeper than " + std::to_string(kDeepest));
+    return true;
+  });
+}
+
+Json load_json(const std::filesystem::path& path) {
+  const Bytes bytes = read_bytes(path);
+  if (bytes.size == 0) fail(path, "is empty");
+  try {
+    return parse_json(bytes.view());
+  } catch (const nlohmann::json::parse_error& e) {
+    fail(path, "not JSON, at byte " + std::to_string(e.byte));
+  } catch (const nlohmann::json::exception& e) {
+    fail(path, std::string("not JSON: ") + e.what());
+  } catch (const InputError& e) {
+    fail(path, e.what());
+  }
+}
+
+std::string dump(const Json& json) {
+  std::string out;
+  dump(json, "", out);
+  return out + "\n";
+}
+
+}  // namespace agrisee::io

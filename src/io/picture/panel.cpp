@@ -1,0 +1,180 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "io/picture/panel.hpp"
+
+#include <Eigen/Geometry>
+
+#include <limits>
+
+namespace agrisee::io {
+namespace {
+
+constexpr float kNear = 0.02f;     // least depth of what is drawn (m)
+constexpr double kOpening = 0.30;  // half the field of view across the shorter side of the viewport (rad)
+constexpr double kFilled = 0.94;   // share of the viewport that the subjects fill at most
+constexpr float kFarAway = std::numeric_limits<float>::infinity();
+
+}  // namespace
+
+Panel::Panel(Canvas& canvas, const Viewport& viewport, const Eigen::Vector3d& direction, const Eigen::Vector3d& up,
+             const std::vector<Eigen::Vector3d>& subjects)
+    : canvas_(canvas), viewport_(viewport) {
+  const Eigen::Vector3d forward = direction.normalized();
+  const Eigen::Vector3d right = forward.cross(up).normalized();
+  rotation_.row(0) = right.transpose();
+  rotation_.row(1) = forward.cross(right).transpose();
+  rotation_.row(2) = forward.transpose();
+  focal_ = static_cast<float>(0.5 * std::min(viewport.width, viewport.height) / std::tan(kOpening));
+  cx_ = static_cast<float>(viewport.x) + 0.5f * static_cast<float>(viewport.width - 1);
+  cy_ = static_cast<float>(viewport.y) + 0.5f * static_cast<float>(viewport.height - 1);
+  depth_.assign(static_cast<std::size_t>(viewport.width) * static_cast<std::size_t>(viewport.height), kFarAway);
+
+  // Find the nearest eye from which every subject projects into the viewport. Along each image axis the two outermost
+  // planes of sight through the subjects bound the eye, and it is placed where these planes meet.
+  if (subjects.empty()) return;
+  const double inf = std::numeric_limits<double>::infinity();
+  Eigen::Vector3d place(0.0, 0.0, inf);
+  double nearest = inf;
+  for (int axis = 0; axis < 2; ++axis) {
+    const double tangent = 0.5 * kFilled * (axis == 0 ? viewport.width : viewport.height) / double(focal_);
+    // For the eye (e, z0): x - e <= t (z - z0) and e - x <= t (z - z0) for all subjects.
+    double above = -inf, below = inf;
+    for (const Eigen::Vector3d& p : subjects) {
+      const Eigen::Vector3d q = rotation_ * p;
+      above = std::max(above, q[axis] - tangent * q.z());
+      below = std::min(below, q[axis] + tangent * q.z());
+      nearest = std::min(nearest, q.z());
+    }
+    place[axis] = 0.5 * (above + below);
+    place.z() = std::min(place.z(), (below - above) / (2.0 * tangent));
+  }
+  place.z() = std::min(place.z(), nearest - 2.0 * double(kNear));
+  eye_ = rotation_.transpose() * place;
+}
+
+Eigen::Vector3f Panel::project(const Eigen::Vector3d& p) const {
+  const Eigen::Vector3f q = (rotation_ * (p - eye_)).cast<float>();
+  const float z = std::max(q.z(), kNear);
+  return {cx_ + focal_ * q.x() / z, cy_ + focal_ * q.y() / z, q.z()};
+}
+
+/// Call visit(x, y, depth, weight, point, normal, behind) for every pixel of every disc. `normal` is turned towards the
+/// eye; `behind` says whether the disc is seen from its back.
+template <typename Visit>
+void Panel::rasterise(const Splats& splats, Visit&& visit) const {
+  const Cloud& cloud = splats.cloud;
+  const Eigen::Matrix3f rotation = rotation_.cast<float>();
+  constexpr float kSmallest = 1.0f, kLargest = 40.0f;  // bounds of a disc's radius (fine pixels)
+  constexpr float kSteepest = 0.25f;  // discs seen more edge-on than this cosine are turned, to close gaps
+  for (std::size_t i = 0; i < cloud.size(); ++i) {
+    if (!is_finite(cloud.points[i])) continue;
+    const Eigen::Vector3f p = (rotation_ * (cloud.points[i].cast<double>() - eye_)).cast<float>();
+    if (!(p.z() > kNear)) continue;
+    const Eigen::Vector3f sight = p.normalized();
+    Eigen::Vector3f n = cloud.normals.empty() ? Eigen::Vector3f::Zero().eval() : (rotation * cloud.normals[i]).eval();
+    const bool known = n.squaredNorm() > 0.25f && n.allFinite();
+    bool behind = false;
+    Eigen::Vector3f plane = -sight;
+    if (known) {
+      behind = n.dot(sight) > 0.0f;
+      if (behind) n = -n;
+      plane = n;
+      const float facing = -n.dot(sight);
+      if (facing < kSteepest) plane = (n - (kSteepest - facing) * 1.1f * sight).normalized();
+    } else {
+      n = -sight;
+    }
+    const float scale = focal_ / p.z();
+    const float on_canvas = std::clamp(splats.radius * scale, kSmallest, kLargest);
+    const float radius = on_canvas / scale, inverse_sq = 1.0f / (radius * radius);
+    const float u = cx_ + p.x() * scale, v = cy_ + p.y() * scale;
+    if (!(std::abs(u) < 1e6f && std::abs(v) < 1e6f)) continue;
+    const float distance = plane.dot(p);
+    // A tilted disc appears as an ellipse. Perspective shifts its edge slightly; one pixel is added for that.
+    const float half_x = on_canvas * std::sqrt(std::max(1.0f - plane.x() * plane.x(), 0.0f)) + 1.0f;
+    const float half_y = on_canvas * std::sqrt(std::max(1.0f - plane.y() * plane.y(), 0.0f)) + 1.0f;
+    const int x0 = std::max(viewport_.x, static_cast<int>(std::ceil(u - half_x)));
+    const int x1 = std::min(viewport_.x + viewport_.width - 1, static_cast<int>(std::floor(u + half_x)));
+    const int y0 = std::max(viewport_.y, static_cast<int>(std::ceil(v - half_y)));
+    const int y1 = std::min(viewport_.y + viewport_.height - 1, static_cast<int>(std::floor(v + half_y)));
+    for (int y = y0; y <= y1; ++y)
+      for (int x = x0; x <= x1; ++x) {
+        const Eigen::Vector3f ray((static_cast<float>(x) - cx_) / focal_, (static_cast<float>(y) - cy_) / focal_, 1.0f);
+        const float z = distance / plane.dot(ray);
+        const float share = (z * ray - p).squaredNorm() * inverse_sq;
+        if (share < 1.0f) visit(x, y, z, (1.0f - share) * (1.0f - share) + 1e-3f, i, n, behind);
+      }
+  }
+}
+
+/// A factor that darkens gaps and contacts (eye-dome lighting; Boucheny, 2009): 1 where no neighbouring pixel is nearer
+/// to the eye; smaller the more of them are, and the nearer, up to a difference of depth of `deep` (m).
+float Panel::openness(int x, int y, float deep) const {
+  constexpr int kReach[] = {4, 10, 22};
+  const float z = depth(x, y);
+  float sum = 0.0f;
+  for (const int r : kReach)
+    for (int k = 0; k < 8; ++k) {
+      constexpr float kX[] = {1.0f, 0.7f, 0.0f, -0.7f, -1.0f, -0.7f, 0.0f, 0.7f};
+      constexpr float kY[] = {0.0f, 0.7f, 1.0f, 0.7f, 0.0f, -0.7f, -1.0f, -0.7f};
+      const int px = x + static_cast<int>(kX[k] * static_cast<float>(r)),
+                py = y + static_cast<int>(kY[k] * static_cast<float>(r));
+      if (inside(px, py)) sum += std::clamp((z - depth(px, py)) / deep, 0.0f, 1.0f);
+    }
+  return std::exp(-1.6f * sum / 24.0f);
+}
+
+void Panel::draw(const Splats& splats) {
+  rasterise(splats, [&](int x, int y, float z, float, std::size_t, const Eigen::Vector3f&, bool) {
+    float& nearest = depth(x, y);
+    nearest = std::min(nearest, z);
+  });
+  // Blend the discs that are near the foremost one (Zwicker et al., "Surface Splatting", SIGGRAPH 2001).
+  std::vector<Pixel> pixels(depth_.size());
+  const float together = 1.5f * splats.radius;
+  rasterise(splats, [&](int x, int y, float z, float weight, std::size_t i, const Eigen::Vector3f& n, bool behind) {
+    if (z > depth(x, y) + together) return;
+    Pixel& pixel = pixels[offset(x, y)];
+    pixel.color += weight * (behind ? mix(splats.colors[i], Color(0.42f, 0.42f, 0.44f), 0.55f) : splats.colors[i]);
+    pixel.normal += weight * n;
+    pixel.weight += weight;
+  });
+  const Eigen::Vector3f light =
+      Eigen::Vector3f(-0.45f, -0.60f, -0.66f).normalized();  // from behind the left shoulder of the viewer
+  const Eigen::Vector3f halfway = (light + Eigen::Vector3f(0.0f, 0.0f, -1.0f)).normalized();
+  for (int y = viewport_.y; y < viewport_.y + viewport_.height; ++y)
+    for (int x = viewport_.x; x < viewport_.x + viewport_.width; ++x) {
+      const Pixel& pixel = pixels[offset(x, y)];
+      if (pixel.weight <= 0.0f) continue;
+      const Eigen::Vector3f n = pixel.normal.normalized();
+      const float facing = n.dot(light);
+      const float diffuse = 0.42f + 0.62f * std::max(facing, 0.0f) + 0.08f * std::min(facing, 0.0f);
+      const float shine = 0.16f * std::pow(std::max(n.dot(halfway), 0.0f), 30.0f);
+      const Color c = pixel.color / pixel.weight * diffuse + Color::Constant(shine);
+      canvas_.at(x, y) = (c * openness(x, y, 8.0f * splats.radius)).cwiseMin(1.0f);
+    }
+}
+
+void Panel::line(const Eigen::Vector3d& a, const Eigen::Vector3d& b, const Color& c, const LineStyle& style, Cap cap) {
+  Eigen::Vector3d p = rotation_ * (a - eye_), q = rotation_ * (b - eye_);
+  if (!p.allFinite() || !q.allFinite()) return;
+  if (p.z() < kNear && q.z() < kNear) return;
+  if (p.z() < kNear) p = q + (p - q) * ((q.z() - kNear) / (q.z() - p.z()));
+  if (q.z() < kNear) q = p + (q - p) * ((p.z() - kNear) / (p.z() - q.z()));
+  const auto on_canvas = [&](const Eigen::Vector3d& v) {
+    return Eigen::Vector2f(cx_ + focal_ * static_cast<float>(v.x() / v.z()),
+                           cy_ + focal_ * static_cast<float>(v.y() / v.z()));
+  };
+  const float near = 1.0f / static_cast<float>(p.z()), far = 1.0f / static_cast<float>(q.z());
+  constexpr float kSlack = 0.0015f;  // m; so that a surface does not hide the lines on it
+  canvas_.line(on_canvas(p), on_canvas(q), style.width, c, cap, [&](float t, int x, int y) {
+    if (!inside(x, y)) return 0.0f;
+    const float z = 1.0f / (near + t * (far - near));  // 1 / z is linear on the canvas
+    return z > depth(x, y) + kSlack ? style.hidden : style.alpha;
+  });
+}
+
+void Panel::polyline(const std::vector<Eigen::Vector3d>& points, const Color& c, const LineStyle& style) {
+  for (std::size_t i = 1; i < points.size(); ++i) line(points[i - 1], points[i], c, style);
+}
+
+}  // namespace agrisee::io

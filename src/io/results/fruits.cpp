@@ -1,0 +1,244 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <agrisee/io/results.hpp>
+
+#include <set>
+
+#include "io/formats/csv.hpp"
+#include "io/formats/json_value.hpp"
+#include "io/results/result_texts.hpp"
+
+namespace agrisee::io {
+namespace {
+
+/// The quaternion of a rotation, in the order x y z w.
+Eigen::Vector4d xyzw(const Eigen::Matrix3d& rotation) { return quaternion(rotation).coeffs(); }
+
+/// A number; minus zero becomes zero. @throws InputError with the message `what` if it is not finite
+Json finite(double value, const char* what) {
+  check_input(std::isfinite(value), what);
+  return value + 0.0;
+}
+
+/// The upper triangle of a covariance: xx, xy, xz, yy, yz, zz.
+Eigen::Matrix<double, 6, 1> triangle(const Eigen::Matrix3d& m) {
+  return (Eigen::Matrix<double, 6, 1>() << m(0, 0), m(0, 1), m(0, 2), m(1, 1), m(1, 2), m(2, 2)).finished();
+}
+
+/// Add the picking plan of a fruit to its JSON object.
+void add_picking(Json& j, const Picking& picking) {
+  j["picking_order"] = picking.order;
+  j["picking_after"] = picking.after;
+  j["reachable"] = picking.reachable;
+  j["picking_reason"] = to_string(picking.reason);
+  check_input(picking.direction.allFinite(), "fruit: approach_direction_world is not finite");
+  if (picking.direction.isZero(0.0)) return;  // there is no approach
+  j["approach_direction_world"] = json_list(picking.direction, "");
+  const Pose& pose = picking.world_T_pre_grasp;
+  j["pre_grasp_position_world"] = json_list(pose.translation(), "fruit: pre_grasp_position_world is not finite");
+  j["pre_grasp_orientation_world"] = json_list(xyzw(pose.linear()), "fruit: pre_grasp_orientation_world is not finite");
+  if (picking.joints) j["pre_grasp_joints"] = json_list(*picking.joints, "fruit: pre_grasp_joints is not finite");
+}
+
+/// Add the 20 cells of a picking plan to the row of its fruit.
+void add_picking(CsvWriter& csv, const Picking& picking) {
+  csv.cell(static_cast<std::size_t>(picking.order));
+  std::string after;
+  for (int id : picking.after) after += (after.empty() ? "" : " ") + std::to_string(id);
+  csv.cell(after);
+  csv.cell(picking.reachable ? "true" : "false");
+  csv.cell(to_string(picking.reason));
+  if (picking.direction.isZero(0.0)) return csv.empty_cells(16);
+  csv.cells(picking.direction);
+  csv.cells(picking.world_T_pre_grasp.translation());
+  csv.cells(xyzw(picking.world_T_pre_grasp.linear()));
+  if (picking.joints)
+    csv.cells(*picking.joints);
+  else
+    csv.empty_cells(6);
+}
+
+void add_head(CsvWriter& csv) {
+  for (const char* name : {"id", "points", "found_by"}) csv.cell(name);
+  for (const char* name : {"centroid_cluster", "centroid_world", "sigma_world", "orientation_world", "center_world",
+                           "radii", "body_orientation_world"}) {
+    const bool quaternion = std::string_view(name).find("orientation") != std::string_view::npos;
+    const bool radii = std::string_view(name) == "radii";
+    const char* const suffixes[] = {radii ? "a" : "x", radii ? "b" : "y", radii ? "c" : "z", "w"};
+    for (int i = 0; i < (quaternion ? 4 : 3); ++i) csv.cell(std::string(name) + "_" + suffixes[i]);
+  }
+  for (const char* name : {"completeness", "confidence", "rms", "volume", "volume_error", "mass", "mass_error"})
+    csv.cell(name);
+  for (const char* name : {"xx", "xy", "xz", "yy", "yz", "zz"})
+    csv.cell("center_covariance_world_" + std::string(name));
+  for (const char* name : {"picking_order", "picking_after", "reachable", "picking_reason"}) csv.cell(name);
+  for (const char* name : {"approach_direction_world", "pre_grasp_position_world"})
+    for (const char* axis : {"_x", "_y", "_z"}) csv.cell(std::string(name) + axis);
+  for (const char* axis : {"_x", "_y", "_z", "_w"}) csv.cell("pre_grasp_orientation_world" + std::string(axis));
+  for (int i = 1; i <= 6; ++i) csv.cell("pre_grasp_q" + std::to_string(i));
+  csv.end_row();
+}
+
+/// Add the 23 cells of a body to the row of its fruit.
+void add_body(CsvWriter& csv, const Body& body) {
+  csv.cells(body.center);
+  csv.cells(body.radii);
+  csv.cells(xyzw(body.axes));
+  csv.cell(body.completeness);
+  csv.cell(body.confidence);
+  for (double value : {body.rms, body.volume, body.volume_error, body.mass, body.mass_error}) csv.cell(value);
+  csv.cells(triangle(body.center_covariance));
+}
+
+Json to_json(const Fruit& fruit) {
+  Json j;
+  j["id"] = fruit.id;
+  j["points"] = fruit.points;
+  j["found_by"] = fruit.found_by;
+  j["centroid_cluster"] = json_list(fruit.centroid_cluster, "fruit: centroid_cluster is not finite");
+  j["centroid_world"] = json_list(fruit.centroid, "fruit: centroid_world is not finite");
+  j["sigma_world"] = json_list(fruit.sigma, "fruit: sigma_world is not finite");
+  j["orientation_world"] = json_list(xyzw(fruit.orientation), "fruit: orientation_world is not finite");
+  if (fruit.body) {
+    const Body& body = *fruit.body;
+    j["center_world"] = json_list(body.center, "fruit: center_world is not finite");
+    j["radii"] = json_list(body.radii, "fruit: radii is not finite");
+    j["body_orientation_world"] = json_list(xyzw(body.axes), "fruit: body_orientation_world is not finite");
+    Json covariance = Json::array();
+    for (int r = 0; r < 3; ++r)
+      covariance.push_back(json_list(body.center_covariance.row(r), "fruit: center_covariance_world is not finite"));
+    j["center_covariance_world"] = covariance;
+    j["rms"] = finite(body.rms, "fruit: rms is not finite");
+    j["completeness"] = finite(body.completeness, "fruit: completeness is not finite");
+    j["confidence"] = finite(body.confidence, "fruit: confidence is not finite");
+    j["volume"] = finite(body.volume, "fruit: volume is not finite");
+    j["volume_error"] = finite(body.volume_error, "fruit: volume_error is not finite");
+    j["mass"] = finite(body.mass, "fruit: mass is not finite");
+    j["mass_error"] = finite(body.mass_error, "fruit: mass_error is not finite");
+  }
+  if (fruit.picking) add_picking(j, *fruit.picking);
+  return j;
+}
+
+/// The rotation of a quaternion x y z w.
+Eigen::Matrix3d rotation(const JsonValue& value) {
+  const Eigen::Vector4d q = value.numbers<4>();
+  if (!(std::abs(q.norm() - 1.0) < 1e-3)) value.fail("the quaternion is not of unit length");
+  return Eigen::Quaterniond(q[3], q[0], q[1], q[2]).normalized().toRotationMatrix();
+}
+
+Body body_of(const JsonValue& value) {
+  Body body;
+  body.center = value.at("center_world").numbers<3>();
+  body.radii = value.at("radii").numbers<3>();
+  if (value.has("body_orientation_world")) body.axes = rotation(value.at("body_orientation_world"));
+  if (value.has("center_covariance_world")) {
+    const JsonValue rows = value.at("center_covariance_world");
+    if (rows.list_size() != 3) rows.fail("expected three rows");
+    for (int r = 0; r < 3; ++r)
+      body.center_covariance.row(r) = rows.at(static_cast<std::size_t>(r)).numbers<3>().transpose();
+  }
+  if (value.has("rms")) body.rms = value.at("rms").number();
+  if (value.has("completeness")) body.completeness = value.at("completeness").number();
+  if (value.has("confidence")) body.confidence = value.at("confidence").number();
+  if (value.has("volume")) body.volume = value.at("volume").number();
+  if (value.has("volume_error")) body.volume_error = value.at("volume_error").number();
+  if (value.has("mass")) body.mass = value.at("mass").number();
+  if (value.has("mass_error")) body.mass_error = value.at("mass_error").number();
+  return body;
+}
+
+/// An id or a place in the picking order: 1 to 1,000,000.
+int positive_integer(const JsonValue& value) {
+  const std::uint64_t n = value.count();
+  if (n < 1 || n > 1000000) value.fail("must be from 1 to 1000000");
+  return static_cast<int>(n);
+}
+
+PickingReason reason_of(const JsonValue& value) {
+  const std::string text = value.text();
+  for (int i = 0; i <= static_cast<int>(PickingReason::arm_meets_fruit); ++i)
+    if (text == to_string(static_cast<PickingReason>(i))) return static_cast<PickingReason>(i);
+  value.fail("unknown picking reason '" + text + "'");
+}
+
+Picking picking_of(const JsonValue& value) {
+  Picking picking;
+  picking.order = positive_integer(value.at("picking_order"));
+  picking.reachable = value.at("reachable").boolean();
+  picking.reason = reason_of(value.at("picking_reason"));
+  if (value.has("picking_after")) {
+    const JsonValue ids = value.at("picking_after");
+    for (std::size_t i = 0; i < ids.list_size(); ++i) picking.after.push_back(positive_integer(ids.at(i)));
+  }
+  if (!value.has("approach_direction_world")) return picking;
+  picking.direction = value.at("approach_direction_world").numbers<3>();
+  picking.world_T_pre_grasp.translation() = value.at("pre_grasp_position_world").numbers<3>();
+  picking.world_T_pre_grasp.linear() = rotation(value.at("pre_grasp_orientation_world"));
+  if (value.has("pre_grasp_joints")) picking.joints = value.at("pre_grasp_joints").numbers<6>();
+  return picking;
+}
+
+}  // namespace
+
+std::string fruits_text(const std::vector<Fruit>& fruits) {
+  Json list = Json::array();
+  for (const Fruit& fruit : fruits) list.push_back(to_json(fruit));
+  return dump(list);
+}
+
+std::string fruits_csv_text(const std::vector<Fruit>& fruits) {
+  CsvWriter csv;
+  add_head(csv);
+  for (const Fruit& fruit : fruits) {
+    csv.cell(std::to_string(fruit.id));
+    csv.cell(fruit.points);
+    csv.cell(fruit.found_by);
+    csv.cells(fruit.centroid_cluster);
+    csv.cells(fruit.centroid);
+    csv.cells(fruit.sigma);
+    csv.cells(xyzw(fruit.orientation));
+    if (fruit.body)
+      add_body(csv, *fruit.body);
+    else
+      csv.empty_cells(23);
+    if (fruit.picking)
+      add_picking(csv, *fruit.picking);
+    else
+      csv.empty_cells(20);
+    csv.end_row();
+  }
+  return csv.text();
+}
+
+void write_fruits(const std::filesystem::path& path, const std::vector<Fruit>& fruits) {
+  write_file(path, fruits_text(fruits));
+}
+
+void write_fruits_csv(const std::filesystem::path& path, const std::vector<Fruit>& fruits) {
+  write_file(path, fruits_csv_text(fruits));
+}
+
+std::vector<Fruit> read_fruits(const std::filesystem::path& path) {
+  const Json json = load_json(path);
+  const JsonValue list(path, json, "");
+  std::vector<Fruit> fruits;
+  std::set<int> ids;
+  for (std::size_t i = 0; i < list.list_size(); ++i) {
+    const JsonValue value = list.at(i);
+    Fruit fruit;
+    fruit.id = positive_integer(value.at("id"));
+    if (!ids.insert(fruit.id).second) value.at("id").fail("two fruits have the id " + std::to_string(fruit.id));
+    fruit.points = static_cast<std::size_t>(value.at("points").count());
+    fruit.found_by = value.at("found_by").text();
+    fruit.centroid_cluster = value.at("centroid_cluster").numbers<3>();
+    fruit.centroid = value.at("centroid_world").numbers<3>();
+    fruit.sigma = value.at("sigma_world").numbers<3>();
+    fruit.orientation = rotation(value.at("orientation_world"));
+    if (value.has("center_world") && value.has("radii")) fruit.body = body_of(value);
+    if (value.has("picking_order")) fruit.picking = picking_of(value);
+    fruits.push_back(fruit);
+  }
+  return fruits;
+}
+
+}  // namespace agrisee::io
