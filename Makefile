@@ -6,10 +6,11 @@ CMAKE_ARGS ?=
 CONFIGURE := cmake -S . -B build/release -G Ninja -DCMAKE_BUILD_TYPE=Release $(CMAKE_ARGS)
 AGRISEE := build/release/agrisee
 
-.PHONY: help build demo test experiment bench fuzz survive long format clean
+.PHONY: help build demo test experiment bench fuzz survive long mutate format format-check clean
 SECONDS_IN_ALL ?= 14400
 KILLS ?= 100
 RUNS ?= 1000
+MUTANTS ?= 60
 
 help:
 	@echo "make demo    install what is missing, build, scan a 7-fruit truss, evaluate it, draw it"
@@ -19,11 +20,13 @@ help:
 	@echo "make fuzz    fuzz the readers with clang's libFuzzer, for hours (SECONDS_IN_ALL=60: for a minute)"
 	@echo "make survive kill a scan a hundred times (KILLS=...) and fill its disk: nothing may be lost"
 	@echo "make long    scan a thousand trusses in one process (RUNS=...): memory and time may not grow"
-	@echo "make format  run clang-format on all sources"
+	@echo "make mutate  change the code at random and list what no test notices (MUTANTS=... a room)"
+	@echo "make format  run clang-format on all sources; make format-check: only say what it would change"
 	@echo "make clean   remove build/ and demo/"
 
 build:
 	@cmake/packages.sh build
+	@[ -x $(AGRISEE) ] || echo "Building agrisee on $(JOBS) cores: some five minutes of processor time, the first time only"
 	@$(CONFIGURE) -DAGRISEE_BUILD_TESTS=OFF -DAGRISEE_BUILD_EXAMPLES=OFF
 	@cmake --build build/release -j $(JOBS)
 
@@ -68,8 +71,19 @@ long:
 	@cmake --build build/release --target long_run -j $(JOBS)
 	@build/release/tests/long_run $(RUNS)
 
+# Other versions of clang-format lay code out differently; CLANG_FORMAT=... names another program of the same version.
+CLANG_FORMAT ?= $(firstword $(shell command -v clang-format-14 clang-format))
 format:
-	@git ls-files '*.hpp' '*.cpp' | xargs clang-format -i
+	@$(CLANG_FORMAT) --version | grep -q ' 14\.' || { echo "make format: needs clang-format 14 (Debian 12's)"; exit 1; }
+	@git ls-files '*.hpp' '*.cpp' | xargs $(CLANG_FORMAT) -i
+
+format-check:
+	@$(CLANG_FORMAT) --version | grep -q ' 14\.' || { echo "make format-check: needs clang-format 14 (Debian 12's)"; exit 1; }
+	@git ls-files '*.hpp' '*.cpp' | xargs $(CLANG_FORMAT) --dry-run -Werror
+
+mutate:
+	@cmake/packages.sh build test
+	@python3 tests/mutate.py --count $(MUTANTS) $(foreach room,plan fuse pick,src/$(room) include/agrisee/$(room)) include/agrisee/cloud
 
 clean:
 	@rm -rf build demo

@@ -12,10 +12,10 @@ class AgriseeConan(ConanFile):
     name = "agrisee"
     description = "Active perception for harvesting robots: look, clean, split, locate"
     license = "BSD-3-Clause"
-    package_type = "static-library"
+    package_type = "library"
     settings = "os", "arch", "compiler", "build_type"
-    options = {"io": [True, False]}
-    default_options = {"io": True}
+    options = {"shared": [True, False], "fPIC": [True, False], "io": [True, False]}
+    default_options = {"shared": False, "fPIC": True, "io": True}
     exports = "include/agrisee/version.hpp"
     exports_sources = "CMakeLists.txt", "LICENSE", "cmake/*", "include/*", "src/*", "!*/node_modules/*"
 
@@ -37,7 +37,6 @@ class AgriseeConan(ConanFile):
     def generate(self):
         CMakeDeps(self).generate()
         toolchain = CMakeToolchain(self)
-        toolchain.cache_variables["AGRISEE_BUILD_COMPILED"] = False
         toolchain.cache_variables["AGRISEE_BUILD_IO"] = bool(self.options.io)
         for part in ("CLI", "TESTS", "EXAMPLES"):
             toolchain.cache_variables["AGRISEE_BUILD_" + part] = False
@@ -54,16 +53,18 @@ class AgriseeConan(ConanFile):
 
     def package_info(self):
         self.cpp_info.set_property("cmake_file_name", "agrisee")
-        core = self.cpp_info.components["core"]
-        core.set_property("cmake_target_name", "agrisee::agrisee")
-        core.set_property("pkg_config_name", "agrisee")
-        core.requires = ["eigen::eigen", "nanoflann::nanoflann"]
-        core.libs = []
+        # The same targets as the CMake package has: each part needs the one before it.
+        needs = ["eigen::eigen", "nanoflann::nanoflann"]
+        for part, libs in (("headers", []), ("agrisee", ["agrisee"]), ("study", ["agrisee_study"]), ("io", ["agrisee_io"])):
+            if part == "io" and not self.options.io:
+                continue
+            component = self.cpp_info.components[part]
+            component.set_property("cmake_target_name", "agrisee::" + part)
+            component.set_property("pkg_config_name", "agrisee" if part == "agrisee" else "agrisee-" + part)
+            component.libs = libs
+            component.requires = list(needs)
+            needs = [part]
         if self.settings.os in ("Linux", "FreeBSD"):
-            core.system_libs = ["pthread"]
+            self.cpp_info.components["headers"].system_libs = ["pthread"]
         if self.options.io:
-            io = self.cpp_info.components["io"]
-            io.set_property("cmake_target_name", "agrisee::io")
-            io.set_property("pkg_config_name", "agrisee-io")
-            io.libs = ["agrisee_io"]
-            io.requires = ["core", "yaml-cpp::yaml-cpp", "nlohmann_json::nlohmann_json", "stb::stb"]
+            self.cpp_info.components["io"].requires += ["yaml-cpp::yaml-cpp", "nlohmann_json::nlohmann_json", "stb::stb"]

@@ -36,7 +36,9 @@ void normals_consistent(benchmark::State& state) {
 
 void region_growing(benchmark::State& state) {
   const Cloud cloud = cloud_of(state);
-  const auto estimated = orient_normals_to_viewpoint(estimate_normals(cloud), cloud, {0.0, 0.0, 0.5});
+  const std::vector<int> views(cloud.size(), 0);  // all from one sensor
+  const std::vector<Eigen::Vector3d> sensors(1, {0.0, 0.0, 0.5});
+  const auto estimated = orient_normals_to_views(estimate_normals(cloud), cloud, views, sensors);
   int regions = 0;
   for (auto _ : state) {
     const Labels labels = grow_regions(cloud, estimated);

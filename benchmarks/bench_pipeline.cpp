@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The default path: surface from a frame, fusion, split, whole processing of a cloud of 15 k and 150 k points.
 #include <agrisee/cloud/split.hpp>
-#include <agrisee/cloud/surfels.hpp>
+#include <agrisee/fuse/surfels.hpp>
 #include <agrisee/process.hpp>
-#include <agrisee/sensor/l515.hpp>
 #include <agrisee/sensor/reconstruct_surface.hpp>
+#include <agrisee/study/capture.hpp>
 #include <agrisee/study/truss.hpp>
 
 #include <benchmark/benchmark.h>
@@ -17,10 +17,11 @@ using namespace agrisee;
 struct View {
   study::Truss truss = study::make_truss({});
   Pose pose = look_along({0.1, 0.16, 0.21}, {-0.2, 1.0, 0.0});
-  sensor::Capture capture;
+  study::Capture capture;
 
   explicit View(const char* noise) {
-    capture = sensor::capture(TracedScene(truss.scene), truss.workcell.sensor, pose, sensor::parse_noise(noise), 1, 0);
+    capture =
+        study::capture(study::TracedScene(truss.scene), truss.workcell.sensor, pose, study::parse_noise(noise), 1, 0);
   }
 };
 
@@ -37,7 +38,7 @@ void fuse(benchmark::State& state) {
   const View view("l515");
   const auto image = sensor::reconstruct_surface(view.capture.frame, view.pose, view.truss.workcell.scan_volume);
   for (auto _ : state) {
-    SurfelMap map;
+    fuse::SurfelMap map;
     for (int v = 0; v < 4; ++v)
       for (std::size_t i = 0; i < image.points.size(); ++i)
         map.add(image.points[i], image.normals[i], image.sigma[i], v);

@@ -8,7 +8,7 @@ namespace {
 
 using namespace agrisee;
 
-/// Merged spheres of fruit size (about 1830 points each) at the density of a scan; `n` points in all.
+/// A merged cloud of `n` points: spheres of fruit size (about 1830 points each) at the density of a scan.
 const Cloud& merged(std::size_t n) {
   static std::vector<std::pair<std::size_t, Cloud>> made;
   for (const auto& [size, cloud] : made)
@@ -34,7 +34,7 @@ void classify_from_scratch(benchmark::State& state) {
   for (auto _ : state) benchmark::DoNotOptimize(see::classify(cloud, see::Parameters()));
 }
 
-/// The last tenth of the points comes as a new view.
+/// Inserts the last tenth of the points as a new view.
 void insert_one_view(benchmark::State& state) {
   const Cloud& cloud = merged(static_cast<std::size_t>(state.range(0)));
   const auto split = static_cast<std::ptrdiff_t>(cloud.size() / 10 * 9);
@@ -50,7 +50,7 @@ void insert_one_view(benchmark::State& state) {
   }
 }
 
-/// Merging 200,000 raw points that are known already: one view's worth.
+/// Merges 200,000 raw points, about one view, all of which lie near points that are known already.
 void merge_seen_points(benchmark::State& state) {
   const Cloud& cloud = merged(static_cast<std::size_t>(state.range(0)));
   see::DensityMap<float> map((see::Parameters()));
@@ -61,7 +61,8 @@ void merge_seen_points(benchmark::State& state) {
   for (auto _ : state) benchmark::DoNotOptimize(map.insert(raw, 1));
 }
 
-/// Frames and proposals for all frontiers of a first view, occlusion, graph and order for the nearest 50.
+/// The first planning step: frames and proposals for all frontiers of a first view; occlusion, visibility graph and
+/// order for the nearest 50.
 void first_step(benchmark::State& state) {
   const Cloud& cloud = merged(static_cast<std::size_t>(state.range(0)));
   std::vector<Eigen::Vector3f> half;
@@ -69,18 +70,18 @@ void first_step(benchmark::State& state) {
   for (const auto& p : cloud.points)
     if (p.y() < middle) half.push_back(p);
   const Eigen::Vector3d sensor(0.1, -0.4, 0.1);
-  see::Planner before((see::Parameters()));
+  see::Explorer before((see::Parameters()));
   before.observe(half, sensor);
   state.counters["frontiers"] = double(before.map().of_class(see::PointClass::frontier).size());
   for (auto _ : state) {
     state.PauseTiming();
-    see::Planner planner = before;
+    see::Explorer explorer = before;
     state.ResumeTiming();
-    benchmark::DoNotOptimize(planner.next_views(sensor));
+    benchmark::DoNotOptimize(explorer.next_views(sensor));
   }
 }
 
-/// A later step: only the nearest 50 are updated.
+/// A later planning step: only the nearest 50 frontiers are updated.
 void next_step(benchmark::State& state) {
   const Cloud& cloud = merged(static_cast<std::size_t>(state.range(0)));
   std::vector<Eigen::Vector3f> half;
@@ -88,9 +89,9 @@ void next_step(benchmark::State& state) {
   for (const auto& p : cloud.points)
     if (p.y() < middle) half.push_back(p);
   const Eigen::Vector3d sensor(0.1, -0.4, 0.1);
-  see::Planner planner((see::Parameters()));
-  planner.observe(half, sensor);
-  for (auto _ : state) benchmark::DoNotOptimize(planner.next_views(sensor));
+  see::Explorer explorer((see::Parameters()));
+  explorer.observe(half, sensor);
+  for (auto _ : state) benchmark::DoNotOptimize(explorer.next_views(sensor));
 }
 
 BENCHMARK(classify_from_scratch)->Arg(15000)->Arg(150000)->Unit(benchmark::kMillisecond);

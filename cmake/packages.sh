@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: BSD-3-Clause
-# Installs what is missing of Debian's or Ubuntu's packages: cmake/packages.sh [build] [test] [oracles] [viewers] [bench] [docs] [ros] [fuzz]
+# Installs what is missing of Debian's or Ubuntu's packages: cmake/packages.sh GROUP...
 # Says what it does; asks sudo only when there is something to install and the caller is not root.
 set -euo pipefail
 
@@ -15,6 +15,7 @@ declare -A groups=(
 libtrajectory-msgs-dev libvisualization-msgs-dev python3-roslaunch python3-rosmaster rosout python3-rosservice \
 ros-robot-state-publisher rviz"
   [fuzz]="clang"
+  [format]="clang-format-14"
 )
 wanted=()
 for group in "$@"; do

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Your sensor, your motion planner, our decisions: the loop that a robot runs. Replace `grab_frame` and `move_to`.
 #include <agrisee/agrisee.hpp>
+#include <agrisee/study/capture.hpp>
 #include <agrisee/study/truss.hpp>
 
 #include <iostream>
@@ -9,11 +10,11 @@ using namespace agrisee;
 
 // Stand-ins: a simulated sensor before a truss of seven fruit, and an arm that fails now and then.
 const study::Truss truss = study::make_truss({});
-const TracedScene world(truss.scene);
+const study::TracedScene world(truss.scene);
 
 sensor::DepthFrame grab_frame(const Pose& world_T_optical) {
   static std::uint64_t view = 0;
-  return sensor::capture(world, truss.workcell.sensor, world_T_optical, sensor::parse_noise("l515"), 1, view++).frame;
+  return study::capture(world, truss.workcell.sensor, world_T_optical, study::parse_noise("l515"), 1, view++).frame;
 }
 bool move_to(const Joints&) {
   static int moves = 0;

@@ -4,7 +4,7 @@
 /// whose answers are checked once.
 #pragma once
 
-#include <agrisee/core/kdtree.hpp>
+#include <agrisee/neighbors/kdtree.hpp>
 
 #include <benchmark/benchmark.h>
 #include <cstdio>

@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The tree and a 1024 x 768 depth frame on about 100,000 triangles, met by about one ray in seven, against Embree 3.
+#include <agrisee/core/parallel.hpp>
 #include <agrisee/core/random.hpp>
-#include <agrisee/sensor/l515.hpp>
+#include <agrisee/geometry/bvh.hpp>
+#include <agrisee/sensor/depth_camera.hpp>
+#include <agrisee/study/raycast.hpp>
 
 #ifdef PEERS_EMBREE
 #include "../../tests/support/embree_scene.hpp"
@@ -31,27 +34,26 @@ const Mesh& spheres() {
   return all;
 }
 
-const TracedScene& traced() {
-  static const TracedScene scene(shapes::scene_of(spheres()));
+const study::TracedScene& traced() {
+  static const study::TracedScene scene(shapes::scene_of(spheres()));
   return scene;
 }
 
 Pose eye() { return look_along({0.0, 0.0, 0.2}, Eigen::Vector3d::UnitY()); }
 
 std::vector<float> our_frame(int threads) {
-  const sensor::L515 l515;
-  return sensor::raycast(traced(), l515.intrinsics, eye(), l515.range_min, l515.range_max, threads).range;
+  const sensor::DepthCamera l515 = sensor::l515();
+  return study::raycast(traced(), l515.intrinsics, eye(), l515.range_min, l515.range_max, threads).range;
 }
 
 #ifdef PEERS_EMBREE
 /// The directions of all pixels, made before anything is timed.
 const std::vector<Eigen::Vector3f>& rays() {
   static const std::vector<Eigen::Vector3f> all = [] {
-    const sensor::L515 l515;
+    const sensor::DepthCamera l515 = sensor::l515();
     std::vector<Eigen::Vector3f> out;
     for (int v = 0; v < l515.intrinsics.height; ++v)
-      for (int u = 0; u < l515.intrinsics.width; ++u)
-        out.push_back(sensor::ray_direction(l515.intrinsics, eye(), u, v));
+      for (int u = 0; u < l515.intrinsics.width; ++u) out.push_back(study::ray_direction(l515.intrinsics, eye(), u, v));
     return out;
   }();
   return all;
@@ -69,7 +71,7 @@ bool built(int threads, RTCBuildQuality quality) {
 }
 
 std::vector<float> embree_single(int threads) {
-  const sensor::L515 l515;
+  const sensor::DepthCamera l515 = sensor::l515();
   const Eigen::Vector3f o = eye().translation().cast<float>();
   std::vector<float> range(rays().size(), 0.0f);
   parallel_for(
@@ -91,7 +93,7 @@ std::vector<float> embree_single(int threads) {
 }
 
 std::vector<float> embree_packets(int threads) {
-  const sensor::L515 l515;
+  const sensor::DepthCamera l515 = sensor::l515();
   const Eigen::Vector3f o = eye().translation().cast<float>();
   std::vector<float> range(rays().size(), 0.0f);
   const auto width = static_cast<std::size_t>(l515.intrinsics.width);

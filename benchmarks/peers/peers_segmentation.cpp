@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Region growing, clustering and the whole chain against PCL and Open3D.
 #include <agrisee/cloud/dbscan.hpp>
+#include <agrisee/cloud/labels.hpp>
 #include <agrisee/cloud/normals.hpp>
 #include <agrisee/cloud/region_growing.hpp>
 #include <agrisee/cloud/sor.hpp>

@@ -2,9 +2,9 @@
 // A UR3 that holds an L515 before a scene, for a desk without a robot: takes joint goals, publishes joint states, the
 // mounting's transforms, and depth frames whenever the arm stands. Topics and parameters: docs/ros.md.
 #include <agrisee/arm/ur3.hpp>
-#include <agrisee/geometry/traced_scene.hpp>
 #include <agrisee/io/scene.hpp>
-#include <agrisee/sensor/l515.hpp>
+#include <agrisee/study/capture.hpp>
+#include <agrisee/study/traced_scene.hpp>
 
 #include <geometry_msgs/Pose.h>
 #include <geometry_msgs/TransformStamped.h>
@@ -68,7 +68,7 @@ class SimNode {
     if (o.output != "32FC1" && o.output != "16UC1" && o.output != "points")
       throw ParameterError("output must be 32FC1, 16UC1 or points, got " + o.output);
     if (o.noise == "rough") throw ParameterError("noise 'rough' is of the poses, too; they come from tf here");
-    sensor::parse_noise(o.noise);
+    study::parse_noise(o.noise);
     check_parameter(o.rate > 0.0 && o.rate <= 100.0, "rate", "in (0, 100]", o.rate);
     check_parameter(o.hurry > 0.0, "hurry", "positive", o.hurry);
     check_parameter(o.seed >= 0, "seed", ">= 0", o.seed);
@@ -133,8 +133,8 @@ class SimNode {
       const Pose world_T_optical = file_.workcell.world_T_base * arm::forward(q) * file_.workcell.tool0_T_optical;
       // View k of `agrisee scan` draws its noise by k: here that is the goal's number.
       const std::uint64_t view = goals_ > 0 ? goals_ - 1 : 0;
-      frame_ = sensor::capture(world_, file_.workcell.sensor, world_T_optical, sensor::parse_noise(options_.noise),
-                               static_cast<std::uint64_t>(options_.seed), view)
+      frame_ = study::capture(world_, file_.workcell.sensor, world_T_optical, study::parse_noise(options_.noise),
+                              static_cast<std::uint64_t>(options_.seed), view)
                    .frame;
       frame_joints_ = q;
     }
@@ -203,7 +203,7 @@ class SimNode {
   ros::NodeHandle node_, private_;
   Options options_;
   io::SceneFile file_;
-  TracedScene world_;
+  study::TracedScene world_;
   Joints from_, to_, frame_joints_ = Joints::Zero();
   ros::Time begun_, stamp_;
   double duration_ = 0.0;

@@ -3,34 +3,32 @@
 // which frame to take, what to do when a move fails. Times are seconds of the sensor's clock, poses are in world.
 #pragma once
 
+#include <agrisee/core/parameter_range.hpp>
 #include <agrisee/pipeline.hpp>
 
 namespace agrisee::robot {
 
 /// When a frame counts as taken from the view that was asked for.
 struct SessionParameters {
-  double position_tolerance = 0.02;  ///< between the sensor and the view (m)
-  double angle_tolerance = 0.05;     ///< between the sensor's orientation and the view's (rad)
-  double settle = 0.3;               ///< for how long the sensor has to stand before a frame is taken (s)
-  double still_distance = 0.0005;    ///< it stands when it moves no more than this meanwhile (m)
-  double still_angle = 0.002;        ///< and turns no more than this (rad)
-  double move_timeout = 60.0;        ///< a view that is not reached by then is given up for the next best (s)
+  double position_tolerance = 0.02;  ///< largest distance between the sensor and the view (m)
+  double angle_tolerance = 0.05;     ///< largest angle between the sensor's orientation and the view's (rad)
+  double settle = 0.3;               ///< how long the sensor has to stand still before a frame is taken (s)
+  double still_distance = 0.0005;    ///< it stands still if it moves by no more than this in that time (m)
+  double still_angle = 0.002;        ///< and turns by no more than this (rad)
+  double move_timeout = 60.0;        ///< a view that is not reached in this time is given up for the next best (s)
 
-  /// @throws ParameterError naming the field
-  void check() const {
-    fields(*this, [](const char* name, double value) {
-      check_parameter(std::isfinite(value) && value > 0.0, name, "positive", value);
-    });
-  }
-  /// f(name, field) for every field.
+  /// @throws FieldError for the first field that is out of its range, e.g. `arrival.settle`
+  void check() const { check_fields(*this, "arrival."); }
+
+  /// f(name, field, range) for every field.
   template <typename P, typename F>
   static void fields(P& p, F&& f) {
-    f("position_tolerance", p.position_tolerance);
-    f("angle_tolerance", p.angle_tolerance);
-    f("settle", p.settle);
-    f("still_distance", p.still_distance);
-    f("still_angle", p.still_angle);
-    f("move_timeout", p.move_timeout);
+    f("position_tolerance", p.position_tolerance, Range::positive());
+    f("angle_tolerance", p.angle_tolerance, Range::positive());
+    f("settle", p.settle, Range::positive());
+    f("still_distance", p.still_distance, Range::positive());
+    f("still_angle", p.still_angle, Range::positive());
+    f("move_timeout", p.move_timeout, Range::positive());
   }
 };
 
@@ -161,7 +159,10 @@ class ScanSession {
   }
 
   void begin() {
-    pipeline_ = std::make_unique<Pipeline>(workcell_, parameters_, plan::Reach{}, nullptr, seed_, threads_);
+    PipelineOptions options;
+    options.seed = seed_;
+    options.threads = threads_;
+    pipeline_ = std::make_unique<Pipeline>(workcell_, parameters_, std::move(options));
     if (!joints_stamp_) joints_ = workcell_.start;
     goal_.reset();
     refused_ = 0;

@@ -1,45 +1,54 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// @file
-/// All parameters of the pipeline in one plain struct: our defaults, and the paper's values.
+/// All parameters of the pipeline in one plain struct: our defaults and the values of [1]. Metres, radians, seconds.
 #pragma once
 
-#include <agrisee/cloud/icp_parameters.hpp>
 #include <agrisee/cloud/parameters.hpp>
-#include <agrisee/plan/gain_parameters.hpp>
+#include <agrisee/core/parameter_range.hpp>
+#include <agrisee/fuse/parameters.hpp>
+#include <agrisee/pick/parameters.hpp>
 #include <agrisee/plan/parameters.hpp>
-#include <agrisee/see/params.hpp>
+#include <agrisee/see/parameters.hpp>
 #include <agrisee/sensor/surface_image.hpp>
 
+#include <algorithm>
+#include <array>
 #include <string>
 
 namespace agrisee {
 
-/// Parameters of the whole pipeline. `Parameters{}` are our defaults, `Parameters::paper()` the paper's stages and
-/// values.
-struct Parameters {
-  std::string preset = "default";  ///< name of the preset that these values started from
-  std::string planner = "gain";    ///< gain (default), see (SEE++), fixed or random
-  int max_views = 20;              ///< view budget, whatever the planner
-  bool fuse_surfaces = true;       ///< smooth frames and fuse them as surfels; off: merge raw points, the first wins
-  bool register_views = true;      ///< lay each view on what is fused so far (ICP) before fusing it
-  bool filter_each_view = false;   ///< outlier removal after every view, besides the one at the end (raw points only)
-  bool adaptive_normals = true;    ///< derive the normals' radius from the cloud's spacing
-  double normal_reach = 3.0;       ///< adaptive: that many spacings
-  bool growth_axis = true;         ///< pose frames: z towards the calyx; off: towards the cloud's highest point (paper)
-  sensor::SurfaceParameters surface;     ///< a surface from each frame
-  SurfelParameters surfels;              ///< fusing views
-  IcpParameters icp;                     ///< registration of views
-  SorParameters sor{20, 6.0, false};     ///< a wider gate than the paper's, which costs the borders of what was seen
-  NormalParameters normals;              ///< of clouds without any
-  SplitParameters split;                 ///< which points are which fruit
-  GrowthAxisParameters axis;             ///< z of the pose frames
-  MassParameters mass;                   ///< for yield
-  plan::FreeSpaceParameters free_space;  ///< evidence of what sight lines went through
-  plan::GainPlannerParameters gain;      ///< the default planner
-  plan::PickingParameters picking;       ///< how to approach each fruit
-  see::Parameters see;                   ///< SEE++
+/// Names of the presets, see Parameters::named.
+constexpr std::array<const char*, 2> kPresetNames{"default", "paper"};
 
-  /// The paper's stages with the paper's values.
+/// Names of the planners, see make_planner.
+constexpr std::array<const char*, 4> kPlannerNames{"gain", "see", "fixed", "random"};
+
+/// Parameters of the whole pipeline. `Parameters{}` are our defaults, `Parameters::paper()` the stages and values of
+/// [1].
+struct Parameters {
+  std::string preset = "default";  ///< name of the preset from which these values were made
+  std::string planner = "gain";    ///< one of kPlannerNames: gain, see (SEE++), fixed (a ring of views) or random
+  int max_views = 20;              ///< largest number of views, for every planner
+  bool fuse_surfaces = true;   ///< smooth frames and fuse them as surfels; off: merge raw points, the first one stays
+  bool register_views = true;  ///< register each view to what is fused so far (ICP) before it is fused
+  bool filter_each_view = false;  ///< remove outliers after every view, not only at the end; for raw points only
+  bool adaptive_normals = true;   ///< derive the radius of the normals from the cloud's spacing
+  double normal_reach = 3.0;      ///< adaptive: that radius, in spacings of the cloud
+  bool growth_axis = true;  ///< z of the pose frames points to the calyx; off: to the cloud's highest point, as [1]
+  sensor::SurfaceParameters surface;          ///< how a surface is reconstructed from each frame
+  fuse::SurfelParameters surfels;             ///< how views are fused
+  IcpParameters icp;                          ///< how views are registered
+  SorParameters sor = SorParameters::wide();  ///< outlier removal, with a std_ratio of 6 instead of the 2 of [1]
+  NormalParameters normals;                   ///< how normals are estimated for clouds without any
+  SplitParameters split;                      ///< which points belong to which fruit
+  GrowthAxisParameters axis;                  ///< how z of the pose frames is found
+  MassParameters mass;                        ///< from volume to mass
+  fuse::FreeSpaceParameters free_space;       ///< when a sight line counts as evidence that something is not there
+  plan::GainPlannerParameters gain;           ///< planner `gain`
+  pick::PickingParameters picking;            ///< how to approach each fruit
+  see::Parameters see;                        ///< planner `see`
+
+  /// The stages of [1] with its values.
   static Parameters paper() {
     Parameters p;
     p.preset = "paper";
@@ -54,65 +63,55 @@ struct Parameters {
     p.sor = SorParameters::paper();
     p.normals = NormalParameters::paper();
     p.split = SplitParameters::paper();
-    p.picking = plan::PickingParameters::paper();
+    p.picking = pick::PickingParameters::paper();
     p.see = see::Parameters::paper();
     return p;
   }
-  /// The preset of that name. @throws ParameterError for any but `default` and `paper`
+
+  /// The preset of that name. @throws FieldError if there is none
   static Parameters named(const std::string& preset) {
-    if (preset == "default") return {};
-    if (preset == "paper") return paper();
-    throw ParameterError("preset must be default or paper, got " + preset);
+    if (preset == kPresetNames[0]) return {};
+    if (preset == kPresetNames[1]) return paper();
+    throw FieldError("preset", "must be " + OneOf(kPresetNames).text() + ", got " + preset);
   }
-  /// Expect fruit with radii from `smallest` to `largest` (m) and set what follows from it: the range of bodies and,
-  /// for fruit smaller than the 20 mm that the defaults are made for, the lengths at which surfaces are sampled, fused
-  /// and fitted, in proportion. Sampling twice as finely gives four times the points, in about as much more time.
-  /// @throws ParameterError when the range is empty or spans more than a factor of 20
+
+  /// Expect fruit with radii from `smallest` to `largest` (m), and set what follows from it: the range of radii of the
+  /// bodies and, for fruit smaller than the 20 mm that the defaults are made for, the lengths at which surfaces are
+  /// sampled, fused and fitted, in proportion. Half the length gives four times the points and takes about four times
+  /// as long.
+  /// @throws FieldError if the range is empty or `largest` is more than 20 times `smallest`
   void expect_radii(double smallest, double largest) {
     BodyParameters bodies = split.bodies;
     bodies.radius_min = smallest;
     bodies.radius_max = largest;
-    bodies.check();
+    check_fields(bodies, "split.bodies.");
     const double scale = std::min(1.0, smallest / BodyParameters().radius_min);
     bodies.fit.noise = scale * FitParameters().noise;
     split.bodies = bodies;
     surface.spacing = scale * sensor::SurfaceParameters().spacing;
     surface.smallest_radius = scale * sensor::SurfaceParameters().smallest_radius;
-    surfels.separation = scale * SurfelParameters().separation;
-    surfels.agreement = scale * SurfelParameters().agreement;
+    surfels.separation = scale * fuse::SurfelParameters().separation;
+    surfels.agreement = scale * fuse::SurfelParameters().agreement;
   }
-  /// @throws ParameterError naming the first field out of its range
-  void check() const {
-    if (preset != "default" && preset != "paper")
-      throw ParameterError("preset must be default or paper, got " + preset);
-    if (planner != "gain" && planner != "see" && planner != "fixed" && planner != "random")
-      throw ParameterError("planner must be gain, see, fixed or random, got " + planner);
-    check_parameter(max_views >= 1, "max_views", ">= 1", max_views);
-    check_parameter(normal_reach > 0, "normal_reach", "positive", normal_reach);
-    surface.check();
-    surfels.check();
-    icp.check();
-    sor.check();
-    normals.check();
-    split.check();
-    axis.check();
-    mass.check();
-    free_space.check();
-    gain.check();
-    picking.check();
-    see.check();
-  }
-  /// f(name, field) for every field; nested parameter structs have `fields` of their own.
+
+  /// Those that fuse::FusedViews needs.
+  fuse::FusionParameters fusion() const { return {surface, surfels, icp, free_space, register_views}; }
+
+  /// @throws FieldError for the first field that is out of its range; it names the whole key, e.g. `gain.min_gain`
+  void check() const { check_fields(*this); }
+
+  /// f(name, field, range) for every field; without a range where there is none. Nested structs list their fields the
+  /// same way.
   template <typename P, typename F>
   static void fields(P& p, F&& f) {
-    f("preset", p.preset);
-    f("planner", p.planner);
-    f("max_views", p.max_views);
+    f("preset", p.preset, OneOf(kPresetNames));
+    f("planner", p.planner, OneOf(kPlannerNames));
+    f("max_views", p.max_views, Range::at_least(1));
     f("fuse_surfaces", p.fuse_surfaces);
     f("register_views", p.register_views);
     f("filter_each_view", p.filter_each_view);
     f("adaptive_normals", p.adaptive_normals);
-    f("normal_reach", p.normal_reach);
+    f("normal_reach", p.normal_reach, Range::positive());
     f("growth_axis", p.growth_axis);
     f("surface", p.surface);
     f("surfels", p.surfels);

@@ -1,69 +1,73 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// @file
-/// From a consolidated cloud to located fruit: clean, split, locate. Used by scans, and on clouds from elsewhere.
+/// From a ready cloud to located fruit: clean, split, locate ([1], "Segmentation" and "Localization").
+///
+/// Pipeline::result() calls it on the map of a scan; call it yourself on a cloud from elsewhere. Metres, the cloud's
+/// frame. Defined in `agrisee::agrisee`.
 #pragma once
 
 #include <agrisee/cloud/seen_through.hpp>
-#include <agrisee/cloud_origin.hpp>
-#include <agrisee/core/compiled.hpp>
 #include <agrisee/parameters.hpp>
 #include <agrisee/result.hpp>
-#ifndef AGRISEE_COMPILED
-#include <agrisee/process_stages.hpp>
-#endif
 
+#include <optional>
 #include <utility>
+#include <vector>
 
 namespace agrisee {
 
-namespace detail {
-inline namespace AGRISEE_ABI {
+/// What is known of a ready cloud beside its points.
+struct CloudOrigin {
+  std::vector<Eigen::Vector3d> sensors;  ///< sensor position (m) of each view that `cloud.views` names; may be empty
+  std::optional<Eigen::Vector3d> viewpoint;  ///< one sensor position (m) for all points, for a cloud of a single view
+  bool check_normals = false;                ///< also turn the cloud's own normals where they face away from the sensor
+  Eigen::Vector3d cluster_origin = Eigen::Vector3d::Zero();  ///< origin of the cluster frame {R} in world (m)
+};
 
-#ifdef AGRISEE_COMPILED
-ScanResult process_finite(Cloud raw, const Parameters& parameters, const CloudOrigin& origin,
-                          const SeenThrough& seen_through, int threads);
-#else
-inline ScanResult process_finite(Cloud raw, const Parameters& parameters, const CloudOrigin& origin,
-                                 const SeenThrough& seen_through, int threads) {
-  return run_stages(std::move(raw), parameters, origin, seen_through, threads);
-}
-#endif
-
-}  // namespace AGRISEE_ABI
-}  // namespace detail
-
-/// Clean, split and locate (paper: SOR, region growing, DBSCAN, localization).
+/// Clean, split and locate.
 ///
-/// Points that are not finite are dropped. Normals that the cloud has are kept, unless `origin.check_normals` asks to
-/// turn those that face away from where their points were seen from; missing ones are estimated and turned to the
-/// views, to the one viewpoint, or, where neither is known, by consistency. Where normals had to be estimated, the fit
-/// of bodies (`split.bodies.fit.noise`) reckons with four times the noise that the cloud shows locally: a ready cloud's
-/// errors go on beyond the neighbourhood in which they can be told from the surface. Works for any number of points;
-/// too few to be anything give no fruit.
+/// Points that are not finite are dropped. Normals that come with the cloud are kept; with `origin.check_normals`,
+/// those that face away from their sensor are turned. Missing normals are estimated. They are turned towards the views,
+/// or the one viewpoint, or, if neither is known, so that neighbors agree. If normals had to be estimated, bodies are
+/// fitted with four times the noise that the cloud shows locally (`split.bodies.fit.noise`), because the errors of a
+/// ready cloud extend beyond the neighborhood in which they can be told from the surface. Any number of points is
+/// accepted; too few to form a body give no fruit.
 /// @param cloud points (m), any frame; normals and views where it has them
-/// @param parameters see their struct
+/// @param parameters of all stages
 /// @param origin where the points were seen from
 /// @param seen_through evidence of free space from the views, or empty
-/// @param threads the result does not depend on it
-/// @throws ParameterError; Cancelled (core/cancellation.hpp)
-inline ScanResult process(const Cloud& cloud, const Parameters& parameters = {}, const CloudOrigin& origin = {},
-                          const SeenThrough& seen_through = {}, int threads = 1) {
-  return detail::process_finite(select(cloud, finite_indices(cloud)), parameters, origin, seen_through, threads);
-}
+/// @param threads number of threads; the result does not depend on it
+/// @throws ParameterError; InputError when a point's view has no sensor position; Cancelled (core/cancellation.hpp)
+ScanResult process(const Cloud& cloud, const Parameters& parameters = {}, const CloudOrigin& origin = {},
+                   const SeenThrough& seen_through = {}, int threads = 1);
 
-/// The same on any other cloud that meets the contract of core/traits.hpp: vectors and maps of Eigen, or with a header
-/// of `interop/` clouds of PCL, Open3D and ROS. It is read where it lies, once, into the `raw` cloud of the result,
-/// which every result owns and which holds its finite points. Its views are unknown.
+/// The same for a cloud that may be consumed; it becomes the result's `raw` cloud without a copy.
+/// @param cloud points (m); all finite
+/// @param parameters, origin, seen_through, threads as above
+/// @throws as above
+ScanResult process(Cloud&& cloud, const Parameters& parameters = {}, const CloudOrigin& origin = {},
+                   const SeenThrough& seen_through = {}, int threads = 1);
+
+/// The same for any other cloud that meets the contract of core/traits.hpp: vectors and maps of Eigen, or, with a
+/// header of `interop/`, clouds of PCL, Open3D and ROS. Its finite points are copied once, into the result's `raw`
+/// cloud. Its views are unknown.
 /// @param cloud points (m), any frame
-/// @param parameters see their struct
-/// @param origin where the points were seen from
-/// @param seen_through evidence of free space from the views, or empty
-/// @param threads the result does not depend on it
-/// @throws ParameterError; Cancelled (core/cancellation.hpp)
+/// @param parameters, origin, seen_through, threads as above
+/// @throws as above
 template <typename C, typename = scalar_t<C>>
 ScanResult process(const C& cloud, const Parameters& parameters = {}, const CloudOrigin& origin = {},
                    const SeenThrough& seen_through = {}, int threads = 1) {
-  return detail::process_finite(finite_points(cloud), parameters, origin, seen_through, threads);
+  return process(finite_points(cloud), parameters, origin, seen_through, threads);
 }
+
+/// A ready cloud, thinned to the spacing that fused surfaces have.
+///
+/// A cloud that is denser than `surfels.separation` is averaged in voxels of that size, which removes noise and saves
+/// time; each mean keeps the view of the point nearest to it. A sparser cloud is returned unchanged. Points that are
+/// not finite are dropped.
+/// @param cloud points (m); normals and views where it has them
+/// @param parameters only `surfels.separation` is used
+/// @throws Cancelled
+Cloud thinned(const Cloud& cloud, const Parameters& parameters);
 
 }  // namespace agrisee

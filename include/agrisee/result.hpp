@@ -6,41 +6,13 @@
 
 #include <agrisee/core/cloud.hpp>
 #include <agrisee/core/pose.hpp>
+#include <agrisee/core/stop_reason.hpp>
 
 #include <optional>
 #include <string>
 #include <vector>
 
 namespace agrisee {
-
-/// Why a scan ended.
-enum class StopReason {
-  not_stopped,        ///< it has not ended
-  no_frontier,        ///< nothing is left that is worth seeing
-  no_reachable_view,  ///< what is left cannot be seen from where the arm can go
-  low_gain,           ///< the best reachable view promises less than the threshold
-  max_views,          ///< the view budget is used up
-  nothing_seen        ///< the first views returned no point inside the scan volume
-};
-
-/// Its name, as in run.json.
-inline const char* to_string(StopReason reason) {
-  switch (reason) {
-    case StopReason::not_stopped:
-      return "not_stopped";
-    case StopReason::no_frontier:
-      return "no_frontier";
-    case StopReason::no_reachable_view:
-      return "no_reachable_view";
-    case StopReason::low_gain:
-      return "low_gain";
-    case StopReason::max_views:
-      return "max_views";
-    case StopReason::nothing_seen:
-      return "nothing_seen";
-  }
-  return "unknown";
-}
 
 /// A view that was taken.
 struct View {
@@ -50,7 +22,7 @@ struct View {
   std::size_t points_in = 0;                         ///< points returned inside the scan volume
   std::size_t points_new = 0;                        ///< points that the merged cloud kept
   double plan_seconds = 0.0;                         ///< time it took to choose this view
-  bool discarded = false;                            ///< what it saw was not believed: see Pipeline::observe
+  bool discarded = false;                            ///< it is not part of the map; Pipeline::observe says why
 };
 
 /// A body fitted to a fruit: an ellipsoid.
@@ -68,18 +40,18 @@ struct Body {
   double mass_error = 0.0;  ///< its standard error (kg), the density's included; 0 = not known
 };
 
-/// Whether a fruit can be picked, or what is in the way: of all directions of approach, what stopped the one that came
-/// farthest. In the order in which an approach is tested.
+/// Whether a fruit can be picked, or what prevents it. An approach passes the tests in this order; of all directions
+/// of approach, the reason of the one that came farthest is given.
 enum class PickingReason {
   reachable,             ///< it can be picked
-  not_tested,            ///< an approach is free, but no arm was asked whether it can reach it
+  not_tested,            ///< an approach is free, but there is no arm model to ask whether it can be reached
   no_body,               ///< no body was fitted: where to grip is not known
   blocked_by_keep_out,   ///< every approach meets a space to keep out of
-  blocked_by_fruit,      ///< every approach meets fruit that cannot be picked before
+  blocked_by_fruit,      ///< every approach meets fruit that cannot be picked first
   out_of_reach,          ///< no joint angles within the limits put the tool at a pre-grasp pose
   arm_collision,         ///< the arm would meet a space to keep out of, or itself
   approach_interrupted,  ///< the arm can stand at a pre-grasp pose but not follow the straight approach
-  arm_meets_fruit        ///< the arm would meet fruit that cannot be picked before
+  arm_meets_fruit        ///< the arm would meet fruit that cannot be picked first
 };
 
 /// Its name, as in fruits.json.
@@ -111,12 +83,12 @@ inline const char* to_string(PickingReason reason) {
 struct Picking {
   int order = 0;           ///< from 1 over all fruit of a result; those that cannot be picked come last
   bool reachable = false;  ///< it can be picked
-  PickingReason reason = PickingReason::not_tested;     ///< if not, why
+  PickingReason reason = PickingReason::not_tested;     ///< why not, if it cannot
   Eigen::Vector3d direction = Eigen::Vector3d::Zero();  ///< unit, from pre-grasp to the centre; zero without a body
   Pose world_T_pre_grasp =
       Pose::Identity();          ///< of the tool: z along the direction (REP-103's optical frame); with a body
-  std::optional<Joints> joints;  ///< at the pre-grasp pose, where it is reachable and the arm tells them
-  std::vector<int> after;        ///< ids of the fruit that stand in the way and have to be picked before
+  std::optional<Joints> joints;  ///< at the pre-grasp pose (rad), where it is reachable and the arm model gives them
+  std::vector<int> after;        ///< ids of the fruit that are in the way and must be picked first
 };
 
 /// A located fruit.
@@ -129,7 +101,7 @@ struct Fruit {
   Eigen::Vector3d sigma = Eigen::Vector3d::Zero();             ///< standard deviation of its points per world axis (m)
   Eigen::Matrix3d orientation = Eigen::Matrix3d::Identity();   ///< the pose frame's axes in world
   std::optional<Body> body;                                    ///< where one was fitted
-  std::optional<Picking> picking;                              ///< where it was planned (plan/picking.hpp)
+  std::optional<Picking> picking;                              ///< where it was planned (pick/picking.hpp)
 
   /// The pose frame in world: origin at the centroid.
   Pose pose() const {
@@ -140,16 +112,16 @@ struct Fruit {
   }
 };
 
-/// How much of the fruit's surface a planner believes to have been seen, and that the arm can see at all: shares of the
-/// surface of the bodies that it knows of, 0..1. Nothing true is read for it.
+/// How much of the fruit's surface has been seen, and how much the arm can see at all, as the planner estimates it from
+/// the bodies that it has found: shares of their surface, 0..1. No ground truth is used.
 struct Completeness {
-  /// Of one body.
+  /// The estimate for one body.
   struct Part {
     Eigen::Vector3d center = Eigen::Vector3d::Zero();  ///< m, world
     double seen = 0.0;                                 ///< share of its surface that points cover
-    double observable = 0.0;  ///< the same once everything that the arm can still see has been seen
+    double observable = 0.0;                           ///< share that will be covered once the arm has seen all it can
   };
-  std::vector<Part> fruits;  ///< in the planner's own order
+  std::vector<Part> fruits;  ///< in the planner's order of bodies
   double seen = 0.0;         ///< of all bodies
   double observable = 0.0;   ///< of all bodies
 
@@ -157,16 +129,16 @@ struct Completeness {
   double of_observable() const { return observable > 0.0 ? seen / observable : 0.0; }
 };
 
-/// Seconds of computing per stage. `total` is all of it but the simulated sensor's `capture`.
+/// Seconds of computing per stage.
 struct Timing {
-  double capture = 0.0;  ///< the simulated sensor's
+  double capture = 0.0;  ///< taken by the simulated sensor; not part of `total`
   double plan = 0.0;     ///< choosing views
-  double fuse = 0.0;     ///< merging them
+  double fuse = 0.0;     ///< looking at frames and merging them
   double filter = 0.0;   ///< outlier removal
   double normals = 0.0;  ///< where they had to be estimated
-  double segment = 0.0;  ///< splitting into fruit
+  double segment = 0.0;  ///< segmentation into fruit
   double locate = 0.0;   ///< bodies, poses, picking
-  double total = 0.0;    ///< all but `capture`
+  double total = 0.0;    ///< everything except `capture`
 
   /// f(name, field) for every stage.
   template <typename P, typename F>
@@ -190,8 +162,8 @@ struct ScanResult {
   Cloud cloud;                                       ///< the consolidated cloud: points, normals, views (world)
   Labels labels;                                     ///< one per point of `cloud`: the fruit's id, or 0
   std::vector<Fruit> fruits;                         ///< from the top of the truss down
-  std::optional<Completeness> completeness;  ///< as the planner believes; absent where it does not reckon with surfaces
-  Timing seconds;                            ///< of computing
+  std::optional<Completeness> completeness;          ///< as the planner estimates; empty if it does not
+  Timing seconds;                                    ///< of computing
 };
 
 }  // namespace agrisee

@@ -4,4 +4,4 @@
 #pragma once
 
 /// The version, stated here alone.
-#define AGRISEE_VERSION "0.1.0"
+#define AGRISEE_VERSION "0.2.0"

@@ -6,7 +6,7 @@
 #include <agrisee/core/pose.hpp>
 #include <agrisee/geometry/aabb.hpp>
 #include <agrisee/geometry/primitives.hpp>
-#include <agrisee/sensor/l515.hpp>
+#include <agrisee/sensor/depth_camera.hpp>
 
 #include <string>
 #include <vector>
@@ -15,11 +15,11 @@ namespace agrisee {
 
 /// Everything of a scene file but its objects; see the scene format.
 struct Workcell {
-  std::string name;                      ///< as in run.json
-  Pose world_T_base = Pose::Identity();  ///< the UR3's base_link in world
-  Pose tool0_T_optical = pose_from_xyz_rpy({0.0, 0.0, 0.03}, Eigen::Vector3d::Zero());  ///< hand-eye transform
+  std::string name;                                                             ///< as in run.json
+  Pose world_T_base = Pose::Identity();                                         ///< the UR3's base_link in world
+  Pose tool0_T_optical = default_hand_eye();                                    ///< hand-eye transform
   Joints start = (Joints() << 0.0, -1.57, 1.57, -1.57, -1.57, 0.0).finished();  ///< joints before the first move (rad)
-  sensor::L515 sensor;                                                          ///< intrinsics and range
+  sensor::DepthCamera sensor = sensor::l515();                                  ///< the camera that the arm carries
   Aabb scan_volume;                                                             ///< world
   std::vector<KeepOut> keep_out;                                                ///< neither arm nor sensor may enter
 };

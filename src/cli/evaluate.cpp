@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// agrisee evaluate: how good a result is, against the scene's own meshes.
+// agrisee evaluate: compares a result with the true surfaces of its scene.
 #include <agrisee/io/cloud_file.hpp>
 #include <agrisee/io/ground_truth.hpp>
+#include <agrisee/io/results.hpp>
 #include <agrisee/io/scene.hpp>
 #include <agrisee/study/evaluate.hpp>
 #include <agrisee/study/limit.hpp>
@@ -146,14 +147,15 @@ int run_evaluate(const EvaluateOptions& options) {
 }  // namespace
 
 void add_evaluate(CLI::App& app, Run& run) {
-  auto* command = app.add_subcommand("evaluate", "judge a result against the scene that it was made from");
+  auto* command = app.add_subcommand("evaluate", "compare a result with the scene that it was made from");
   auto options = std::make_shared<EvaluateOptions>();
   command->add_option("scene", options->scene, "scene file (YAML)")->required();
   command->add_option("result", options->result, "result folder")->required();
-  command->add_option("--threshold", options->threshold, "a point is on a surface within this distance (m)")
+  command->add_option("--threshold", options->threshold, "a point lies on a surface if it is within this distance (m)")
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
-  command->add_option("--threads", options->threads, "threads (0: all)")->check(CLI::Range(0, 1024));
+  command->add_option("--threads", options->threads, "number of threads (0: one per core); does not change the result")
+      ->check(CLI::Range(0, 1024));
   command->add_flag("--json", options->json, "print the metrics as JSON");
   command->footer("Example:\n  agrisee evaluate truss/scene.yaml result --json");
   command->callback([options, &run] { run = [options] { return run_evaluate(*options); }; });

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// agrisee experiment: the paper's experiment, side by side with its tables.
-#include <agrisee/io/experiment.hpp>
+// agrisee experiment: the experiment of the paper [1], and a report that compares the results with the paper's tables.
+#include <agrisee/core/parallel.hpp>
 #include <agrisee/io/files.hpp>
 #include <agrisee/io/fingerprint.hpp>
 #include <agrisee/io/ground_truth.hpp>
 #include <agrisee/io/parameters.hpp>
-#include <agrisee/io/report.hpp>
 #include <agrisee/io/scene.hpp>
+#include <agrisee/study/run_cell.hpp>
 #include <agrisee/version.hpp>
 
 #include <chrono>
@@ -19,7 +19,8 @@
 #include <sstream>
 
 #include "commands.hpp"
-#include "simulate.hpp"
+#include "report/experiment_report.hpp"
+#include "report/records.hpp"
 #include "trusses.hpp"
 
 namespace agrisee::cli {
@@ -28,7 +29,8 @@ namespace {
 namespace fs = std::filesystem;
 
 struct ExperimentOptions {
-  std::string output, report, params;
+  std::string output, report;
+  std::string parameter_file;  ///< value of --params
   std::vector<std::string> presets{"paper", "default"}, planners, noises{"l515"}, scenes;
   int trials = 3, paper_trials = 0, threads = 0, max_views = 0;
 
@@ -37,21 +39,22 @@ struct ExperimentOptions {
   }
 };
 
-/// A scene of the experiment; what is costly of it is made when its first cell runs.
+/// A scene of the experiment. Its costly part is computed when its first cell runs.
 struct SceneJob {
   std::string name;
   fs::path path;  ///< of scene.yaml
   io::SceneFile file;
   std::string fingerprint;
   std::unique_ptr<std::once_flag> once = std::make_unique<std::once_flag>();
-  std::shared_ptr<const study::Subject> subject;
+  std::optional<study::Subject> prepared;
 
-  const study::Subject& ready() {
+  /// The scene, prepared for its cells. May be called by several threads at once.
+  const study::Subject& subject() {
     std::call_once(*once, [&] {
       const auto known = io::read_ground_truth(path.parent_path() / "ground_truth.json");
-      subject = cli::make_subject(name, fingerprint, file.scene, file.workcell, known);
+      prepared = study::make_subject(name, fingerprint, file.scene, file.workcell, known);
     });
-    return *subject;
+    return *prepared;
   }
 };
 
@@ -70,7 +73,8 @@ SceneJob open_scene(const fs::path& path) {
   return job;
 }
 
-/// Scenes by name are made anew, so that they are those of this version; others are read from their files.
+/// Open all scenes. Trusses named by their counts are generated again, so that they are those of this version; other
+/// scenes are read from their files.
 std::vector<SceneJob> open_scenes(const ExperimentOptions& options) {
   std::vector<SceneJob> jobs;
   std::set<std::string> names;
@@ -84,7 +88,7 @@ std::vector<SceneJob> open_scenes(const ExperimentOptions& options) {
       jobs.push_back(open_scene(text));
     }
     if (!names.insert(jobs.back().name).second)
-      throw UsageError(text + ": a second scene of the name " + jobs.back().name);
+      throw UsageError(text + ": there are two scenes with the name " + jobs.back().name);
   }
   return jobs;
 }
@@ -104,14 +108,14 @@ std::vector<CellJob> list_cells(const ExperimentOptions& options, const std::vec
   for (std::size_t s = 0; s < scenes.size(); ++s)
     for (const std::string& preset : options.presets) {
       Parameters parameters = Parameters::named(preset);
-      if (!options.params.empty()) parameters = io::read_parameters(options.params, parameters);
+      if (!options.parameter_file.empty()) parameters = io::read_parameters(options.parameter_file, parameters);
       if (options.max_views > 0) parameters.max_views = options.max_views;
       const std::vector<std::string> own{parameters.planner};
       for (const std::string& planner : options.planners.empty() ? own : options.planners)
         for (const std::string& noise : options.noises)
           for (int trial = 1; trial <= options.trials_of(preset); ++trial) {
             CellJob job;
-            job.cell = {scenes[s].name, preset, planner, sensor::to_string(sensor::parse_noise(noise)), trial};
+            job.cell = {scenes[s].name, preset, planner, to_string(study::parse_noise(noise)), trial};
             if (!names.insert(job.cell.name()).second) continue;
             job.scene = s;
             job.parameters = parameters;
@@ -126,7 +130,7 @@ std::vector<CellJob> list_cells(const ExperimentOptions& options, const std::vec
   return jobs;
 }
 
-/// A record that is there, readable and of what would be run now.
+/// Read a record. None if it is missing, damaged, or does not belong to what would be run now.
 template <typename Record, typename Read>
 std::optional<Record> finished(const fs::path& path, const std::string& fingerprint, Read&& read) {
   std::error_code error;
@@ -134,7 +138,7 @@ std::optional<Record> finished(const fs::path& path, const std::string& fingerpr
   try {
     Record record = read(path);
     if (record.fingerprint == fingerprint) return record;
-  } catch (const FileError&) {  // half a record is none
+  } catch (const FileError&) {  // a damaged record counts as missing
   }
   return std::nullopt;
 }
@@ -144,11 +148,34 @@ std::string duration(double seconds) {
   return s < 90 ? std::to_string(s) + " s" : std::to_string((s + 30) / 60) + " min";
 }
 
-/// Runs what is not finished. @return messages of cells that failed
+/// One line about a finished cell.
+std::string outcome_of(const study::CellRecord& record) {
+  std::ostringstream text;
+  text << record.metrics.n_true << "/" << record.metrics.n_real << " fruit, "
+       << record.metrics.n_det - record.metrics.n_true << " false, " << record.views << " views, recall " << std::fixed
+       << std::setprecision(1) << 100.0 * record.metrics.recall_obs << " %, " << record.seconds.total << " s";
+  return text.str();
+}
+
+/// Run a cell and write its record. @return one line about it, or why it failed
+std::string run_and_record(CellJob& job, SceneJob& scene) {
+  try {
+    study::CellRecord record = study::run_cell(scene.subject(), job.cell, job.parameters);
+    record.fingerprint = job.fingerprint;
+    report::write_record(job.path, record);
+    const std::string outcome = outcome_of(record);
+    job.record = std::move(record);
+    return outcome;
+  } catch (const std::exception& e) {
+    return std::string("failed: ") + e.what();
+  }
+}
+
+/// Run the cells that have no record yet. @return messages of the cells that failed
 std::vector<std::string> run_cells(std::vector<CellJob>& cells, std::vector<SceneJob>& scenes, int threads) {
   std::vector<std::size_t> open;
   for (std::size_t i = 0; i < cells.size(); ++i) {
-    cells[i].record = finished<study::CellRecord>(cells[i].path, cells[i].fingerprint, io::read_cell_record);
+    cells[i].record = finished<study::CellRecord>(cells[i].path, cells[i].fingerprint, report::read_cell_record);
     if (!cells[i].record) open.push_back(i);
   }
   std::cerr << cells.size() << " cells, " << open.size() << " of them to run\n";
@@ -160,21 +187,7 @@ std::vector<std::string> run_cells(std::vector<CellJob>& cells, std::vector<Scen
       open.size(), threads,
       [&](std::size_t k) {
         CellJob& job = cells[open[k]];
-        std::string outcome;
-        try {
-          study::CellRecord record = cli::run_cell(scenes[job.scene].ready(), job.cell, job.parameters);
-          record.fingerprint = job.fingerprint;
-          io::write_record(job.path, record);
-          std::ostringstream text;
-          text << record.metrics.n_true << "/" << record.metrics.n_real << " fruit, "
-               << record.metrics.n_det - record.metrics.n_true << " false, " << record.views << " views, recall "
-               << std::fixed << std::setprecision(1) << 100.0 * record.metrics.recall_obs << " %, "
-               << record.seconds.total << " s";
-          outcome = text.str();
-          job.record = std::move(record);
-        } catch (const std::exception& e) {
-          outcome = std::string("failed: ") + e.what();
-        }
+        const std::string outcome = run_and_record(job, scenes[job.scene]);
         const std::lock_guard<std::mutex> lock(mutex);
         ++done;
         if (!job.record) failed.push_back(job.cell.name() + " " + outcome);
@@ -189,7 +202,7 @@ std::vector<std::string> run_cells(std::vector<CellJob>& cells, std::vector<Scen
   return failed;
 }
 
-/// What can be seen of each scene, measured once.
+/// What can be seen of each scene; computed once, then read from its record.
 std::vector<study::SceneRecord> judge_scenes(const ExperimentOptions& options, std::vector<SceneJob>& scenes,
                                              int threads) {
   std::vector<study::SceneRecord> records(scenes.size());
@@ -197,12 +210,12 @@ std::vector<study::SceneRecord> judge_scenes(const ExperimentOptions& options, s
       scenes.size(), threads,
       [&](std::size_t s) {
         const fs::path path = fs::path(options.output) / "cells" / (study::file_name(scenes[s].name) + ".json");
-        if (auto record = finished<study::SceneRecord>(path, scenes[s].fingerprint, io::read_scene_record)) {
+        if (auto record = finished<study::SceneRecord>(path, scenes[s].fingerprint, report::read_scene_record)) {
           records[s] = *record;
           return;
         }
-        records[s] = cli::judge_scene(scenes[s].ready());
-        io::write_record(path, records[s]);
+        records[s] = study::judge_scene(scenes[s].subject());
+        report::write_record(path, records[s]);
       },
       1);
   return records;
@@ -222,19 +235,13 @@ std::string command_of(const ExperimentOptions& options) {
   text += " --trials " + std::to_string(options.trials);
   if (options.paper_trials > 0) text += " --paper-trials " + std::to_string(options.paper_trials);
   list("--scenes", options.scenes);
-  if (!options.params.empty()) text += " --params " + options.params;
+  if (!options.parameter_file.empty()) text += " --params " + options.parameter_file;
   if (options.max_views > 0) text += " --max-views " + std::to_string(options.max_views);
   return text;
 }
 
 int run_experiment(const ExperimentOptions& options) {
-  for (const std::string& noise : options.noises) {
-    try {
-      sensor::parse_noise(noise);
-    } catch (const ParameterError& e) {
-      throw UsageError(e.what());
-    }
-  }
+  for (const std::string& noise : options.noises) noise_of(noise);
   make_folder(options.output);
   make_folder((fs::path(options.output) / "cells").string());
   const int threads = threads_of(options.threads);
@@ -246,9 +253,9 @@ int run_experiment(const ExperimentOptions& options) {
   for (CellJob& job : cells)
     if (job.record) records.push_back(std::move(*job.record));
   if (!records.empty()) {
-    const fs::path report = options.report.empty() ? fs::path(options.output) / "report.md" : fs::path(options.report);
-    io::write_report(report, records, scene_records, {AGRISEE_VERSION, command_of(options)});
-    std::cout << "Report: " << report.string() << "\n";
+    const fs::path path = options.report.empty() ? fs::path(options.output) / "report.md" : fs::path(options.report);
+    report::write_experiment_report(path, records, scene_records, {AGRISEE_VERSION, command_of(options)});
+    std::cout << "Report: " << path.string() << "\n";
   }
   if (failed.empty()) return kSuccess;
   for (const std::string& message : failed) std::cerr << "agrisee: " << message << "\n";
@@ -258,35 +265,38 @@ int run_experiment(const ExperimentOptions& options) {
 }  // namespace
 
 void add_experiment(CLI::App& app, Run& run) {
-  auto* command =
-      app.add_subcommand("experiment", "the paper's experiment: scenes, presets, planners, noises and trials, tabled");
+  auto* command = app.add_subcommand("experiment",
+                                     "run the paper's experiment: scenes, presets, planners, noise models and trials");
   auto options = std::make_shared<ExperimentOptions>();
-  command->add_option("-o,--output", options->output, "folder; what is finished in it is not run again")->required();
-  command->add_option("--presets", options->presets, "paper, default")
+  command
+      ->add_option("-o,--output", options->output,
+                   "folder for the records; cells that have a record there are not run again")
+      ->required();
+  command->add_option("--presets", options->presets, "presets: paper, default")
       ->delimiter(',')
-      ->check(CLI::IsMember({"paper", "default"}))
+      ->check(CLI::IsMember(preset_choices()))
       ->capture_default_str();
-  command->add_option("--planner", options->planners, "planners (default: each preset's own)")
+  command->add_option("--planner", options->planners, "planners (default: that of each preset)")
       ->delimiter(',')
-      ->check(CLI::IsMember({"gain", "see", "fixed", "random", "greedy"}));
-  command->add_option("--noise", options->noises, "noise models: none, gaussian:SIGMA, l515, rough")
+      ->check(CLI::IsMember(planner_choices()));
+  command->add_option("--noise", options->noises, "noise models: none, gaussian:SIGMA (m), l515, rough")
       ->delimiter(',')
       ->capture_default_str();
-  command->add_option("--trials", options->trials, "trials; their numbers are the seeds")
+  command->add_option("--trials", options->trials, "number of trials; the seeds are 1, 2, ...")
       ->check(CLI::Range(1, 1000))
       ->capture_default_str();
   command
       ->add_option("--paper-trials", options->paper_trials,
-                   "trials of the paper preset, which takes longer (default: as many as of others)")
+                   "number of trials of the paper preset, which takes longer (default: the same as --trials)")
       ->check(CLI::Range(1, 1000));
   command
       ->add_option("--scenes", options->scenes,
-                   "scene files, trusses of the paper (7_1) or of other seeds (7_1_s5); default: the paper's eleven")
+                   "scene files, or trusses by name (7_1, or 7_1_s5 for seed 5); default: the eleven of paper-scenes")
       ->delimiter(',');
-  command->add_option("--params", options->params, "YAML file with parameters to change in every preset");
-  command->add_option("--max-views", options->max_views, "view budget (default: the preset's)")
+  command->add_option("--params", options->parameter_file, "YAML file with parameters to change in every preset");
+  command->add_option("--max-views", options->max_views, "largest number of views (default: that of the preset)")
       ->check(CLI::Range(1, 10000));
-  command->add_option("--threads", options->threads, "cells at a time (0: as many as cores)")
+  command->add_option("--threads", options->threads, "number of cells at a time (0: one per core)")
       ->check(CLI::Range(0, 1024))
       ->capture_default_str();
   command->add_option("--report", options->report, "Markdown file to write (default: report.md in the folder)");
@@ -295,8 +305,7 @@ void add_experiment(CLI::App& app, Run& run) {
       "  agrisee experiment -o build/experiment\n"
       "  agrisee experiment -o small --scenes 7_1,8_4 --presets default --noise none,rough --trials 1\n"
       "  agrisee experiment -o planners --presets default --planner gain,see,fixed,random,greedy\n"
-      "Cells run side by side, each on one thread; `agrisee scan DIR/scenes/NAME/scene.yaml --seed TRIAL` repeats "
-      "one.");
+      "Cells run in parallel, each on one thread. `agrisee scan DIR/scenes/NAME/scene.yaml --seed TRIAL` repeats one.");
   command->callback([options, &run] { run = [options] { return run_experiment(*options); }; });
 }
 

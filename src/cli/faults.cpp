@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// agrisee faults: scans whose sensor and arm go wrong.
-#include <agrisee/io/fault_report.hpp>
+// agrisee faults: scans with faults of sensor and arm, and what they still find.
+#include <agrisee/core/parallel.hpp>
 #include <agrisee/io/ground_truth.hpp>
 #include <agrisee/io/scene.hpp>
+#include <agrisee/study/evaluate.hpp>
+#include <agrisee/study/faults.hpp>
 #include <agrisee/version.hpp>
 
 #include <filesystem>
@@ -12,7 +14,7 @@
 #include <sstream>
 
 #include "commands.hpp"
-#include "simulate.hpp"
+#include "report/fault_report.hpp"
 #include "trusses.hpp"
 
 namespace agrisee::cli {
@@ -34,24 +36,72 @@ std::vector<std::string> kind_names() {
   return names;
 }
 
+/// The fault of a name; none for `any`.
 std::optional<study::Fault> kind_of(const std::string& name) {
   for (std::size_t k = 0; k < study::kFaults; ++k)
     if (name == to_string(static_cast<study::Fault>(k))) return static_cast<study::Fault>(k);
   return std::nullopt;
 }
 
-struct Subject {
+/// A scene, with what its scans are judged by.
+struct JudgedScene {
   std::string name;
   Workcell workcell;
-  std::shared_ptr<const study::Truth> truth;
+  study::Truth truth;
 };
 
-Subject subject_of(const std::string& text) {
+/// Open a scene file, or generate a truss by name.
+JudgedScene open_scene(const std::string& text) {
   const auto truss = truss_by_name(text);
   const io::SceneFile file = truss ? io::SceneFile{truss->workcell, truss->scene} : io::read_scene(text);
   const auto known =
       truss ? std::optional(truss->truth) : io::read_ground_truth(fs::path(text).parent_path() / "ground_truth.json");
-  return {file.workcell.name, file.workcell, cli::make_truth(file.scene, known, file.workcell.sensor)};
+  return {file.workcell.name, file.workcell, study::make_truth(file.scene, known, file.workcell.sensor)};
+}
+
+/// One scan.
+struct FaultScan {
+  std::size_t scene;
+  study::FaultParameters faults;
+  int trial;
+};
+
+/// All scans, for this number of scenes.
+std::vector<FaultScan> list_scans(const FaultOptions& options, std::size_t scene_count) {
+  std::vector<FaultScan> scans;
+  for (const std::string& kind : options.kinds)
+    for (const double rate : options.rates)
+      for (std::size_t s = 0; s < scene_count; ++s)
+        for (int trial = 1; trial <= options.trials; ++trial) {
+          study::FaultParameters faults;
+          faults.rate = rate;
+          faults.kind = kind_of(kind);
+          scans.push_back({s, faults, trial});
+        }
+  return scans;
+}
+
+/// Run all scans; the records are in the order of `scans`.
+std::vector<study::FaultRecord> run_scans(const std::vector<FaultScan>& scans, const std::vector<JudgedScene>& scenes,
+                                          const Parameters& parameters, const study::NoiseModel& noise, int threads) {
+  std::vector<study::FaultRecord> records(scans.size());
+  std::mutex mutex;
+  std::size_t done = 0;
+  parallel_for(
+      scans.size(), threads,
+      [&](std::size_t i) {
+        const FaultScan& one = scans[i];
+        const JudgedScene& scene = scenes[one.scene];
+        study::FaultRecord r =
+            study::scan_with_faults(scene.name, scene.workcell, scene.truth, parameters, noise, one.faults, one.trial);
+        const std::lock_guard<std::mutex> lock(mutex);
+        std::cerr << "[" << ++done << "/" << scans.size() << "] " << r.scene << ", " << r.kind << " at "
+                  << 100.0 * r.rate << " %: " << r.found << "/" << r.fruit << " fruit, " << r.invented << " invented, "
+                  << r.discarded << " of " << r.views << " views discarded\n";
+        records[i] = std::move(r);
+      },
+      1);
+  return records;
 }
 
 template <typename T>
@@ -61,6 +111,7 @@ std::string joined(const std::vector<T>& values) {
   return out.str();
 }
 
+/// The command that repeats the scans.
 std::string command_of(const FaultOptions& options) {
   std::ostringstream text;
   text << "agrisee faults --report FILE --kinds " << joined(options.kinds) << " --rates " << joined(options.rates)
@@ -70,54 +121,21 @@ std::string command_of(const FaultOptions& options) {
 }
 
 int run_faults(const FaultOptions& options) {
-  const fs::path report = options.report;
-  if (!report.has_extension()) throw UsageError(options.report + ": needs an extension such as .md");
-  for (const fs::path& path : {report, report.parent_path() / report.stem()})
-    if (!options.force && fs::exists(path)) throw UsageError(path.string() + ": exists; use --force to overwrite it");
-  sensor::NoiseModel noise;
-  try {
-    noise = sensor::parse_noise(options.noise);
-  } catch (const ParameterError& e) {
-    throw UsageError(e.what());
-  }
+  const fs::path path = options.report;
+  if (!path.has_extension()) throw UsageError(options.report + ": needs an extension such as .md");
+  for (const fs::path& written : {path, path.parent_path() / path.stem()})
+    if (!options.force && fs::exists(written))
+      throw UsageError(written.string() + ": exists; use --force to overwrite it");
+  const study::NoiseModel noise = noise_of(options.noise);
   const Parameters parameters = Parameters::named(options.preset);
-  std::vector<Subject> subjects;
+  std::vector<JudgedScene> scenes;
   for (const std::string& text : options.scenes.empty() ? paper_truss_names() : options.scenes)
-    subjects.push_back(subject_of(text));
-  struct Job {
-    std::size_t subject;
-    study::FaultParameters faults;
-    int trial;
-  };
-  std::vector<Job> jobs;
-  for (const std::string& kind : options.kinds)
-    for (const double rate : options.rates)
-      for (std::size_t s = 0; s < subjects.size(); ++s)
-        for (int trial = 1; trial <= options.trials; ++trial) {
-          study::FaultParameters faults;
-          faults.rate = rate;
-          faults.kind = kind_of(kind);
-          jobs.push_back({s, faults, trial});
-        }
-  std::vector<study::FaultRecord> records(jobs.size());
-  std::mutex mutex;
-  std::size_t done = 0;
-  parallel_for(
-      jobs.size(), threads_of(options.threads),
-      [&](std::size_t i) {
-        const Job& job = jobs[i];
-        const Subject& subject = subjects[job.subject];
-        study::FaultRecord r = cli::scan_with_faults(subject.name, subject.workcell, *subject.truth, parameters, noise,
-                                                     job.faults, job.trial);
-        const std::lock_guard<std::mutex> lock(mutex);
-        std::cerr << "[" << ++done << "/" << jobs.size() << "] " << r.scene << ", " << r.kind << " at "
-                  << 100.0 * r.rate << " %: " << r.found << "/" << r.fruit << " fruit, " << r.invented << " invented, "
-                  << r.discarded << " of " << r.views << " views discarded\n";
-        records[i] = std::move(r);
-      },
-      1);
-  io::write_fault_report(report, records, {AGRISEE_VERSION, command_of(options)});
-  std::cout << "Report: " << report.string() << "\n";
+    scenes.push_back(open_scene(text));
+  const std::vector<FaultScan> scans = list_scans(options, scenes.size());
+  const std::vector<study::FaultRecord> records =
+      run_scans(scans, scenes, parameters, noise, threads_of(options.threads));
+  report::write_fault_report(path, records, {AGRISEE_VERSION, command_of(options)});
+  std::cout << "Report: " << path.string() << "\n";
   return kSuccess;
 }
 
@@ -125,12 +143,12 @@ int run_faults(const FaultOptions& options) {
 
 void add_faults(CLI::App& app, Run& run) {
   auto* command =
-      app.add_subcommand("faults", "scan while sensor and arm go wrong, and tell what is found all the same");
+      app.add_subcommand("faults", "simulate faults of sensor and arm, and report what the scans still find");
   auto options = std::make_shared<FaultOptions>();
   command
-      ->add_option("--report", options->report, "Markdown file to write; its tables and plot go in a folder beside it")
+      ->add_option("--report", options->report, "Markdown file to write; its table and plot go into a folder beside it")
       ->required();
-  command->add_option("--kinds", options->kinds, "faults: any, or one kind alone")
+  command->add_option("--kinds", options->kinds, "kinds of fault: any (all of them mixed), or single kinds")
       ->delimiter(',')
       ->check(CLI::IsMember(kind_names()))
       ->capture_default_str();
@@ -138,17 +156,19 @@ void add_faults(CLI::App& app, Run& run) {
       ->delimiter(',')
       ->check(CLI::Range(0.0, 1.0))
       ->capture_default_str();
-  command->add_option("--noise", options->noise, "noise of the sensor: none, gaussian:SIGMA, l515 or rough")
+  command->add_option("--noise", options->noise, "noise model of the sensor: none, gaussian:SIGMA (m), l515 or rough")
       ->capture_default_str();
   command->add_option("--preset", options->preset, "parameters: default, or paper")
-      ->check(CLI::IsMember({"default", "paper"}))
+      ->check(CLI::IsMember(preset_choices()))
       ->capture_default_str();
-  command->add_option("--scenes", options->scenes, "scene files or trusses by name (7_1); default: the paper's eleven")
+  command
+      ->add_option("--scenes", options->scenes,
+                   "scene files, or trusses by name (7_1); default: the eleven of paper-scenes")
       ->delimiter(',');
-  command->add_option("--trials", options->trials, "trials; their numbers are the seeds")
+  command->add_option("--trials", options->trials, "number of trials per scene; the seeds are 1, 2, ...")
       ->check(CLI::Range(1, 1000))
       ->capture_default_str();
-  command->add_option("--threads", options->threads, "scans at a time (0: as many as cores)")
+  command->add_option("--threads", options->threads, "number of scans at a time (0: one per core)")
       ->check(CLI::Range(0, 1024))
       ->capture_default_str();
   command->add_flag("--force", options->force, "overwrite an existing report");

@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// agrisee limit: what an arm at its place, or near it, can see of a crop at all, and in how few views.
+// agrisee limit: how much of the fruit the arm can see at all from its place, or from places near it, and in how few
+// views.
 #include <agrisee/io/files.hpp>
 #include <agrisee/io/palette.hpp>
+#include <agrisee/io/results.hpp>
 #include <agrisee/io/scene.hpp>
 #include <agrisee/study/base_search.hpp>
+#include <agrisee/study/greedy.hpp>
 #include <agrisee/version.hpp>
 
 #include <cstring>
@@ -23,8 +26,8 @@ namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
 constexpr int kFormatVersion = 1;
-constexpr double kShares[] = {0.90, 0.95, 0.98, 0.99};  // of the observable samples, to count views for
-constexpr std::size_t kRows = 12;                       // of the base search that are printed
+constexpr double kShares[] = {0.90, 0.95, 0.98, 0.99};  // shares of the observable samples for which views are counted
+constexpr std::size_t kRows = 12;                       // number of places that are printed
 
 struct LimitOptions {
   std::string scene, output;
@@ -34,22 +37,22 @@ struct LimitOptions {
   bool force = false, json = false;
 };
 
-/// What was found out.
-struct Limit {
+/// What the command computes.
+struct LimitResult {
   study::LimitParameters parameters;
   study::Observability observed;
   std::vector<study::FruitShare> fruits;
-  double observable = 0.0;               ///< share of the samples
-  study::GreedyOrder frontal, free;      ///< the greedy views, begun with the most frontal or with any
-  std::vector<std::size_t> seen_by;      ///< how many views see each sample
-  std::vector<study::BasePlace> places;  ///< best first; empty when not asked for
+  double observable = 0.0;               ///< share of the samples that can be observed
+  study::GreedyOrder frontal, free;      ///< greedy views; the first is the most frontal one, or any
+  std::vector<std::size_t> seen_by;      ///< per sample: how many views see it
+  std::vector<study::BasePlace> places;  ///< best first; empty without --base-search
 };
 
-Limit find_limit(const LimitOptions& options, const io::SceneFile& file, const study::Samples& samples) {
-  const TracedScene traced(file.scene);
+LimitResult find_limit(const LimitOptions& options, const io::SceneFile& file, const study::Samples& samples) {
+  const study::TracedScene traced(file.scene);
   const Workcell& cell = file.workcell;
   const int threads = threads_of(options.threads);
-  Limit out;
+  LimitResult out;
   out.observed = study::observable(traced, samples, cell, out.parameters, threads);
   out.observable = study::share(samples, out.observed.observable);
   out.fruits = study::fruit_shares(samples, out.observed.observable);
@@ -65,8 +68,9 @@ Limit find_limit(const LimitOptions& options, const io::SceneFile& file, const s
   return out;
 }
 
-/// The greedy views as a scan would report them; points_in: samples seen, points_new: samples newly covered.
-std::vector<View> greedy_views(const Limit& limit, const study::Samples& samples) {
+/// The greedy views as views of a scan, with samples instead of points: `points_in` counts the samples that a view
+/// sees, `points_new` those that it newly covers.
+std::vector<View> greedy_views(const LimitResult& limit, const study::Samples& samples) {
   std::vector<View> out;
   study::GreedyCover cover(limit.observed, samples, limit.parameters.cover_radius);
   for (const std::size_t v : limit.frontal.views) {
@@ -82,7 +86,8 @@ std::vector<View> greedy_views(const Limit& limit, const study::Samples& samples
   return out;
 }
 
-/// The colour of a sample: grey-red when nothing sees it, else dark blue (few) over green to yellow (most).
+/// The colour of a sample: grey-red if no view sees it; otherwise from dark blue (few views) over green to yellow
+/// (most).
 io::Rgb seen_color(std::size_t seen_by, std::size_t most) {
   if (seen_by == 0) return {168, 92, 88};
   constexpr double kRamp[][3] = {{48, 18, 100}, {59, 82, 139}, {33, 145, 140}, {94, 201, 98}, {253, 231, 37}};
@@ -96,7 +101,7 @@ io::Rgb seen_color(std::size_t seen_by, std::size_t most) {
   return color;
 }
 
-/// The samples as a coloured cloud, binary little-endian.
+/// Write the samples as a coloured cloud (binary little-endian PLY).
 void write_observable(const fs::path& path, const study::Samples& samples, const std::vector<std::size_t>& seen_by) {
   std::string bytes =
       "ply\nformat binary_little_endian 1.0\ncomment AgriSEE, metres, world frame\nelement vertex " +
@@ -126,12 +131,12 @@ Json optional(const std::optional<std::size_t>& n) { return n ? Json(*n) : Json(
 template <typename P>
 Json fields_of(const P& parameters) {
   Json out;
-  P::fields(parameters, [&](const char* name, const auto& value) { out[name] = value; });
+  P::fields(parameters, [&](const char* name, const auto& value, const auto&...) { out[name] = value; });
   return out;
 }
 
 Json to_json(const LimitOptions& options, const io::SceneFile& file, const study::Samples& samples,
-             const Limit& limit) {
+             const LimitResult& limit) {
   Json out;
   out["format_version"] = kFormatVersion;
   out["scene"] = file.workcell.name;
@@ -172,7 +177,7 @@ Json to_json(const LimitOptions& options, const io::SceneFile& file, const study
   return out;
 }
 
-/// 74.3 %
+/// A share as text: "74.3 %".
 std::string percent(double share) {
   std::ostringstream out;
   out << std::fixed << std::setprecision(1) << 100.0 * share << " %";
@@ -197,12 +202,39 @@ void print_places(std::ostream& out, const LimitOptions& options, const std::vec
         << p.base.z() << std::setw(12) << percent(p.observable) << std::setw(13) << percent(p.least) << std::setw(16)
         << (p.views ? std::to_string(*p.views) : "-") << (p.present ? "  <- present" : "") << "\n";
   }
-  if (places.front().observable == 0.0) out << "  from none of them any fruit can be seen\n";
+  if (places.front().observable == 0.0) out << "  no fruit can be seen from any of them\n";
   if (left_out > 0) out << "  and " << left_out << " more in limit.json\n";
-  if (blocked > 0) out << "  and " << blocked << " where the base would stand in a solid to keep out of\n";
+  if (blocked > 0) out << "  and " << blocked << " where the base would stand in a keep-out space\n";
 }
 
-void print(const LimitOptions& options, const io::SceneFile& file, const Limit& limit) {
+void print_fruits(std::ostream& out, const std::vector<study::FruitShare>& fruits) {
+  out << "  fruit  observable\n";
+  const study::FruitShare* least = &fruits.front();
+  std::string unseen;
+  for (const study::FruitShare& f : fruits) {
+    out << std::setw(7) << f.id << std::setw(12) << percent(f.observable)
+        << (f.observable > 0.0 ? "" : "  cannot be seen at all") << "\n";
+    if (f.observable < least->observable) least = &f;
+    if (f.observable == 0.0) unseen += (unseen.empty() ? "" : ", ") + std::to_string(f.id);
+  }
+  if (!unseen.empty())
+    out << "Fruit that cannot be seen at all from here: " << unseen << "\n";
+  else
+    out << "Every fruit can be seen from here; fruit " << least->id << " least of all, " << percent(least->observable)
+        << "\n";
+}
+
+void print_views(std::ostream& out, const LimitResult& limit) {
+  out << "Views that a planner needs that knows the truth (first view frontal / free):";
+  for (const double share : kShares) {
+    const auto frontal = limit.frontal.views_for(share), free = limit.free.views_for(share);
+    out << (share == kShares[0] ? " " : ", ") << std::setprecision(0) << 100.0 * share << " % "
+        << (frontal ? std::to_string(*frontal) : "-") << " / " << (free ? std::to_string(*free) : "-");
+  }
+  out << "\n";
+}
+
+void print(const LimitOptions& options, const io::SceneFile& file, const LimitResult& limit) {
   std::ostringstream out;
   out << std::fixed;
   const Eigen::Vector3d base = file.workcell.world_T_base.translation();
@@ -213,41 +245,25 @@ void print(const LimitOptions& options, const io::SceneFile& file, const Limit& 
   else
     out << "can see " << percent(limit.observable) << " of the fruit's surface (" << limit.observed.views.size()
         << " of " << limit.parameters.candidates << " poses tried show any)\n";
-  out << "  fruit  observable\n";
-  const study::FruitShare* least = &limit.fruits.front();
-  std::string unseen;
-  for (const study::FruitShare& f : limit.fruits) {
-    out << std::setw(7) << f.id << std::setw(12) << percent(f.observable)
-        << (f.observable > 0.0 ? "" : "  cannot be seen at all") << "\n";
-    if (f.observable < least->observable) least = &f;
-    if (f.observable == 0.0) unseen += (unseen.empty() ? "" : ", ") + std::to_string(f.id);
-  }
-  if (!unseen.empty())
-    out << "Fruit that cannot be seen at all from here: " << unseen << "\n";
-  else
-    out << "Every fruit can be seen from here; least of all fruit " << least->id << ", " << percent(least->observable)
-        << "\n";
-  if (!limit.observed.views.empty()) {
-    out << "Views that somebody who knows the truth needs (begun frontally / freely):";
-    for (const double share : kShares) {
-      const auto frontal = limit.frontal.views_for(share), free = limit.free.views_for(share);
-      out << (share == kShares[0] ? " " : ", ") << std::setprecision(0) << 100.0 * share << " % "
-          << (frontal ? std::to_string(*frontal) : "-") << " / " << (free ? std::to_string(*free) : "-");
-    }
-    out << "\n";
-  }
+  print_fruits(out, limit.fruits);
+  if (!limit.observed.views.empty()) print_views(out, limit);
   if (options.base_search) print_places(out, options, limit.places);
   out << "Result: " << options.output << "\n";
   std::cout << out.str();
 }
 
-int run_limit(const LimitOptions& options) {
+/// @throws UsageError if the folder holds a result that may not be overwritten
+void check_output(const LimitOptions& options) {
   const fs::path folder = options.output;
   for (const char* name : {"limit.json", "observable.ply", "views.csv"})
     if (!options.force && fs::exists(folder / name))
-      throw UsageError(options.output + ": holds a result already (" + name + "); use --force to overwrite it");
+      throw UsageError(options.output + ": already holds a result (" + name + "); use --force to overwrite it");
   if (fs::exists(folder / "run.json") || fs::exists(folder / "scan.json"))
     throw UsageError(options.output + ": holds the result of a scan, whose views would be overwritten");
+}
+
+int run_limit(const LimitOptions& options) {
+  check_output(options);
   try {
     options.base.check();
   } catch (const ParameterError& e) {  // the numbers came from the command line
@@ -257,12 +273,13 @@ int run_limit(const LimitOptions& options) {
   file.workcell.sensor.check();
   const study::Samples samples = study::fruit_samples(file.scene);
   if (samples.size() == 0) throw FileError(options.scene + ": holds no fruit, so there is nothing to observe");
-  const Limit limit = find_limit(options, file, samples);
+  const LimitResult limit = find_limit(options, file, samples);
   const std::string text =
       to_json(options, file, samples, limit).dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 
+  const fs::path folder = options.output;
   make_folder(options.output);
-  fs::remove(folder / "limit.json");  // it comes last: where it is, the result is complete
+  fs::remove(folder / "limit.json");  // it is written last: a folder that holds it has a complete result
   write_observable(folder / "observable.ply", samples, limit.seen_by);
   io::write_views(folder / "views.csv", greedy_views(limit, samples));
   io::write_file(folder / "limit.json", text);
@@ -276,21 +293,24 @@ int run_limit(const LimitOptions& options) {
 }  // namespace
 
 void add_limit(CLI::App& app, Run& run) {
-  auto* command = app.add_subcommand("limit", "what the arm can see of a scene's fruit at all, and in how few views");
+  auto* command =
+      app.add_subcommand("limit", "how much of the fruit in a scene the arm can see at all, and in how few views");
   auto options = std::make_shared<LimitOptions>();
   command->add_option("scene", options->scene, "scene file (YAML)")->required();
   command->add_option("-o,--output", options->output, "folder for the result")->required();
   auto* search =
-      command->add_flag("--base-search", options->base_search, "try places for the base around the present one");
-  command->add_option("--base-range", options->base.range, "how far to move it along x and y, either way (m)")
+      command->add_flag("--base-search", options->base_search, "also try places around the present one for the base");
+  command
+      ->add_option("--base-range", options->base.range,
+                   "largest distance to move the base along x and y, either way (m)")
       ->check(CLI::NonNegativeNumber)
       ->needs(search)
       ->capture_default_str();
-  command->add_option("--base-step", options->base.step, "between these places (m)")
+  command->add_option("--base-step", options->base.step, "distance between the places (m)")
       ->check(CLI::PositiveNumber)
       ->needs(search)
       ->capture_default_str();
-  command->add_option("--threads", options->threads, "threads (0: all); the result does not depend on it")
+  command->add_option("--threads", options->threads, "number of threads (0: one per core); does not change the result")
       ->check(CLI::Range(0, 1024))
       ->capture_default_str();
   command->add_flag("--force", options->force, "overwrite an existing result");
@@ -298,10 +318,10 @@ void add_limit(CLI::App& app, Run& run) {
   command->footer(
       "Example:\n"
       "  agrisee limit truss/scene.yaml -o limit --base-search\n"
-      "DIR holds limit.json; observable.ply, the fruit's surface coloured by how many of the poses within reach see "
-      "it\n"
-      "(grey-red: none); and views.csv, the views that somebody who knows the truth would take (points_in: samples of\n"
-      "the surface that a view sees, points_new: samples that it newly covers).");
+      "The folder then holds limit.json; observable.ply, the fruit's surface, coloured by how many of the poses "
+      "within\n"
+      "reach see it (grey-red: none); and views.csv, the views of a greedy planner that knows the truth (points_in:\n"
+      "samples of the surface that a view sees, points_new: samples that it newly covers).");
   command->callback([options, &run] { run = [options] { return run_limit(*options); }; });
 }
 

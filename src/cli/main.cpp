@@ -8,8 +8,8 @@
 
 int main(int argc, char** argv) {
   using namespace agrisee;
-  std::signal(SIGXFSZ, SIG_IGN);  // a limit on the size of files is an error of the write, not the end
-  CLI::App app{"AgriSEE: look around a truss, find every fruit, say where it is."};
+  std::signal(SIGXFSZ, SIG_IGN);  // a write beyond the limit on file sizes then fails with an error, not a signal
+  CLI::App app{"AgriSEE: scan a truss, find every fruit, and tell where it is."};
   app.set_version_flag("--version", std::string("agrisee ") + AGRISEE_VERSION);
   app.require_subcommand(1);
   app.footer(

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// agrisee make-truss: a procedural truss in the scene format, with its ground truth.
+// agrisee make-truss: generates a truss in the scene format, with its ground truth.
 #include <filesystem>
 #include <iostream>
 #include <memory>
@@ -25,10 +25,10 @@ int run_make_truss(TrussOptions options) {
   }
   const std::filesystem::path folder = options.output;
   if (!options.force && std::filesystem::exists(folder / "scene.yaml"))
-    throw UsageError(options.output + ": holds a scene already; use --force to overwrite it");
+    throw UsageError(options.output + ": already holds a scene; use --force to overwrite it");
   study::Truss truss = [&] {
     try {
-      return cli::make_truss(options.truss);
+      return study::make_truss(options.truss);
     } catch (const ParameterError& e) {  // the numbers came from the command line
       throw UsageError(e.what());
     }
@@ -52,17 +52,20 @@ int run_make_truss(TrussOptions options) {
 }  // namespace
 
 void add_make_truss(CLI::App& app, Run& run) {
-  auto* command = app.add_subcommand("make-truss", "make a procedural truss in the scene format, with ground truth");
+  auto* command = app.add_subcommand("make-truss", "generate a truss in the scene format, with its ground truth");
   auto options = std::make_shared<TrussOptions>();
   command->add_option("--total", options->truss.total, "number of fruit")->capture_default_str();
   command->add_option("--hidden", options->truss.hidden, "how many of them hang behind the others")
       ->capture_default_str();
-  command->add_option("--seed", options->truss.seed, "which of all such trusses")->capture_default_str();
+  command->add_option("--seed", options->truss.seed, "seed of the generator; each seed gives another truss")
+      ->capture_default_str();
   command->add_option("--leaflets", options->truss.leaflets, "number of leaflets")->capture_default_str();
   command->add_option("--radius", options->radius, "smallest,largest semi-axis of a fruit, before elongation (m)")
       ->delimiter(',')
       ->expected(2);
-  command->add_option("--elongation", options->truss.elongation, "factor on the fruit's length along their growth axis")
+  command
+      ->add_option("--elongation", options->truss.elongation,
+                   "factor on the length of the fruit along their growth axis")
       ->capture_default_str();
   command->add_option("-o,--output", options->output, "folder for the scene")->required();
   command->add_flag("--force", options->force, "overwrite an existing scene");

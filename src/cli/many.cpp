@@ -38,8 +38,8 @@ std::vector<std::string> matches(const std::string& pattern) {
   return out;
 }
 
-/// The parts of a path that tell it from others, the nearest first: the stem (but for scenes, whose files are mostly
-/// called alike), then the folders above.
+/// The parts of a path that distinguish it from others, the most specific first: the name without extension, unless it
+/// is `scene`, which most scene files are called; then the folders above.
 std::vector<std::string> names_of(const fs::path& path) {
   std::vector<std::string> out;
   if (path.stem() != "scene") out.push_back(path.stem().string());
@@ -50,7 +50,7 @@ std::vector<std::string> names_of(const fs::path& path) {
   return out;
 }
 
-/// A cell of a CSV: quoted where it must be, one line.
+/// A cell of a CSV file: on one line, and quoted if necessary.
 std::string cell(std::string text) {
   std::replace_if(
       text.begin(), text.end(), [](char c) { return c == '\n' || c == '\r'; }, ' ');
@@ -60,8 +60,9 @@ std::string cell(std::string text) {
   return quoted + "\"";
 }
 
-/// What run.json of a finished result says: fruits, views, stop_reason, seconds; empty cells for what it lacks.
-std::string told_by(const fs::path& folder) {
+/// The cells fruits, views, stop_reason and seconds of a finished result, read from its files; empty if they are
+/// missing there.
+std::string result_cells(const fs::path& folder) {
   std::ifstream file(folder / "run.json");
   const nlohmann::json run = nlohmann::json::parse(file, nullptr, false);
   if (!run.is_object()) return ",,,";
@@ -103,10 +104,10 @@ struct MergeOptions {
   std::string folder;
 };
 
-/// DIR/summary-I-of-N.csv of all shards into DIR/summary.csv. @throws FileError when one is missing
+/// Join DIR/summary-I-of-N.csv of all shards to DIR/summary.csv. @throws FileError if one is missing
 int merge_summaries(const MergeOptions& options) {
   const fs::path folder = options.folder;
-  std::map<std::size_t, std::set<std::size_t>> found;  // shards by their number
+  std::map<std::size_t, std::set<std::size_t>> found;  // for each N, the I that exist
   std::error_code error;
   for (const auto& entry : fs::directory_iterator(folder, error)) {
     std::size_t index = 0, count = 0;
@@ -117,9 +118,9 @@ int merge_summaries(const MergeOptions& options) {
   }
   if (error) throw FileError(folder.string() + ": " + error.message());
   if (found.empty()) throw FileError(folder.string() + ": holds no summary of a shard (summary-I-of-N.csv)");
-  if (found.size() > 1) throw FileError(folder.string() + ": holds summaries of lists that were split differently");
+  if (found.size() > 1) throw FileError(folder.string() + ": holds summaries of different numbers of shards");
   const std::size_t count = found.begin()->first;
-  // Shard i holds the inputs i, i + N, ...: taking one of each in turn restores the order of the list.
+  // Shard i holds the inputs i, i + N, and so on. Taking one from each in turn restores the order of the list.
   std::vector<std::vector<std::string>> parts;
   for (std::size_t i = 1; i <= count; ++i) {
     const fs::path path = folder / summary_name({i, count});
@@ -167,11 +168,11 @@ std::vector<Job> jobs_of(const std::vector<std::string>& inputs) {
     for (std::size_t k = 1; k < std::min(used[i], names[i].size()); ++k) out = names[i][k] + "_" + out;
     return out;
   };
-  for (bool clash = true; clash;) {  // name one more folder wherever two are alike
+  for (bool clash = true; clash;) {  // while two names are equal, add one more folder to each of them
     clash = false;
-    std::map<std::string, std::vector<std::size_t>> alike;
-    for (std::size_t i = 0; i < paths.size(); ++i) alike[folder(i)].push_back(i);
-    for (const auto& [name, group] : alike)
+    std::map<std::string, std::vector<std::size_t>> same;
+    for (std::size_t i = 0; i < paths.size(); ++i) same[folder(i)].push_back(i);
+    for (const auto& [name, group] : same)
       for (const std::size_t i : group)
         if (group.size() > 1 && used[i] < names[i].size()) ++used[i], clash = true;
   }
@@ -179,7 +180,7 @@ std::vector<Job> jobs_of(const std::vector<std::string>& inputs) {
   std::set<std::string> taken;
   for (std::size_t i = 0; i < paths.size(); ++i) {
     std::string name = folder(i);
-    while (!taken.insert(name).second) name += "_";  // a.ply and a.pcd side by side
+    while (!taken.insert(name).second) name += "_";  // such as a.ply and a.pcd in one folder
     jobs.push_back({paths[i], name});
   }
   return jobs;
@@ -201,7 +202,7 @@ int run_jobs(const std::vector<Job>& jobs, const Shard& shard, const std::string
       message = e.what();
     }
     rows.push_back(cell(job.input) + "," + cell(job.folder) + "," + (message.empty() ? "ok" : "failed") + "," +
-                   (message.empty() ? told_by(folder) : ",,,") + "," + cell(message));
+                   (message.empty() ? result_cells(folder) : ",,,") + "," + cell(message));
     if (!message.empty()) failures.push_back(job.input + ": " + message);
     write_summary(summary, rows);
   }
@@ -219,13 +220,14 @@ int run_inputs(const std::vector<std::string>& inputs, const std::string& shard,
 
 void add_shard_option(CLI::App& command, std::string& shard) {
   command.add_option("--shard", shard,
-                     "I/N: only every N-th of the inputs, from the I-th on; `agrisee merge` joins them");
+                     "I/N: process only every N-th input, starting with the I-th; `agrisee merge` joins the summaries");
 }
 
 void add_merge(CLI::App& app, Run& run) {
-  auto* command = app.add_subcommand("merge", "join the summaries of all shards of a list of scans or clouds");
+  auto* command = app.add_subcommand("merge", "join the summaries of all shards of a list of inputs");
   auto options = std::make_shared<MergeOptions>();
-  command->add_option("folder", options->folder, "output folder of the shards, with summary-I-of-N.csv")->required();
+  command->add_option("folder", options->folder, "output folder of the shards, which holds summary-I-of-N.csv")
+      ->required();
   command->callback([options, &run] { run = [options] { return merge_summaries(*options); }; });
 }
 

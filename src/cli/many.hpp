@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Many scenes or clouds in one call, and a season of them spread over many machines: each input gets a folder of its
-// own and a line in a summary; one that fails does not stop the rest.
+// Many scenes or clouds in one call, which can be distributed over several machines. Each input gets its own folder and
+// a line in a summary. If one fails, the others are still processed.
 #pragma once
 
 #include <CLI/CLI.hpp>
@@ -10,35 +10,39 @@
 
 namespace agrisee::cli {
 
-/// The I-th of N parts of a list of inputs, counted from 1.
+/// Part `index` (from 1) of `count` parts of a list of inputs.
 struct Shard {
   std::size_t index = 1, count = 1;
 };
 
-/// "I/N", or everything for an empty text. @throws UsageError
+/// Read "I/N"; an empty text means the whole list. @throws UsageError for any other text
 Shard parse_shard(const std::string& text);
 
-/// An input and the folder of its result, below the output folder.
+/// An input, and the name of the folder for its result inside the output folder.
 struct Job {
   std::string input, folder;
 };
 
-/// The files that paths and patterns (*, ?, [...]) name, each once, in the order given and patterns sorted; folders by
-/// the files' names, with as many of the folders above in front as it takes to tell them apart ("truss_7/scene.yaml" is
-/// truss_7). The same for the same inputs, whatever the shard. @throws UsageError for a pattern that matches nothing
+/// The files that paths and patterns (*, ?, [...]) name, each once, in the given order; the matches of a pattern are
+/// sorted. The folder of a file is named after the file, preceded by the names of as many of the folders above as are
+/// needed to distinguish it from the others ("truss_7/scene.yaml" becomes truss_7). The names do not depend on the
+/// shard.
+/// @throws UsageError for a pattern that matches nothing
 std::vector<Job> jobs_of(const std::vector<std::string>& inputs);
 
-/// Runs the shard's jobs one after the other and writes OUTPUT/summary.csv, or summary-I-of-N.csv, anew after each.
-/// @param run does one job with the folder to write to, and returns its exit code; what it throws is a failure too
-/// @return kSuccess, or kBadInput when any failed (their messages are repeated at the end)
+/// Does one job and returns its exit code. An exception counts as a failure of the job.
 using RunOne = std::function<int(const std::string& input, const std::string& folder)>;
+/// Run the jobs of a shard one after the other. After each, OUTPUT/summary.csv, or summary-I-of-N.csv, is rewritten.
+/// @return kSuccess, or kBadInput if any job failed; the messages of failed jobs are repeated at the end
 int run_jobs(const std::vector<Job>& jobs, const Shard& shard, const std::string& output, const RunOne& run);
 
-/// One input goes to `output` itself; several, a pattern, or a shard of them are jobs, each with a folder below it. No
-/// input at all (a scan that is resumed) is one without a name.
+/// Run all inputs. The result of a single input goes into `output` itself. Several inputs, a pattern, or a shard are
+/// run as jobs, each in its own folder inside `output`. Without any input, `run` is called once with an empty name (a
+/// scan that is resumed).
 int run_inputs(const std::vector<std::string>& inputs, const std::string& shard, const std::string& output,
                const RunOne& run);
 
+/// Add the option --shard.
 void add_shard_option(CLI::App& command, std::string& shard);
 
 }  // namespace agrisee::cli

@@ -1,15 +1,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// agrisee scan: a simulated scan of a scene file.
+// agrisee scan: simulates the scan of a scene file.
 #include <agrisee/io/files.hpp>
 #include <agrisee/io/fingerprint.hpp>
 #include <agrisee/io/parameters.hpp>
 #include <agrisee/io/ply.hpp>
 #include <agrisee/io/render.hpp>
-#include <agrisee/io/report_html.hpp>
+#include <agrisee/io/results.hpp>
+#include <agrisee/io/scan_page.hpp>
 #include <agrisee/io/scan_record.hpp>
 #include <agrisee/io/scene.hpp>
 #include <agrisee/see/density.hpp>
 #include <agrisee/study/evaluate.hpp>
+#include <agrisee/study/greedy_planner.hpp>
 #include <agrisee/study/simulated_scan.hpp>
 #include <agrisee/version.hpp>
 
@@ -23,21 +25,20 @@
 
 #include "commands.hpp"
 #include "many.hpp"
-#include "simulate.hpp"
 
 namespace agrisee::cli {
 namespace {
 
 namespace fs = std::filesystem;
 
-struct ScanOptions : PipelineOptions {
+struct ScanOptions : CommonOptions {
   std::vector<std::string> scenes;
   std::string shard;
   std::string scene, planner, noise = "none", resume;
   int max_views = 0;
 };
 
-/// One line a view; on a terminal a bar that is drawn over.
+/// One line per view; on a terminal, a bar that is drawn over the one before.
 void show_progress(const Pipeline& pipeline, int budget) {
   const View& v = pipeline.views().back();
   const auto n = static_cast<int>(pipeline.views().size());
@@ -52,31 +53,34 @@ void show_progress(const Pipeline& pipeline, int budget) {
   }
 }
 
-/// Follows a scan for its report: what the planner believes to have seen, what was seen in truth, and SEE++'s frontier.
-class Recorder {
+/// Collects what the page of a scan shows of its course: the planner's estimates, what was really seen, and the
+/// frontier of SEE++.
+class HistoryRecorder {
  public:
-  Recorder(const Scene& scene, const Parameters& parameters, int threads) : parameters_(parameters), threads_(threads) {
+  HistoryRecorder(const study::Scene& scene, const Parameters& parameters, int threads)
+      : parameters_(parameters), threads_(threads) {
     try {
       samples_ = study::fruit_samples(scene);
-    } catch (const InputError&) {  // fruit without a surface can be scanned, but not be told of
+    } catch (const InputError&) {  // fruit without a surface: what was really seen of it is not shown
     }
   }
-  /// After every view. What a planner tells is as of before the view.
+  /// Call after every view. The planner's estimates are those from before the view.
   void observe(const Pipeline& pipeline, const Cloud& raw) {
-    if (!scanned_.empty()) believe(pipeline.completeness());
-    const double near = study::MetricParameters().threshold;
-    const study::Flags covered = study::detail::cover(samples_, raw.points, near, threads_).covered;
+    if (!scanned_.empty()) add_estimate(pipeline.completeness());
+    const double threshold = study::MetricParameters().threshold;
+    const study::Flags covered = study::cover(samples_, raw.points, threshold, threads_).covered;
     scanned_.push_back(static_cast<double>(std::count(covered.begin(), covered.end(), 1)) /
                        static_cast<double>(std::max<std::size_t>(covered.size(), 1)));
     merged_ = pipeline.merged();
   }
-  /// What a report shows of the scan that ended with this result.
+  /// The history of the scan that ended with this result.
   io::ScanHistory history(const ScanResult& result) {
     io::ScanHistory history;
-    // After a last view that the budget ended no belief was formed.
-    if (!scanned_.empty()) believe(result.stop_reason == StopReason::max_views ? std::nullopt : result.completeness);
-    const auto told = [](double value) { return std::isfinite(value); };
-    if (std::any_of(seen_.begin(), seen_.end(), told))
+    // If the scan ended because no more views were allowed, the planner made no estimate after the last one.
+    if (!scanned_.empty())
+      add_estimate(result.stop_reason == StopReason::max_views ? std::nullopt : result.completeness);
+    const auto known = [](double value) { return std::isfinite(value); };
+    if (std::any_of(seen_.begin(), seen_.end(), known))
       history.curves = {{"seen, as the planner believes", seen_}, {"within the arm's sight", observable_}};
     if (samples_.size() > 0 && !scanned_.empty()) history.curves.push_back({"seen in truth", scanned_});
     if (parameters_.planner != "see" || result.views.empty()) return history;
@@ -88,7 +92,7 @@ class Recorder {
   }
 
  private:
-  void believe(const std::optional<Completeness>& completeness) {
+  void add_estimate(const std::optional<Completeness>& completeness) {
     constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
     seen_.push_back(completeness ? completeness->seen : kUnknown);
     observable_.push_back(completeness ? completeness->observable : kUnknown);
@@ -101,11 +105,11 @@ class Recorder {
   Cloud merged_;
 };
 
-/// What the command line asks for; the scene's content is not known yet.
+/// The task that the command line asks for, still without the fingerprint of the scene. @throws UsageError, FileError
 io::ScanTask task_of(const ScanOptions& options) {
   io::ScanTask task;
   task.parameters = parameters_of(options);
-  const bool greedy = options.planner == "greedy";  // it needs the scene's truth, so it is no parameter
+  const bool greedy = options.planner == "greedy";  // it needs the truth of the scene, so it is not a parameter
   if (!options.planner.empty() && !greedy) task.parameters.planner = options.planner;
   if (options.max_views > 0) task.parameters.max_views = options.max_views;
   task.parameters.check();
@@ -115,26 +119,23 @@ io::ScanTask task_of(const ScanOptions& options) {
   task.seed = options.seed;
   task.threads = threads_of(options.threads);
   task.noise = options.noise;
-  try {
-    sensor::parse_noise(options.noise);
-  } catch (const ParameterError& e) {
-    throw UsageError(e.what());
-  }
+  noise_of(options.noise);
   return task;
 }
 
-/// What a scan that was interrupted was asked for. @throws FileError when there is none that this program can go on
-/// with
+/// The task of a scan that was interrupted. @throws FileError if there is none, or it was started by another version
 io::ScanTask task_to_resume(const ScanOptions& options, const fs::path& path) {
-  if (!fs::exists(path)) throw FileError(path.string() + ": no such file, so there is no scan to go on with");
+  if (!fs::exists(path)) throw FileError(path.string() + ": no such file, so there is no scan to resume");
   io::ScanTask task = io::read_scan_task(path);
   if (task.version != AGRISEE_VERSION)
-    throw FileError(path.string() + ": the scan was begun by version " + task.version + ", this is " AGRISEE_VERSION);
+    throw FileError(path.string() + ": the scan was started by version " + task.version +
+                    ", but this is version " AGRISEE_VERSION);
   if (!options.scene.empty()) task.scene = fs::absolute(options.scene).lexically_normal().string();
   if (options.threads > 0) task.threads = options.threads;
   return task;
 }
 
+/// Fingerprint of a scene file and its meshes.
 std::string content_of(const std::string& scene, const io::SceneFile& file) {
   io::Fingerprint print;
   print.add(io::read_bytes(scene).view());
@@ -142,16 +143,17 @@ std::string content_of(const std::string& scene, const io::SceneFile& file) {
   return print.text();
 }
 
-/// Keeps a record of every view that is taken, and gives those that are recorded already as they were.
-study::Look recorded(study::Look look, const fs::path& folder, const std::string& scan, std::size_t pixels) {
-  return [look = std::move(look), folder, scan, pixels](const plan::ReachableView& view,
-                                                        std::size_t number) -> std::optional<sensor::Capture> {
+/// Wrap what takes views: each view that is taken is recorded, and a view that has a record is read from it.
+study::ViewTaker recorded(study::ViewTaker take_view, const fs::path& folder, const std::string& scan,
+                          std::size_t pixels) {
+  return [take_view = std::move(take_view), folder, scan, pixels](const plan::ReachableView& view,
+                                                                  std::size_t number) -> std::optional<study::Capture> {
     if (const auto record = io::read_view_record(folder, number, scan, pixels)) {
       if (record->world_T_optical_asked.matrix() != view.world_T_optical.matrix() || record->joints != view.joints)
-        throw FileError(io::view_record_path(folder, number).string() + ": was taken from elsewhere than is planned");
-      return sensor::Capture{record->frame, record->world_T_optical};
+        throw FileError(io::view_record_path(folder, number).string() + ": was not taken from where the planner asks");
+      return study::Capture{record->frame, record->world_T_optical};
     }
-    auto capture = look(view, number);
+    auto capture = take_view(view, number);
     if (capture)
       io::write_view_record(folder, number,
                             {capture->frame, view.world_T_optical, capture->world_T_optical, view.joints}, scan);
@@ -164,108 +166,125 @@ bool is_finished(const fs::path& folder) {
                      [&](const char* name) { return fs::exists(folder / name); });
 }
 
-int run_scan(const ScanOptions& options) {
-  const bool resuming = !options.resume.empty();
-  const fs::path folder = resuming ? options.resume : options.output;
-  io::ScanTask task = resuming ? task_to_resume(options, folder / "scan.json") : task_of(options);
-  const Parameters& parameters = task.parameters;
+/// The planner `greedy`; null for the planners that the pipeline makes. @throws FileError if the scene has no fruit
+std::unique_ptr<plan::Planner> study_planner(const io::ScanTask& task, const io::SceneFile& file,
+                                             const study::TracedScene& traced) {
+  if (task.planner != "greedy") return nullptr;
+  const study::Samples samples = study::fruit_samples(file.scene);
+  if (samples.size() == 0) throw FileError(task.scene + ": holds no fruit, which the greedy planner needs to know");
+  return study::make_greedy_planner(traced, samples, file.workcell, {}, task.threads);
+}
+
+/// Write all files of a finished scan.
+void write_files(const fs::path& folder, const io::ScanTask& task, const Workcell& workcell, const ScanResult& result,
+                 const io::ScanHistory& history) {
+  io::RunInfo info;
+  info.scene = workcell.name;
+  info.version = task.version;
+  info.seed = task.seed;
+  info.threads = task.threads;
+  info.noise = task.noise;
+  info.preset = task.parameters.preset;
+  info.planner = task.planner;
+  info.parameters_json = io::parameters_to_json(task.parameters);
+  io::write_result(folder, result, workcell, info);
+  io::write_picture(folder / "truss.png", result, workcell);
+  io::write_scan_page(folder / "report.html", result, workcell, info, history);
+}
+
+/// Run a scan whose folder is prepared, and write its result. @return the exit code
+int run_task(const fs::path& folder, const io::ScanTask& task, const io::SceneFile& file,
+             const study::TracedScene& traced, std::unique_ptr<plan::Planner> planner, bool json) {
   study::SimulationOptions simulation;
-  simulation.noise = sensor::parse_noise(task.noise);
+  simulation.noise = study::parse_noise(task.noise);
   simulation.seed = task.seed;
   simulation.threads = task.threads;
-  const io::SceneFile file = io::read_scene(task.scene);
-  const std::string content = content_of(task.scene, file);
-  if (resuming && content != task.content)
-    throw FileError(task.scene + ": is not the scene any more that the scan in " + folder.string() + " began with");
-  task.content = content;
-  const TracedScene traced(file.scene, task.threads);
-  cli::check_scan(file.workcell, parameters);  // what cannot be scanned is refused before anything is written
-  if (task.planner == "greedy") {
-    const study::Samples samples = study::fruit_samples(file.scene);
-    if (samples.size() == 0) throw FileError(task.scene + ": holds no fruit, whose truth the greedy planner needs");
-    simulation.planner = cli::make_greedy_planner(traced, samples, file.workcell, simulation.threads);
-  }
-  if (!resuming) {
-    prepare_output(folder.string(), options.force);
-    io::write_scan_task(folder / "scan.json", task);
-  } else if (is_finished(folder)) {
-    std::cerr << folder.string() << ": the scan is finished, nothing is left to do\n";
-    return kSuccess;
-  } else {
-    io::remove_leftovers(folder);
-    io::remove_leftovers(folder / "views");
-  }
-
-  const std::string scan = task.fingerprint();
-  simulation.around = [&](study::Look look) {
-    return recorded(std::move(look), folder, scan, file.workcell.sensor.intrinsics.size());
+  simulation.planner = std::move(planner);
+  simulation.around = [&](study::ViewTaker take_view) {
+    return recorded(std::move(take_view), folder, task.fingerprint(), file.workcell.sensor.intrinsics.size());
   };
-  Recorder recorder(file.scene, parameters, simulation.threads);
+  HistoryRecorder recorder(file.scene, task.parameters, task.threads);
   std::size_t taken = 0;
   simulation.on_view = [&](const Pipeline& pipeline) {
     const Cloud raw = pipeline.raw();
     taken = pipeline.views().size();
-    // What is rebuilt from records is not written anew: the files tell of more views than that.
+    // While a resumed scan still reads its views from records, the files already hold more views than the pipeline.
     if (!fs::exists(io::view_record_path(folder, taken))) {
       io::write_views(folder / "views.csv", pipeline.views());
       io::write_raw_ply(folder / "cloud_raw.ply", raw);
     }
     recorder.observe(pipeline, raw);
-    show_progress(pipeline, parameters.max_views);
+    show_progress(pipeline, task.parameters.max_views);
   };
   ScanResult result;
   try {
-    result = cli::scan(file.workcell, traced, parameters, std::move(simulation));
+    result = study::scan(file.workcell, traced, task.parameters, std::move(simulation));
     if (isatty(STDERR_FILENO)) std::cerr << "\n";
-    io::RunInfo info;
-    info.scene = file.workcell.name;
-    info.version = task.version;
-    info.seed = task.seed;
-    info.threads = task.threads;
-    info.noise = task.noise;
-    info.preset = parameters.preset;
-    info.planner = task.planner;
-    info.parameters_json = io::parameters_to_json(parameters);
-    io::write_result(folder, result, file.workcell, info);
-    io::write_picture(folder / "truss.png", result, file.workcell);
-    io::write_report_html(folder / "report.html", result, file.workcell, info, recorder.history(result));
+    write_files(folder, task, file.workcell, result, recorder.history(result));
   } catch (const std::exception& e) {
     std::cerr << "\nagrisee: the scan failed midway: " << e.what() << "\n";
     if (taken > 0)
-      std::cerr << "The views taken so far are in " << (folder / "views").string() << "; `agrisee scan --resume "
-                << folder.string() << "` goes on from there\n";
+      std::cerr << "The views taken so far are in " << (folder / "views").string()
+                << "; continue with `agrisee scan --resume " << folder.string() << "`\n";
     return kScanFailed;
   }
-  print_summary(result, folder.string(), options.json);
-  if (result.views.empty()) {
-    std::cerr << "agrisee: no view could be taken (" << to_string(result.stop_reason)
-              << "): the scan volume is out of the arm's reach\n";
-    return kScanFailed;
+  print_summary(result, folder.string(), json);
+  if (!result.views.empty()) return kSuccess;
+  std::cerr << "agrisee: no view could be taken (" << to_string(result.stop_reason)
+            << "): the scan volume is out of the arm's reach\n";
+  return kScanFailed;
+}
+
+int run_scan(const ScanOptions& options) {
+  const bool resuming = !options.resume.empty();
+  const fs::path folder = resuming ? options.resume : options.output;
+  io::ScanTask task = resuming ? task_to_resume(options, folder / "scan.json") : task_of(options);
+  const io::SceneFile file = io::read_scene(task.scene);
+  const std::string content = content_of(task.scene, file);
+  if (resuming && content != task.content)
+    throw FileError(task.scene + ": is not the scene with which the scan in " + folder.string() + " started");
+  task.content = content;
+  const study::TracedScene traced(file.scene, task.threads);
+  check_scan(file.workcell, task.parameters);  // an impossible scan is rejected before anything is written
+  std::unique_ptr<plan::Planner> planner = study_planner(task, file, traced);
+  if (!resuming) {
+    prepare_output(folder.string(), options.force);
+    io::write_scan_task(folder / "scan.json", task);
+  } else if (is_finished(folder)) {
+    std::cerr << folder.string() << ": the scan is finished, there is nothing to do\n";
+    return kSuccess;
+  } else {
+    io::remove_leftovers(folder);
+    io::remove_leftovers(folder / "views");
   }
-  return kSuccess;
+  return run_task(folder, task, file, traced, std::move(planner), options.json);
 }
 
 }  // namespace
 
 void add_scan(CLI::App& app, Run& run) {
-  auto* command = app.add_subcommand("scan", "scan a scene with the simulated sensor and arm, and locate its fruit");
+  auto* command = app.add_subcommand("scan", "scan a scene with a simulated sensor and arm, and locate its fruit");
   auto options = std::make_shared<ScanOptions>();
-  auto* scene = command->add_option("scene", options->scenes,
-                                    "scene file (YAML); several, or a pattern, each get a folder of their own in DIR");
-  auto* output = add_pipeline_options(*command, *options);
-  command->add_option("--planner", options->planner, "where to look next; greedy knows the truth, for studies")
-      ->check(CLI::IsMember({"gain", "see", "fixed", "random", "greedy"}));
-  command->add_option("--noise", options->noise, "noise of the sensor: none, gaussian:SIGMA, l515 or rough")
+  auto* scene = command->add_option(
+      "scene", options->scenes,
+      "scene file (YAML); with several, or a pattern, each gets its own folder in the output folder");
+  auto* output = add_common_options(*command, *options);
+  command
+      ->add_option(
+          "--planner", options->planner,
+          "decides where to look next; greedy knows the truth and is for studies (default: that of the preset)")
+      ->check(CLI::IsMember(planner_choices()));
+  command->add_option("--noise", options->noise, "noise model of the sensor: none, gaussian:SIGMA (m), l515 or rough")
       ->capture_default_str();
-  command->add_option("--max-views", options->max_views, "view budget (default: the preset's)")
+  command->add_option("--max-views", options->max_views, "largest number of views (default: that of the preset)")
       ->check(CLI::Range(1, 10000));
   add_shard_option(*command, options->shard);
-  auto* resume = command->add_option(
-      "--resume", options->resume,
-      "go on with the scan in this folder that was interrupted; the scene is only named when it was moved");
+  auto* resume =
+      command->add_option("--resume", options->resume,
+                          "continue the interrupted scan in this folder; name the scene only if its file was moved");
   for (const char* given : {"--output", "--preset", "--params", "--radius", "--seed", "--force", "--planner", "--noise",
                             "--max-views", "--shard"})
-    resume->excludes(given);  // all of them are as they were
+    resume->excludes(given);  // a resumed scan keeps the values that it was started with
   command->footer(
       "Examples:\n"
       "  agrisee scan truss/scene.yaml -o result --noise l515 --seed 1\n"
@@ -273,14 +292,14 @@ void add_scan(CLI::App& app, Run& run) {
       "  agrisee scan cherries/scene.yaml -o result --radius 0.01,0.02\n"
       "  agrisee scan --resume result\n"
       "  agrisee scan 'season/*/scene.yaml' -o results --shard 2/8\n"
-      "DIR holds cloud.ply, cloud_raw.ply, views.csv, fruits.json, fruits.csv, run.json, truss.png and report.html,\n"
-      "and what a scan that is killed goes on from: scan.json and views/, a file a view.");
+      "The output folder then holds cloud.ply, cloud_raw.ply, views.csv, fruits.json, fruits.csv, run.json, truss.png\n"
+      "and report.html, and what --resume needs: scan.json and views/, with one file per view.");
   command->callback([options, scene, output, resume, &run] {
     if (resume->count() == 0)
       for (const CLI::Option* needed : {scene, output})
         if (needed->count() == 0) throw CLI::RequiredError(needed->get_name());
     if (resume->count() > 0 && options->scenes.size() > 1)
-      throw CLI::ValidationError("--resume", "goes on with one scan, so at most one scene can be named");
+      throw CLI::ValidationError("--resume", "continues one scan, so at most one scene can be named");
     run = [options] {
       return run_inputs(options->scenes, options->shard, options->output,
                         [&](const std::string& input, const std::string& folder) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// agrisee paper-scenes, and trusses by name.
+// agrisee paper-scenes: the eleven trusses of the experiment; and trusses by name.
 #include "trusses.hpp"
 
 #include <agrisee/io/ground_truth.hpp>
@@ -30,7 +30,7 @@ int run_paper_scenes(const PaperScenesOptions& options) {
   const std::filesystem::path folder = options.output;
   for (const std::string& name : paper_truss_names())
     if (!options.force && std::filesystem::exists(folder / name / "scene.yaml"))
-      throw UsageError((folder / name).string() + ": holds a scene already; use --force to overwrite it");
+      throw UsageError((folder / name).string() + ": already holds a scene; use --force to overwrite it");
   nlohmann::ordered_json out = nlohmann::ordered_json::array();
   for (const std::string& name : paper_truss_names()) {
     const study::Truss truss = *truss_by_name(name);
@@ -62,8 +62,6 @@ std::vector<std::string> paper_truss_names() {
   return names;
 }
 
-study::Truss make_truss(const study::TrussParameters& parameters) { return study::make_truss(parameters); }
-
 std::optional<study::Truss> truss_by_name(const std::string& name) {
   static const std::regex pattern("(?:truss_)?([0-9]{1,3})_([0-9]{1,3})(?:_s([0-9]{1,18}))?");
   std::smatch part;
@@ -76,7 +74,7 @@ std::optional<study::Truss> truss_by_name(const std::string& name) {
       parameters.total = total;
       parameters.hidden = hidden;
       parameters.seed = std::stoull(part[3]);
-      truss = cli::make_truss(parameters);
+      truss = study::make_truss(parameters);
     } else {
       truss = study::make_paper_truss(total, hidden);
     }
@@ -93,10 +91,9 @@ void write_truss(const std::filesystem::path& folder, const study::Truss& truss)
 }
 
 void add_paper_scenes(CLI::App& app, Run& run) {
-  auto* command =
-      app.add_subcommand("paper-scenes", "make the eleven trusses of the paper's experiment, from fixed seeds");
+  auto* command = app.add_subcommand("paper-scenes", "generate eleven trusses like those of the paper's experiment");
   auto options = std::make_shared<PaperScenesOptions>();
-  command->add_option("-o,--output", options->output, "folder; each truss has a folder of its own in it")->required();
+  command->add_option("-o,--output", options->output, "folder; each truss gets its own folder inside")->required();
   command->add_flag("--force", options->force, "overwrite existing scenes");
   command->add_flag("--json", options->json, "print the summary as JSON");
   command->footer("Example:\n  agrisee paper-scenes -o scenes");

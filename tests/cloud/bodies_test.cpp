@@ -128,6 +128,30 @@ TEST_CASE("touching fruit, one behind the others, leaf and stem: each fruit is f
   CHECK(wrong < (cloud.size() - fruit_points) / 50);
 }
 
+TEST_CASE("the split does not depend on threads, with bodies or without") {
+  Cloud cloud;
+  for (const double x : {-0.036, 0.034})
+    test::add_sphere(
+        cloud, {{x, 0.50, 0.20}, 0.034}, 0.0025, [](const Eigen::Vector3d& d) { return d.dot(front()) > 0.1; }, 0.0006);
+  for (std::size_t i = 0; i < cloud.size(); i += 3) cloud.normals[i].setZero();  // a residual, for DBSCAN
+  add_stem(cloud, {0.0, 0.47, 0.24});
+  SplitParameters p;
+  p.growing.smoothness = deg(4.0);
+  for (const bool bodies : {true, false}) {
+    p.fit_bodies = bodies;
+    const Split one = split(cloud, p), three = split(cloud, p, {}, 3);
+    CHECK(one.residual > 0);
+    CHECK(one.labels == three.labels);
+    CHECK(one.regions == three.regions);
+    CHECK(one.clusters_found == three.clusters_found);
+    REQUIRE(one.found.size() == three.found.size());
+    for (std::size_t b = 0; b < one.found.size(); ++b) {
+      CHECK(one.found[b].found_by == three.found[b].found_by);
+      CHECK(one.found[b].fit.body.center == three.found[b].fit.body.center);
+    }
+  }
+}
+
 TEST_CASE("a body that sight lines went through is none") {
   Cloud cloud;
   test::add_sphere(cloud, {{0, 0.5, 0.2}, 0.035}, 0.0025,

@@ -114,7 +114,7 @@ void check_laws(const Points<double>& points, const Stage& stage, const Same& sa
   CHECK(same(stage(moved(some_motion(), points), 1), stage(points, 1)));
 }
 
-/// Whether equal distances occur between equal points alone, so that rounding cannot reorder neighbours.
+/// Whether equal distances occur between equal points alone, so that rounding cannot reorder neighbors.
 inline bool irregular(const std::string& kind) { return kind != "gridded" && kind != "line"; }
 
 /// Whether `call()` throws a ParameterError that names the field.

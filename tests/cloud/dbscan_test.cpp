@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <agrisee/cloud/dbscan.hpp>
-#include <agrisee/core/kdtree.hpp>
+#include <agrisee/neighbors/kdtree.hpp>
 
 #include <deque>
 
@@ -52,9 +52,9 @@ void check_textbook(const std::string& kind) {
     for (const int min_points : {1, 2, 7, 20}) {
       INFO(eps << " " << min_points);
       const Labels expected = textbook<S>(cloud, S(eps), static_cast<std::size_t>(min_points));
-      const DbscanParameters params{eps, min_points};
-      CHECK(dbscan(cloud, params) == expected);
-      CHECK(dbscan(cloud, params, KdTree<S>(cloud)) == expected);
+      const DbscanParameters parameters{eps, min_points};
+      CHECK(dbscan(cloud, parameters) == expected);
+      CHECK(dbscan(cloud, parameters, KdTree<S>(cloud)) == expected);
     }
 }
 

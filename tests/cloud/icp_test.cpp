@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <agrisee/cloud/icp.hpp>
-#include <agrisee/core/kdtree.hpp>
+#include <agrisee/neighbors/kdtree.hpp>
 
 #include "cloud/cloud_cases.hpp"
 
@@ -50,8 +50,8 @@ double error(const IcpResult& result, const Pose& motion) {
 const Pose kSmall = about_middle({0.002, -0.001, 0.0015}, {0.008, -0.005, 0.006});
 
 template <typename S>
-IcpResult align(const PointCloud<S>& source, const PointCloud<S>& target, const IcpParameters& params = {}) {
-  return register_cloud(source, source.normals, target, target.normals, params);
+IcpResult align(const PointCloud<S>& source, const PointCloud<S>& target, const IcpParameters& parameters = {}) {
+  return register_cloud(source, source.normals, target, target.normals, parameters);
 }
 
 }  // namespace
@@ -60,18 +60,18 @@ TEST_CASE("ICP finds a small motion, whatever the kernel and the distance") {
   const auto target = truss<float>(8000, 1, 6, 0.0);
   const auto source = moved(kSmall, truss<float>(1500, 2, 6, 0.0, true));
   for (const RobustKernel kernel : {RobustKernel::none, RobustKernel::huber, RobustKernel::tukey}) {
-    IcpParameters params;
-    params.kernel = kernel;
-    const IcpResult result = align(source, target, params);
+    IcpParameters parameters;
+    parameters.kernel = kernel;
+    const IcpResult result = align(source, target, parameters);
     INFO(to_string(kernel));
     CHECK(result.accepted);
     CHECK(error(result, kSmall) < 2e-4);
     CHECK(result.rms_after < 0.5 * result.rms_before);
     CHECK(result.constrained == 6);
     CHECK(result.matches > 1300);
-    params.point_to_point = true;
-    params.max_iterations = 100;
-    const IcpResult points = align(source, target, params);
+    parameters.point_to_point = true;
+    parameters.max_iterations = 100;
+    const IcpResult points = align(source, target, parameters);
     CHECK(points.accepted);
     CHECK(error(points, kSmall) < 6e-4);  // points slide over points less easily
   }
@@ -80,15 +80,15 @@ TEST_CASE("ICP finds a small motion, whatever the kernel and the distance") {
 TEST_CASE("ICP of a cloud with its own copy is exact") {
   const auto target = truss<double>(3000, 1, 6, 3e-4);
   for (const bool point_to_point : {false, true}) {
-    IcpParameters params;
-    params.point_to_point = point_to_point;
-    params.max_iterations = 200;
-    params.kernel = RobustKernel::none;
-    const IcpResult result = align(moved(kSmall, target), target, params);
+    IcpParameters parameters;
+    parameters.point_to_point = point_to_point;
+    parameters.max_iterations = 200;
+    parameters.kernel = RobustKernel::none;
+    const IcpResult result = align(moved(kSmall, target), target, parameters);
     CHECK(result.accepted);
     CHECK(error(result, kSmall) < 1e-5);
     CHECK(result.rms_after < 1e-5);
-    const IcpResult still = align(target, target, params);  // nothing to gain
+    const IcpResult still = align(target, target, parameters);  // nothing to gain
     CHECK_FALSE(still.accepted);
     CHECK(still.target_T_source.matrix() == Pose::Identity().matrix());
     CHECK(still.matches == target.size());
@@ -100,10 +100,10 @@ TEST_CASE("ICP with noise and strays: robust weights do better") {
   const auto target = truss<float>(8000, 1, 6, 5e-4);
   auto source = moved(kSmall, truss<float>(1500, 2, 6, 5e-4, true));
   for (std::size_t i = 0; i < source.size(); i += 8) source.points[i] += 0.004f * source.normals[i];
-  IcpParameters params;
-  const double robust = error(align(source, target, params), kSmall);
-  params.kernel = RobustKernel::none;
-  const double plain = error(align(source, target, params), kSmall);
+  IcpParameters parameters;
+  const double robust = error(align(source, target, parameters), kSmall);
+  parameters.kernel = RobustKernel::none;
+  const double plain = error(align(source, target, parameters), kSmall);
   INFO(robust << " " << plain);
   CHECK(robust < 3e-4);
   CHECK(robust < 0.5 * plain);
@@ -114,11 +114,11 @@ TEMPLATE_TEST_CASE("matches that are kept are those that a search of all points 
   const auto target = truss<S>(3000, 1, 6, 5e-4);
   const auto source = truss<S>(400, 2, 6, 5e-4, true);
   const double angle = GENERATE(30.0, 180.0);  // degrees; 180: normals are not tested
-  IcpParameters params;
-  params.max_normal_angle = deg(angle);
+  IcpParameters parameters;
+  parameters.max_normal_angle = deg(angle);
   const Grid<S> search(target, S(0.003));
   detail::IcpProblem<S, PointCloud<S>, PointCloud<S>, Grid<S>> problem(source, source.normals, target, target.normals,
-                                                                       params, search, 1);
+                                                                       parameters, search, 1);
   Pose pose = kSmall;
   double step = 1.0;
   std::size_t changed = 0;
@@ -130,11 +130,11 @@ TEMPLATE_TEST_CASE("matches that are kept are those that a search of all points 
     for (std::size_t i = 0; i < problem.points().size(); ++i) {
       const Vector3<S> q = (pose * problem.points()[i]).template cast<S>();
       Index best = -1;
-      S best_sq = S(params.max_distance) * S(params.max_distance);
+      S best_sq = S(parameters.max_distance) * S(parameters.max_distance);
       for (std::size_t j = 0; j < target.size(); ++j) {
         const bool agrees = problem.normals().empty() ||
                             target.normals[j].template cast<double>().dot(pose.linear() * problem.normals()[i]) >=
-                                std::cos(params.max_normal_angle);
+                                std::cos(parameters.max_normal_angle);
         const S d_sq = distance_sq<S>(target.points[j], q);
         if (agrees && d_sq <= best_sq && (d_sq < best_sq || best < 0)) best = static_cast<Index>(j), best_sq = d_sq;
       }
@@ -201,19 +201,19 @@ TEST_CASE("ICP does not drift where the surface says nothing") {
 TEST_CASE("ICP drops what it cannot believe") {
   const auto target = truss<double>(6000, 1, 6, 0.0);
   const auto whole = truss<double>(1500, 2, 6, 0.0);
-  IcpParameters params;
-  params.max_translation = 0.001;
+  IcpParameters parameters;
+  parameters.max_translation = 0.001;
   const Pose shift = about_middle({0, -0.002, 0}, {0, 0, 0});
-  CHECK_FALSE(align(moved(shift, whole), target, params).accepted);
-  params.max_translation = 0.003;
-  CHECK(align(moved(shift, whole), target, params).accepted);
+  CHECK_FALSE(align(moved(shift, whole), target, parameters).accepted);
+  parameters.max_translation = 0.003;
+  CHECK(align(moved(shift, whole), target, parameters).accepted);
   const Pose turn = about_middle({0, 0, 0}, {0, 0.03, 0});
   const IcpResult turned = align(moved(turn, whole), target);
   CHECK_FALSE(turned.accepted);
   CHECK(turned.rotation > deg(1.0));
   CHECK(turned.target_T_source.matrix() == Pose::Identity().matrix());
-  params.max_rotation = deg(3.0);
-  CHECK(align(moved(turn, whole), target, params).accepted);
+  parameters.max_rotation = deg(3.0);
+  CHECK(align(moved(turn, whole), target, parameters).accepted);
   // Too far away, or turned inside out: no matches.
   const Pose away = about_middle({0.5, 0, 0}, {0, 0, 0});
   CHECK(align(moved(away, whole), target).matches == 0);
@@ -240,9 +240,9 @@ TEST_CASE("ICP of next to nothing, degenerate clouds and bad input") {
     Cloud shifted = cloud;
     for (auto& p : shifted.points) p.x() += 0.001f;
     for (const bool point_to_point : {false, true}) {
-      IcpParameters params;
-      params.point_to_point = point_to_point;
-      const IcpResult result = align(shifted, cloud, params);
+      IcpParameters parameters;
+      parameters.point_to_point = point_to_point;
+      const IcpResult result = align(shifted, cloud, parameters);
       CHECK(result.target_T_source.matrix().allFinite());
       CHECK(is_rigid(result.target_T_source));
       CHECK(std::isfinite(result.rms_after));

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <agrisee/cloud/sor.hpp>
-#include <agrisee/core/grid.hpp>
+#include <agrisee/neighbors/grid.hpp>
 
 #include "cloud/cloud_cases.hpp"
 
@@ -42,11 +42,11 @@ void check_brute(const std::string& kind) {
   for (const int k : {1, 8, 20, 1000})
     for (const double alpha : {0.5, 2.0})
       for (const bool sample : {false, true}) {
-        const SorParameters params{k, alpha, sample};
+        const SorParameters parameters{k, alpha, sample};
         const Indices expected = brute(cloud, k, alpha, sample);
-        CHECK(remove_statistical_outliers(cloud, params) == expected);
-        CHECK(remove_statistical_outliers(cloud, params, KdTree<S>(cloud)) == expected);
-        CHECK(remove_statistical_outliers(cloud, params, Grid<S>(cloud, S(0.004))) == expected);
+        CHECK(remove_statistical_outliers(cloud, parameters) == expected);
+        CHECK(remove_statistical_outliers(cloud, parameters, KdTree<S>(cloud)) == expected);
+        CHECK(remove_statistical_outliers(cloud, parameters, Grid<S>(cloud, S(0.004))) == expected);
       }
 }
 

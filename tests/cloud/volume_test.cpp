@@ -53,10 +53,10 @@ TEST_CASE("the standard error of a volume is the scatter of repeated fits") {
       squares += std::pow(volume(fit->body) / (4.0 / 3.0 * kPi * std::pow(0.035, 3)) - 1.0, 2);
       expected += relative_volume_error(cloud, all_of(cloud), fit->body, parameters);
     }
-    const double scatter = std::sqrt(squares / kTrials), told = expected / kTrials;
-    INFO("scatter " << scatter << ", told " << told);
-    CHECK(told > 0.7 * scatter);
-    CHECK(told < 1.5 * scatter);
+    const double scatter = std::sqrt(squares / kTrials), estimated = expected / kTrials;
+    INFO("scatter " << scatter << ", estimated " << estimated);
+    CHECK(estimated > 0.7 * scatter);
+    CHECK(estimated < 1.5 * scatter);
   }
 }
 

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The program of every consumer: small, of two units that share headers, and it needs all that the library needs:
-// Eigen, nanoflann, threads and, with WITH_IO, that library and yaml-cpp; with WITH_COMPILED the stages come compiled.
+// Eigen, nanoflann, threads and, with WITH_IO, files and yaml-cpp; with WITH_METHOD the method.
 #include "other.hpp"
 
 #ifdef WITH_IO
 #include <agrisee/io/scene.hpp>
 #endif
-#ifdef WITH_COMPILED
+#ifdef WITH_METHOD
 #include <agrisee/process.hpp>
 #endif
 #include <iostream>
@@ -20,7 +20,7 @@ int main() {
     std::cout << e.what() << "\n";
   }
 #endif
-#ifdef WITH_COMPILED
+#ifdef WITH_METHOD
   const agrisee::ScanResult nothing = agrisee::process(std::vector<Eigen::Vector3f>{});
   if (!nothing.fruits.empty()) return 3;
 #endif

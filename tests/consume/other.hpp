@@ -2,7 +2,7 @@
 #pragma once
 
 #include <agrisee/cloud/sor.hpp>
-#include <agrisee/core/kdtree.hpp>
+#include <agrisee/neighbors/kdtree.hpp>
 
 #include <string>
 

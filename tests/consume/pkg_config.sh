@@ -11,8 +11,8 @@ for needed in eigen3 nanoflann; do
 done
 export PKG_CONFIG_PATH=$prefix/$libdir/pkgconfig
 [ "$(pkg-config --modversion "$package")" = "$version" ]
-define=()
-[ "$package" = agrisee ] || define=(-DWITH_IO)
+define=(-DWITH_METHOD)
+[ "$package" = agrisee ] || define+=(-DWITH_IO)
 mkdir -p "$work"
 # shellcheck disable=SC2046
 $compiler -std=c++17 -O0 "${define[@]}" "$sources"/main.cpp "$sources"/other.cpp -o "$work/consumer" \

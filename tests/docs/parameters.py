@@ -47,7 +47,7 @@ def stated_units():
                 text = file.read()
             space = "see::" if os.path.basename(folder) == "see" else ""
             for struct, body in re.findall(r"struct (\w*Parameters) \{\n(.*?)\n\};", text, re.S):
-                structs[space + struct] = re.findall(r"^  ([\w:]+) (\w+)\b[^()\n]*?[;}](?: +///< *(.*))?$", re.sub(r"deg\(([\d.]+)\)", r"\1", body), re.M)
+                structs[space + struct] = re.findall(r"^  ([\w:]+) (\w+)\b(?: = [\w:]+\(\)|[^()\n]*?)[;}](?: +///< *(.*))?$", re.sub(r"deg\(([\d.]+)\)", r"\1", body), re.M)
     out = {}
 
     def walk(struct, prefix):

@@ -2,9 +2,9 @@
 // Compiled for processors that multiply and add in one rounding: ties, of which lattices are full, are ties in every
 // search, and neighbours of one another are so for both.
 #include <agrisee/cloud/region_growing.hpp>
-#include <agrisee/core/kdtree.hpp>
-#include <agrisee/core/neighbor_lists.hpp>
 #include <agrisee/core/random.hpp>
+#include <agrisee/neighbors/kdtree.hpp>
+#include <agrisee/neighbors/neighbor_lists.hpp>
 
 #include <algorithm>
 #include <cmath>

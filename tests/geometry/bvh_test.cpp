@@ -2,7 +2,7 @@
 // Every answer of the tree equals that of testing all triangles one by one, on awkward scenes too.
 #include <agrisee/core/random.hpp>
 #include <agrisee/geometry/bvh.hpp>
-#include <agrisee/geometry/traced_scene.hpp>
+#include <agrisee/study/traced_scene.hpp>
 
 #include "catch.hpp"
 #include "support/says.hpp"
@@ -339,12 +339,12 @@ TEST_CASE("a tree of many pieces is the same on any number of threads, and right
 }
 
 TEST_CASE("a traced scene knows the object and the normal of each triangle") {
-  Scene scene;
-  scene.objects.push_back({1, ObjectClass::fruit, shapes::sphere({-0.1, 0.5, 0.2}, 0.03, 16)});
-  scene.objects.push_back({0, ObjectClass::other, Mesh()});
-  scene.objects.push_back({2, ObjectClass::fruit, shapes::sphere({0.1, 0.5, 0.2}, 0.04, 16)});
+  study::Scene scene;
+  scene.objects.push_back({1, study::ObjectClass::fruit, shapes::sphere({-0.1, 0.5, 0.2}, 0.03, 16)});
+  scene.objects.push_back({0, study::ObjectClass::other, Mesh()});
+  scene.objects.push_back({2, study::ObjectClass::fruit, shapes::sphere({0.1, 0.5, 0.2}, 0.04, 16)});
   add(scene.objects[2].mesh, Vector3f::Zero(), Vector3f::Zero(), Vector3f::Zero());
-  const TracedScene traced(scene);
+  const study::TracedScene traced(scene);
   REQUIRE(traced.size() == scene.objects[0].mesh.triangles.size() + scene.objects[2].mesh.triangles.size());
   REQUIRE(traced.bvh().degenerate() == 1);
   REQUIRE(traced.normal(static_cast<std::uint32_t>(traced.size() - 1)).isZero(0.0f));
@@ -354,7 +354,7 @@ TEST_CASE("a traced scene knows the object and the normal of each triangle") {
     REQUIRE(traced.object(hit->triangle) == (x < 0 ? 0u : 2u));
     REQUIRE(traced.normal(hit->triangle).y() < -0.9f);
   }
-  REQUIRE(TracedScene(Scene()).size() == 0);
+  REQUIRE(study::TracedScene(study::Scene()).size() == 0);
   scene.objects[1].mesh.triangles.push_back({0, 0, 0});
-  REQUIRE_THROWS_WITH(TracedScene(scene), says("object 1"));
+  REQUIRE_THROWS_WITH(study::TracedScene(scene), says("object 1"));
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Scans many trusses in one process, one after the other, and tells whether memory or time grow: long_run N [EVERY].
-// Every EVERY trusses (50 unless told) it prints resident memory and the processor time of a scan. From 100 trusses on
-// it fails when the last fifth needs more than 5 % more memory than the second fifth, or 10 % more time a view.
+// Scans many trusses in one process, one after the other, and checks whether memory or time grow: long_run N [EVERY].
+// After every EVERY trusses (default 50) it prints the resident memory and the processor time per scan. With N of at
+// least 100 it fails if the last fifth needs over 5 % more memory, or over 10 % more time per view, than the second.
 #include <agrisee/study/simulated_scan.hpp>
 #include <agrisee/study/truss.hpp>
 
@@ -15,7 +15,7 @@ using namespace agrisee;
 
 namespace {
 
-/// Memory (MB) of this process that is in RAM; 0 where the system does not tell.
+/// Resident memory of this process (MB); 0 if the system does not report it.
 double resident() {
   std::ifstream statm("/proc/self/statm");
   double all = 0.0, in_ram = 0.0;
@@ -26,11 +26,11 @@ double resident() {
 double processor_time() { return double(std::clock()) / CLOCKS_PER_SEC; }
 
 struct Sample {
-  double seconds = 0.0;  // of a scan, the simulated sensor's included
+  double seconds = 0.0;  // processor time of a scan, the simulated sensor included
   double views = 0.0, memory = 0.0;
 };
 
-/// The mean of a fifth of the samples, from 0.
+/// The mean over one fifth of the samples; `fifth` counts from 0.
 template <typename F>
 double mean_of_fifth(const std::vector<Sample>& samples, std::size_t fifth, F&& value) {
   const std::size_t begin = fifth * samples.size() / 5, end = (fifth + 1) * samples.size() / 5;
@@ -54,12 +54,12 @@ int main(int argc, char** argv) {
     std::optional<study::Truss> truss;
     try {
       truss = study::make_truss(parameters);
-    } catch (const ParameterError&) {  // no such truss with this seed
+    } catch (const ParameterError&) {  // this seed gives no such truss
       continue;
     }
-    const TracedScene scene(truss->scene);
+    const study::TracedScene scene(truss->scene);
     study::SimulationOptions options;
-    options.noise = sensor::parse_noise("l515");
+    options.noise = study::parse_noise("l515");
     options.seed = seed;
     const double before = processor_time();
     const ScanResult result = study::scan(truss->workcell, scene, {}, std::move(options));
@@ -79,7 +79,7 @@ int main(int argc, char** argv) {
   const auto time = [](const Sample& s) { return s.seconds / s.views; };
   const double grown = mean_of_fifth(samples, 4, memory) / mean_of_fifth(samples, 1, memory) - 1.0;
   const double slower = mean_of_fifth(samples, 4, time) / mean_of_fifth(samples, 1, time) - 1.0;
-  std::cout << "last fifth against the second: memory " << 100.0 * grown << " %, time a view " << 100.0 * slower
+  std::cout << "last fifth compared with the second: memory " << 100.0 * grown << " %, time a view " << 100.0 * slower
             << " %\n";
   return grown > 0.05 || slower > 0.10 || found == 0;
 }

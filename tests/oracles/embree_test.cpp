@@ -3,7 +3,7 @@
 // distance to 1e-5, and the same misses.
 #include <agrisee/core/random.hpp>
 #include <agrisee/geometry/primitives.hpp>
-#include <agrisee/sensor/raycast.hpp>
+#include <agrisee/study/raycast.hpp>
 
 #include "catch.hpp"
 #include "support/embree_scene.hpp"
@@ -148,11 +148,11 @@ TEST_CASE("random rays hit what Embree says") {
 
 TEST_CASE("a full frame is what Embree says") {
   const Mesh mesh = spheres();
-  const TracedScene scene(shapes::scene_of(mesh));
+  const study::TracedScene scene(shapes::scene_of(mesh));
   const Embree embree(mesh);
   const sensor::Intrinsics k = sensor::intrinsics_from_fov(512, 384, deg(70), deg(55));
   const Pose pose = look_along({0.05, -0.5, 0.02}, {-0.1, 1.0, 0.0}, 0.2);
-  const sensor::RayImage image = sensor::raycast(scene, k, pose, 0.25, 9.0);
+  const study::RayImage image = study::raycast(scene, k, pose, 0.25, 9.0);
   const Eigen::Vector3f eye = pose.translation().cast<float>();
   Tally tally;
   std::size_t i = 0;
@@ -160,7 +160,7 @@ TEST_CASE("a full frame is what Embree says") {
     for (int u = 0; u < k.width; ++u, ++i) {
       const Eigen::Vector3f d = sensor::ray_direction(k, pose, u, v);
       std::optional<Bvh::Hit> ours;
-      if (image.triangle[i] != sensor::kNoHit) ours = Bvh::Hit{image.range[i], image.triangle[i], 0.0f, 0.0f};
+      if (image.triangle[i] != study::kNoHit) ours = Bvh::Hit{image.range[i], image.triangle[i], 0.0f, 0.0f};
       agree(mesh, ours, embree.closest(eye, d, 0.0f, 9.0f), eye, d, tally);
     }
   REQUIRE(tally.hits > 5000);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <agrisee/arm/ur3.hpp>
-#include <agrisee/core/kdtree.hpp>
+#include <agrisee/neighbors/kdtree.hpp>
 #include <agrisee/pipeline.hpp>
 #include <agrisee/plan/directions.hpp>
 

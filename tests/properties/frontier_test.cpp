@@ -2,7 +2,7 @@
 // Frontier frames: the frame moves with the cloud and the sensor, and does not depend on scale or copies of the points
 // with k times as many neighbours. Where the axis of the neighbourhood is told (the two least variances differ) and the
 // side is not grazing; there the way into the unseen is told too, unless both tangents are as far from the mean.
-#include <agrisee/core/kdtree.hpp>
+#include <agrisee/neighbors/kdtree.hpp>
 #include <agrisee/see/frontier.hpp>
 
 #include "properties/oracles.hpp"

@@ -8,9 +8,9 @@
 #pragma once
 
 #include <agrisee/core/cloud.hpp>
-#include <agrisee/core/neighbors.hpp>
 #include <agrisee/core/pose.hpp>
 #include <agrisee/core/random.hpp>
+#include <agrisee/neighbors/neighbors.hpp>
 
 #include <limits>
 #include <string>

@@ -13,7 +13,7 @@ namespace {
 /// All that a reachable pick promises: the tool's pose and, at the steps of the approach, joints within the limits, no
 /// part in a space that counts for the fruit, in the arm, or in another fruit that may hang there.
 void check_pick(const Fruit& fruit, const std::vector<Fruit>& all, const Workcell& w,
-                const plan::PickingParameters& p) {
+                const pick::PickingParameters& p) {
   const Picking& pick = *fruit.picking;
   REQUIRE(pick.joints);
   arm::Mount mount = plan::mount_of(w);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Both searches and all neighbourhoods at once answer like all pairs, on clouds where every distance ties and on clouds
 // that defy arithmetic.
-#include <agrisee/core/neighbor_lists.hpp>
+#include <agrisee/neighbors/neighbor_lists.hpp>
 
 #include "properties/laws.hpp"
 #include "support/clouds.hpp"

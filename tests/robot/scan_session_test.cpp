@@ -154,7 +154,7 @@ TEST_CASE("what was seen outlives a stop, not a reset") {
 TEST_CASE("session parameters are checked") {
   robot::SessionParameters p;
   p.settle = 0.0;
-  CHECK_THROWS_WITH(ScanSession(cell(), {}, p), test::says("settle"));
+  CHECK_THROWS_WITH(ScanSession(cell(), {}, p), "arrival.settle must be positive, got 0");
   p = {};
   p.still_angle = std::nan("");
   CHECK_THROWS_AS(ScanSession(cell(), {}, p), ParameterError);
@@ -192,7 +192,10 @@ TEST_CASE("parameters are looked up by the names of the YAML files") {
   CHECK(p.max_views == Parameters::paper().max_views);
   CHECK_THROWS_AS(read({{"preset", std::string("other")}}, "/", known), ParameterError);
   CHECK_THROWS_AS(read({{"max_views", 0}}, "/", known), ParameterError);
-  CHECK_THROWS_AS(read({{"normals/radius", std::nan("")}}, "/", known), ParameterError);
+  CHECK_THROWS_WITH(read({{"normals/radius", std::nan("")}}, "/", known),
+                    "normals/radius must be a finite number, got nan");
+  CHECK_THROWS_WITH(read({{"gain.expected.voxel", 0.0}}, ".", known), "gain.expected.voxel must be positive, got 0");
+  CHECK_THROWS_WITH(read({{"icp/kernel", std::string("soft")}}, "/", known), test::says("icp/kernel: "));
   CHECK_THROWS_WITH(read({{"max_views", std::string("many")}}, "/", known), test::says("max_views"));
 }
 

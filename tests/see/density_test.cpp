@@ -113,7 +113,7 @@ TEST_CASE("parameters: k, separation, checks", "[see]") {
   REQUIRE(scaled.k() == 0);
   int fields = 0;
   Parameters p;
-  Parameters::fields(p, [&](const char*, auto&) { ++fields; });
+  Parameters::fields(p, [&](const char*, auto&, const auto&...) { ++fields; });
   REQUIRE(fields == 16);
 }
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Frontier frames where they are known, and the views that follow.
-#include <agrisee/core/grid.hpp>
-#include <agrisee/core/kdtree.hpp>
+#include <agrisee/neighbors/grid.hpp>
+#include <agrisee/neighbors/kdtree.hpp>
 #include <agrisee/see/proposal.hpp>
 
 #include "catch.hpp"

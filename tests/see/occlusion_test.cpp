@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Sight lines by hand, the freest direction against dense sampling, the graph against every pair, and the order of
 // views.
-#include <agrisee/core/grid.hpp>
-#include <agrisee/core/kdtree.hpp>
+#include <agrisee/neighbors/grid.hpp>
+#include <agrisee/neighbors/kdtree.hpp>
 #include <agrisee/see/selector.hpp>
 
 #include "catch.hpp"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The controller covers what can be seen, falls back, gives up, ends, and says why.
-#include <agrisee/core/kdtree.hpp>
+#include <agrisee/neighbors/kdtree.hpp>
 #include <agrisee/see/planner.hpp>
 
 #include <algorithm>
@@ -19,13 +19,13 @@ const auto anywhere = [](const ViewProposal&) { return true; };
 const auto nowhere = [](const ViewProposal&) { return false; };
 
 struct Run {
-  Planner planner;
+  Explorer planner;
   std::vector<ViewProposal> views;
 };
 
 template <typename Reachable>
 Run scan(const Spheres& scene, const Parameters& params, Reachable&& reachable, int threads = 1) {
-  Run run{Planner(params, threads), {}};
+  Run run{Explorer(params, threads), {}};
   Eigen::Vector3d sensor(0.0, -0.4, 0.0);
   run.planner.observe(scene.look(sensor, 1), sensor);
   while (const auto view = run.planner.next_view(sensor, reachable)) {
@@ -39,7 +39,7 @@ Run scan(const Spheres& scene, const Parameters& params, Reachable&& reachable, 
   return run;
 }
 
-double covered(const Planner& planner, const Spheres& scene) {
+double covered(const Explorer& planner, const Spheres& scene) {
   std::size_t seen = 0, all = 0;
   for (const auto& c : scene.centers)
     for (const auto& p : test::sphere(c, scene.radius, 1000, 99)) {
@@ -106,7 +106,7 @@ TEST_CASE("a scan ends and says why", "[see]") {
     REQUIRE(run.planner.stop_reason() == StopReason::low_gain);
   }
   SECTION("nothing was seen") {
-    Planner planner((Parameters()));
+    Explorer planner((Parameters()));
     REQUIRE(planner.stop_reason() == StopReason::not_stopped);
     REQUIRE(planner.observe(Points(), Eigen::Vector3d::Zero()).empty());
     REQUIRE(planner.observe(Points(20, Eigen::Vector3f::Constant(std::nanf(""))), Eigen::Vector3d::Zero()).empty());
@@ -115,7 +115,7 @@ TEST_CASE("a scan ends and says why", "[see]") {
   }
   SECTION("too little was seen to have a frontier") {
     for (const std::size_t n : {std::size_t{1}, std::size_t{2}, std::size_t{5}}) {
-      Planner planner((Parameters()));
+      Explorer planner((Parameters()));
       planner.observe(Points(n, Eigen::Vector3f::UnitX()), Eigen::Vector3d::Zero());
       REQUIRE_FALSE(planner.next_view(Eigen::Vector3d::Zero(), anywhere));
       REQUIRE(planner.stop_reason() == StopReason::no_frontier);
@@ -130,7 +130,7 @@ TEST_CASE("a frontier that stays one is looked at again, then from where it was 
   params.max_views = 200;
   const Points strip = test::rectangle(-0.1, 0.1, -0.06, 0.06, 60000);
   const Eigen::Vector3d start(0.0, 0.0, 0.38);
-  Planner planner(params);
+  Explorer planner(params);
   planner.observe(strip, start);
   const auto first = planner.next_view(start, anywhere);
   REQUIRE(first);
@@ -148,7 +148,7 @@ TEST_CASE("a frontier that stays one is looked at again, then from where it was 
   REQUIRE(third->frontier != first->frontier);
 
   // What was added lies on one side: the next view moves to the other.
-  Planner shifting(params);
+  Explorer shifting(params);
   shifting.observe(strip, start);
   const auto views = shifting.next_views(start);
   const auto count = [&](const ViewProposal& v) {
@@ -180,7 +180,7 @@ TEST_CASE("a planner that is shown the same over and over ends", "[see]") {
   params.rho = 4e6;
   params.radius = 0.02;
   const Points strip = test::rectangle(-0.03, 0.03, -0.015, 0.015, 20000);
-  Planner planner(params);
+  Explorer planner(params);
   Eigen::Vector3d sensor(0, 0, 0.38);
   planner.observe(strip, sensor);
   REQUIRE_FALSE(planner.map().of_class(PointClass::frontier).empty());
@@ -193,7 +193,7 @@ TEST_CASE("a planner that is shown the same over and over ends", "[see]") {
 }
 
 TEST_CASE("an unreachable view is turned towards where its point was seen from, step by step", "[see]") {
-  Planner planner((Parameters()));
+  Explorer planner((Parameters()));
   const Spheres scene{{Eigen::Vector3d::Zero()}};
   const Eigen::Vector3d sensor(0, -0.4, 0);
   planner.observe(scene.look(sensor, 1), sensor);
@@ -219,7 +219,7 @@ TEST_CASE("an unreachable view is turned towards where its point was seen from, 
 
 TEST_CASE("points can be filtered between views", "[see]") {
   const Spheres scene{{{0, 0, 0}, {0.072, 0.01, 0}}};
-  Planner planner((Parameters()));
+  Explorer planner((Parameters()));
   Eigen::Vector3d sensor(0, -0.4, 0);
   Rng rng(4);
   for (int i = 0; i < 8; ++i) {
@@ -244,7 +244,7 @@ TEST_CASE("the paper's test of validity leaves out frontiers that face inwards",
   const Spheres scene{{{0, 0, 0}, {0.072, 0.01, 0}}};
   Parameters params;
   params.outward_normals_only = true;
-  Planner planner(params);
+  Explorer planner(params);
   const Eigen::Vector3d sensor(0, -0.4, 0);
   planner.observe(scene.look(sensor, 1), sensor);
   Eigen::Vector3d mean = Eigen::Vector3d::Zero();
@@ -260,8 +260,8 @@ TEST_CASE("the paper's test of validity leaves out frontiers that face inwards",
 TEST_CASE("planner, bad input", "[see]") {
   Parameters bad;
   bad.radius = -1.0;
-  REQUIRE_THROWS_AS(Planner(bad), ParameterError);
-  Planner planner((Parameters()));
+  REQUIRE_THROWS_AS(Explorer(bad), ParameterError);
+  Explorer planner((Parameters()));
   REQUIRE_THROWS_AS(planner.observe(Points(), Eigen::Vector3d::Constant(std::nan(""))), InputError);
   REQUIRE_THROWS_AS(planner.next_views(Eigen::Vector3d::Constant(std::nan(""))), InputError);
   REQUIRE_THROWS_AS(planner.keep({0}), InputError);

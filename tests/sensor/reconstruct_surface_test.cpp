@@ -63,7 +63,7 @@ TEST_CASE("a surface is recovered from noise that is larger than its detail") {
   CHECK(q.turned == 0.0);
   if (noise > 0.0) {  // that of the cells' raw depths: medians of 4 x 4 pixels, some of them
     CHECK(image.noise < 0.5 * noise);
-    std::vector<double> off;  // of neighbours along a row from their middle; slopes of spheres cancel
+    std::vector<double> off;  // of neighbors along a row from their middle; slopes of spheres cancel
     for (std::size_t c = 1; c + 1 < image.depth.size(); ++c) {
       const double second = double(image.depth[c - 1]) - 2.0 * double(image.depth[c]) + double(image.depth[c + 1]);
       if (image.depth[c - 1] > 0 && image.depth[c] > 0 && image.depth[c + 1] > 0) off.push_back(std::abs(second));

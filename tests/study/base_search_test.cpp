@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Where to put the arm: around a wall, off what it would stand in, and with what it stands on.
+// Where to put the robot: beside a wall, not inside solids, and together with what it stands on.
 #include <agrisee/study/base_search.hpp>
-#include <agrisee/study/truss.hpp>
+#include <agrisee/study/greedy.hpp>
+#include <agrisee/study/truss_mesh.hpp>
 
 #include "catch.hpp"
 
@@ -42,11 +43,11 @@ Workcell cell_of(const Eigen::Vector3d& base) {
 }
 
 BaseSearchParameters quick(double range, double step) {
-  BaseSearchParameters params;
-  params.range = range;
-  params.step = step;
-  params.limit.candidates = 250;
-  return params;
+  BaseSearchParameters parameters;
+  parameters.range = range;
+  parameters.step = step;
+  parameters.limit.candidates = 250;
+  return parameters;
 }
 
 const BasePlace& present(const std::vector<BasePlace>& places) {
@@ -70,13 +71,13 @@ TEST_CASE("the present place has the figures of observable, and the best comes f
   const TracedScene traced(scene);
   const Samples samples = fruit_samples(scene);
   const Workcell cell = cell_of({0.0, 0.0, 0.0});
-  const BaseSearchParameters params = quick(0.29, 0.2);  // whole steps alone
-  const std::vector<BasePlace> places = base_search(traced, samples, cell, params);
+  const BaseSearchParameters parameters = quick(0.29, 0.2);  // only whole steps are taken
+  const std::vector<BasePlace> places = base_search(traced, samples, cell, parameters);
   REQUIRE(places.size() == 9);
   for (std::size_t i = 1; i < places.size(); ++i) CHECK(places[i - 1].observable >= places[i].observable);
   CHECK(places.front().observable > places.back().observable);
 
-  const Observability o = observable(traced, samples, cell, params.limit);
+  const Observability o = observable(traced, samples, cell, parameters.limit);
   const BasePlace& here = present(places);
   CHECK(here.base == Eigen::Vector3d::Zero());
   CHECK(here.poses == o.views.size());
@@ -86,7 +87,7 @@ TEST_CASE("the present place has the figures of observable, and the best comes f
   const std::size_t first = most_frontal(o, cell.scan_volume.center(), Eigen::Vector3d::UnitY());
   CHECK(here.views == greedy_order(o, samples, first).views_for(0.95));
 
-  const std::vector<BasePlace> threaded = base_search(traced, samples, cell, params, 3);
+  const std::vector<BasePlace> threaded = base_search(traced, samples, cell, parameters, 3);
   REQUIRE(threaded.size() == places.size());
   for (std::size_t i = 0; i < places.size(); ++i) {
     CHECK(threaded[i].base == places[i].base);
@@ -99,20 +100,20 @@ TEST_CASE("the present place has the figures of observable, and the best comes f
 TEST_CASE("from behind a wall the arm sees less") {
   Scene scene = two_balls();
   const Samples samples = fruit_samples(scene);
-  // As far to the left as to the right, so that all that differs is the wall.
+  // As far to the left as to the right, so that only the wall makes a difference.
   const Workcell cell = cell_of({0.0, 0.3, 0.0});
-  const BaseSearchParameters params = quick(0.6, 0.6);
-  const std::vector<BasePlace> open = base_search(TracedScene(scene), samples, cell, params);
+  const BaseSearchParameters parameters = quick(0.6, 0.6);
+  const std::vector<BasePlace> open = base_search(TracedScene(scene), samples, cell, parameters);
   scene.objects.push_back(wall());
-  const std::vector<BasePlace> walled = base_search(TracedScene(scene), samples, cell, params);
+  const std::vector<BasePlace> walled = base_search(TracedScene(scene), samples, cell, parameters);
   CHECK(at(open, 0.6, 0.3).observable > 0.3);
   CHECK(at(walled, 0.6, 0.3).observable < 0.8 * at(open, 0.6, 0.3).observable);
   CHECK(at(walled, 0.6, 0.3).observable < at(walled, -0.6, 0.3).observable);
-  // A ray never gains by a wall.
+  // A wall never makes anything visible.
   for (const BasePlace& place : open) CHECK(at(walled, place.base.x(), place.base.y()).observable <= place.observable);
 }
 
-TEST_CASE("what the arm stands on moves along, and it stands in nothing else") {
+TEST_CASE("what the robot stands on moves with it, and it does not stand inside anything else") {
   Workcell cell = cell_of({0.0, 0.0, 0.0});
   cell.keep_out = {{"platform", Box{{0.0, -0.1, -0.06}, {0.7, 0.7, 0.1}}},
                    {"plate", Cylinder{{0.0, 0.0, 0.0}, 0.1, 0.02}},
@@ -127,7 +128,7 @@ TEST_CASE("what the arm stands on moves along, and it stands in nothing else") {
   CHECK(std::get<Cylinder>(moved.keep_out[1].shape).center.isApprox(Eigen::Vector3d(0.1, 0.2, 0.0)));
   CHECK(std::get<Box>(moved.keep_out[2].shape).center == Eigen::Vector3d(0.3, 0.0, 0.0));
 
-  // An arm that hangs stands on the ceiling.
+  // A robot that hangs "stands" on the ceiling.
   Workcell hanging = cell;
   hanging.world_T_base = pose_from_xyz_rpy({0.0, 0.0, 1.0}, {kPi, 0.0, 0.0});
   CHECK(stands_on(hanging, {"ceiling", Box{{0.0, 0.0, 1.06}, {1.0, 1.0, 0.1}}}));
@@ -136,15 +137,15 @@ TEST_CASE("what the arm stands on moves along, and it stands in nothing else") {
   const Scene scene = two_balls();
   const TracedScene traced(scene);
   const Samples samples = fruit_samples(scene);
-  BaseSearchParameters params = quick(0.3, 0.3);
-  params.limit.candidates = 60;
-  const std::vector<BasePlace> places = base_search(traced, samples, cell, params);
+  BaseSearchParameters parameters = quick(0.3, 0.3);
+  parameters.limit.candidates = 60;
+  const std::vector<BasePlace> places = base_search(traced, samples, cell, parameters);
   CHECK(at(places, 0.3, 0.0).blocked);
   CHECK(at(places, 0.3, 0.0).blocked_by == "cupboard");
   CHECK(at(places, 0.3, 0.0).observable == 0.0);
   CHECK(places.back().blocked);
   CHECK(std::count_if(places.begin(), places.end(), [](const BasePlace& p) { return p.blocked; }) == 1);
-  CHECK_FALSE(at(places, 0.0, 0.3).blocked);  // on a face is not inside
+  CHECK_FALSE(at(places, 0.0, 0.3).blocked);  // a point on a face is not inside
   CHECK_FALSE(present(places).blocked);
   CHECK(present(places).observable > 0.0);
 }
@@ -153,24 +154,24 @@ TEST_CASE("a base search far from everything, without fruit, or with unusable pa
   const Scene scene = two_balls();
   const TracedScene traced(scene);
   const Samples samples = fruit_samples(scene);
-  const BaseSearchParameters params = quick(0.1, 0.1);
-  for (const BasePlace& place : base_search(traced, samples, cell_of({3.0, 0.0, 0.0}), params)) {
+  const BaseSearchParameters parameters = quick(0.1, 0.1);
+  for (const BasePlace& place : base_search(traced, samples, cell_of({3.0, 0.0, 0.0}), parameters)) {
     CHECK(place.observable == 0.0);
     CHECK(place.least == 0.0);
     CHECK(place.poses == 0);
     CHECK_FALSE(place.views);
   }
-  // Near enough from one side of the grid alone.
+  // Only one side of the grid is near enough.
   const auto places = base_search(traced, samples, cell_of({1.2, 0.5, 0.0}), quick(0.5, 0.5));
   CHECK(places.front().base.x() == Approx(0.7));
   CHECK(places.front().observable > 0.0);
-  CHECK(base_search(traced, Samples{}, cell_of({0.0, 0.0, 0.0}), params).size() == 9);
+  CHECK(base_search(traced, Samples{}, cell_of({0.0, 0.0, 0.0}), parameters).size() == 9);
   CHECK(fruit_shares(Samples{}, {}).empty());
   CHECK(fruit_shares(samples, {}).size() == 2);
   CHECK_THROWS_AS(fruit_shares(samples, Flags(3, 1)), InputError);
   for (const auto& bad : {quick(-0.1, 0.1), quick(0.1, 0.0), quick(1.0, 0.001), quick(0.1, std::nan(""))})
     CHECK_THROWS_AS(base_search(traced, samples, cell_of({0.0, 0.0, 0.0}), bad), ParameterError);
-  BaseSearchParameters none = params;
+  BaseSearchParameters none = parameters;
   none.share = 0.0;
   CHECK_THROWS_AS(none.check(), ParameterError);
 }

@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The planner that knows the truth: the views of greedy_order, one by one.
+// The planner that knows the truth takes the views of greedy_order(), one by one.
+#include <agrisee/arm/limits.hpp>
+#include <agrisee/arm/ur3.hpp>
+#include <agrisee/plan/arm_reach.hpp>
 #include <agrisee/study/greedy_planner.hpp>
 #include <agrisee/study/simulated_scan.hpp>
 #include <agrisee/study/truss.hpp>
@@ -17,7 +20,7 @@ const std::vector<View> kViews;
 const std::vector<Eigen::Vector3f> kAdded;
 const plan::Progress kProgress{kCloud, kImages, kViews, kAdded};
 
-/// Six samples on a line, 1 m apart, and which of them each view sees.
+/// Six samples on a line, 1 m apart. `seen` lists for each view the samples that it sees.
 struct Line {
   std::shared_ptr<Observability> observed = std::make_shared<Observability>();
   std::shared_ptr<Samples> samples = std::make_shared<Samples>();
@@ -33,7 +36,7 @@ struct Line {
     volume.extend(Eigen::Vector3d(0.1, 0.1, 0.1));
     if (!seen.empty()) observed->observable.assign(6, 0);
     for (std::size_t v = 0; v < seen.size(); ++v) {
-      plan::ReachableView view;  // each further from frontal, which is +y, than the one before
+      plan::ReachableView view;  // each farther from frontal, which is +y, than the one before
       view.world_T_optical = look_along({0.1 * double(v), -0.4, 0.0}, {-0.1 * double(v), 0.4, 0.0});
       observed->views.push_back(view);
       observed->seen.push_back(Bits(1, 0));
@@ -43,7 +46,7 @@ struct Line {
   GreedyPlanner planner() const { return {observed, samples, volume, {0.0, -1.0, 0.0}}; }
 };
 
-/// The x of the view that is asked for next, in tenths of a metre: its index.
+/// The index of the view that the planner wants next, which is its x in tenths of a metre; -1 for none.
 int next_of(GreedyPlanner& planner) {
   const auto view = planner.next(kProgress, Joints::Zero(), {});
   return view ? static_cast<int>(std::lround(10.0 * view->world_T_optical.translation().x())) : -1;
@@ -54,7 +57,7 @@ int next_of(GreedyPlanner& planner) {
 TEST_CASE("a cover counts, takes and drops") {
   const Line line({{0}, {0, 1, 2}, {2, 3, 4}, {3, 4}});
   GreedyCover cover(*line.observed, *line.samples);
-  CHECK(cover.all() == 5);  // nothing sees the sixth
+  CHECK(cover.all() == 5);  // no view sees the sixth sample
   CHECK(cover.best() == std::optional<std::size_t>(1));
   CHECK(cover.take(1) == 3);
   CHECK(cover.take(1) == 0);
@@ -74,17 +77,17 @@ TEST_CASE("a cover counts, takes and drops") {
   CHECK_THROWS_AS(cover.drop(4), InputError);
   CHECK_THROWS_AS(GreedyCover(*line.observed, Samples{}), InputError);
   CHECK_THROWS_AS(GreedyCover(*line.observed, *line.samples, -1.0), ParameterError);
-  // A wide radius covers what lies beside what is seen.
+  // With a large radius, neighbors of seen samples are covered.
   CHECK(GreedyCover(*line.observed, *line.samples, 1.01).gain(0) == 2);
 }
 
-TEST_CASE("the greedy planner begins frontally, goes on with the best, and knows why it stops") {
+TEST_CASE("the greedy planner starts with the frontal view, continues with the best, and says why it stops") {
   const Line line({{0}, {0, 1, 2}, {2, 3, 4}, {4}});
   GreedyPlanner planner = line.planner();
   CHECK(next_of(planner) == 0);
   CHECK(next_of(planner) == 0);  // not taken yet
   planner.observe(kProgress);
-  planner.observe(kProgress);  // a view that nobody named changes nothing
+  planner.observe(kProgress);  // a view that the planner did not choose changes nothing
   CHECK(next_of(planner) == 2);
   planner.observe(kProgress);
   const auto last = planner.next(kProgress, Joints::Zero(), {});
@@ -96,19 +99,19 @@ TEST_CASE("the greedy planner begins frontally, goes on with the best, and knows
   CHECK(planner.stop_reason() == StopReason::no_frontier);
 }
 
-TEST_CASE("the greedy planner names a refused view no more") {
+TEST_CASE("the greedy planner does not choose a refused view again") {
   const Line line({{0}, {0, 1, 2}, {2, 3, 4}, {4}});
   GreedyPlanner planner = line.planner();
   CHECK(next_of(planner) == 0);
   planner.refused();
-  CHECK(next_of(planner) == 1);  // the next most frontal, though another sees as much
+  CHECK(next_of(planner) == 1);  // the next most frontal one, although another sees as much
   planner.observe(kProgress);
   CHECK(next_of(planner) == 2);
   planner.refused();
   CHECK(next_of(planner) == 3);
   planner.observe(kProgress);
   CHECK(next_of(planner) == -1);
-  CHECK(planner.stop_reason() == StopReason::no_reachable_view);  // 3 shows from the refused view alone
+  CHECK(planner.stop_reason() == StopReason::no_reachable_view);  // sample 3 is seen only by the refused view
 
   GreedyPlanner all = line.planner();
   for (int v = 0; v < 4; ++v) {
@@ -137,7 +140,7 @@ TEST_CASE("joints and pose of a greedy view belong together, with or without an 
   REQUIRE(stored);
   Line line({{0, 1}});
   line.observed->views[0] = *stored;
-  Joints far = *stored->joints;  // where the same pose is nearer with a joint turned round once
+  Joints far = *stored->joints;  // from here the same pose is nearer with a joint turned once around
   far[3] += stored->joints->operator[](3) > 0.0 ? -kTwoPi : kTwoPi;
   far[0] += 0.01;
   const plan::Reach armless = [&](const plan::ViewRequest&, const Joints&) {

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The way through the views: against all permutations, and beyond the exact against its own bounds.
+// The path through the views: compared with all permutations and, for many views, with its own bounds.
 #include <agrisee/core/random.hpp>
 #include <agrisee/study/joint_path.hpp>
 
+#include <algorithm>
+#include <limits>
 #include <numeric>
 
 #include "catch.hpp"
@@ -43,7 +45,8 @@ double by_brute_force(const Joints& start, const std::vector<Joints>& configurat
   return least;
 }
 
-/// n configurations along a line in joint space, in a shuffled order; from the start, at its end, the way is n long.
+/// n configurations along a line in joint space, in shuffled order. The start is at the end of the line, so the
+/// shortest path has length n.
 std::vector<Joints> shuffled_line(std::size_t n, std::uint64_t seed) {
   std::vector<Joints> out(n);
   for (std::size_t i = 0; i < n; ++i) out[i] = Joints::Constant(double(i + 1) / std::sqrt(6.0));
@@ -54,7 +57,7 @@ std::vector<Joints> shuffled_line(std::size_t n, std::uint64_t seed) {
 
 }  // namespace
 
-TEST_CASE("the length of a path is the sum of its joint differences, views without joints passed over") {
+TEST_CASE("the length of a path is the sum of its joint differences; views without joints are skipped") {
   std::vector<View> views(4);
   views[0].joints = Joints::Zero();
   views[0].joints->head<2>() << 3.0, 4.0;
@@ -71,34 +74,31 @@ TEST_CASE("the length of a path is the sum of its joint differences, views witho
   CHECK_THROWS_AS(shortest_joint_path(Joints::Zero(), views), InputError);
 }
 
-TEST_CASE("the shortest path is that of all permutations") {
+TEST_CASE("the shortest path is the shortest of all permutations") {
   for (std::size_t n = 1; n <= 7; ++n)
     for (std::uint64_t seed = 0; seed < 4; ++seed) {
       std::vector<Joints> configurations = random_joints(n + 1, seed + 10 * n);
       const Joints start = configurations.back();
       configurations.pop_back();
-      if (n >= 3 && seed == 3) configurations[1] = configurations[0];  // one posture twice
+      if (n >= 3 && seed == 3) configurations[1] = configurations[0];  // the same joints twice
       const JointPath path = shortest_joint_path(start, configurations);
       CHECK(path.exact);
       REQUIRE(is_permutation_of(path.order, n));
       CHECK(path.length == Approx(joint_path_length(start, ordered(configurations, path.order))));
       CHECK(path.length == Approx(by_brute_force(start, configurations)));
-      // What the bound of many configurations is made by is a path, too, and never shorter.
-      const Eigen::MatrixXd d = study::detail::joint_distances(start, configurations);
-      study::detail::Nodes nodes = study::detail::nearest_neighbour_path(d);
-      study::detail::improve_path(d, nodes);
-      std::vector<std::size_t> order;
-      for (const Eigen::Index node : nodes) order.push_back(static_cast<std::size_t>(node - 1));
-      REQUIRE(is_permutation_of(order, n));
-      const double bound = joint_path_length(start, ordered(configurations, order));
-      CHECK(bound >= path.length - 1e-9);
-      CHECK(bound <= 1.2 * path.length);
+      // Local search, which is used for more configurations, gives a path too, and never a shorter one.
+      const JointPath local = local_joint_path(start, configurations);
+      REQUIRE(is_permutation_of(local.order, n));
+      CHECK(local.exact == (n < 2));
+      CHECK(local.length == Approx(joint_path_length(start, ordered(configurations, local.order))));
+      CHECK(local.length >= path.length - 1e-9);
+      CHECK(local.length <= 1.2 * path.length);
     }
 }
 
-TEST_CASE("of up to thirteen configurations the path is exact, of more it is a good upper bound") {
+TEST_CASE("up to thirteen configurations the path is exact, beyond that it is a good upper bound") {
   for (const std::size_t n : {kExactPath, kExactPath + 1, std::size_t{40}}) {
-    // On a line the shortest way is known.
+    // Along a line the shortest path is known.
     const std::vector<Joints> line = shuffled_line(n, n);
     const JointPath straight = shortest_joint_path(Joints::Zero(), line);
     CHECK(straight.exact == (n <= kExactPath));
@@ -111,17 +111,12 @@ TEST_CASE("of up to thirteen configurations the path is exact, of more it is a g
     CHECK(is_permutation_of(path.order, n));
     CHECK(path.length == Approx(joint_path_length(Joints::Zero(), ordered(scattered, path.order))));
     CHECK(path.length < joint_path_length(Joints::Zero(), scattered));
-    // Begun with the best order known, it finds none that is longer.
+    // Starting from the best known order, the search does not end with a longer path.
     CHECK(shortest_joint_path(Joints::Zero(), ordered(scattered, path.order)).length <= path.length + 1e-9);
     CHECK(shortest_joint_path(Joints::Zero(), scattered).order == path.order);
   }
-  // Thirteen exact, compared with the bound of the same.
+  // The exact path through thirteen is not longer than that of local search.
   const std::vector<Joints> scattered = random_joints(kExactPath, 3);
-  const Eigen::MatrixXd d = study::detail::joint_distances(Joints::Zero(), scattered);
-  study::detail::Nodes nodes = study::detail::nearest_neighbour_path(d);
-  study::detail::improve_path(d, nodes);
-  std::vector<std::size_t> order;
-  for (const Eigen::Index node : nodes) order.push_back(static_cast<std::size_t>(node - 1));
   CHECK(shortest_joint_path(Joints::Zero(), scattered).length <=
-        joint_path_length(Joints::Zero(), ordered(scattered, order)) + 1e-9);
+        local_joint_path(Joints::Zero(), scattered).length + 1e-9);
 }

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What can be observed: by known poses, by the arm, and in how few views.
+// What can be observed from known poses and by the arm, and in how few views.
+#include <agrisee/plan/arm_reach.hpp>
 #include <agrisee/study/greedy.hpp>
 #include <agrisee/study/truss.hpp>
+#include <agrisee/study/truss_mesh.hpp>
 
 #include "catch.hpp"
 
@@ -36,7 +38,7 @@ TEST_CASE("the union and the greedy order of known views") {
   const Scene scene = one_ball();
   const TracedScene traced(scene);
   const Samples samples = fruit_samples(scene);
-  // From the front, a little aside of it, from above, and away from the ball.
+  // From the front, a little beside it, from above, and from far away.
   const std::vector<plan::ReachableView> views{look({0.0, 0.1, 0.2}), look({0.02, 0.1, 0.2}), look({0.0, 0.5, 0.6}),
                                                look({0.0, 0.1, 9.9})};
   const Observability o = observe_from(traced, samples, {}, views);
@@ -60,10 +62,10 @@ TEST_CASE("the union and the greedy order of known views") {
     REQUIRE(order.views.size() >= 2);
     if (first) {
       CHECK(order.views[0] == 1);
-      CHECK(order.views[1] == 2);  // from another side: it adds most
+      CHECK(order.views[1] == 2);  // from another side, so it adds most
     }
     CHECK(order.covered.back() == 1.0);
-    // What the first covers, by brute force.
+    // What the first view covers, by brute force.
     double covered = 0.0;
     for (std::size_t i = 0; i < samples.size(); ++i) {
       if (!any[i]) continue;
@@ -81,10 +83,10 @@ TEST_CASE("the union and the greedy order of known views") {
   CHECK_THROWS_AS(greedy_order(o, samples, std::nullopt, 0.0), ParameterError);
 }
 
-TEST_CASE("a third or less of a truss stays out of sight of the arm") {
-  TrussParameters params;
-  params.seed = 3;
-  const Truss truss = make_truss(params);
+TEST_CASE("the arm cannot see about a third of a truss") {
+  TrussParameters parameters;
+  parameters.seed = 3;
+  const Truss truss = make_truss(parameters);
   const TracedScene traced(truss.scene);
   const Samples samples = fruit_samples(truss.scene);
   LimitParameters limit;
@@ -101,7 +103,7 @@ TEST_CASE("a third or less of a truss stays out of sight of the arm") {
     for (const KeepOut& space : truss.workcell.keep_out)
       REQUIRE(distance(space, view.world_T_optical.translation()) > 0.0);
   }
-  const GreedyOrder order = greedy_order(o, samples, most_frontal(o, params.center, Eigen::Vector3d::UnitY()));
+  const GreedyOrder order = greedy_order(o, samples, most_frontal(o, parameters.center, Eigen::Vector3d::UnitY()));
   REQUIRE(order.views_for(0.98));
   CHECK(*order.views_for(0.9) >= 3);
   CHECK(*order.views_for(0.9) <= 7);
@@ -113,24 +115,24 @@ TEST_CASE("a third or less of a truss stays out of sight of the arm") {
   CHECK(threaded.observable == o.observable);
 }
 
-TEST_CASE("an arm that reaches nothing, and a scene without fruit, say so") {
+TEST_CASE("an arm that reaches nothing, or a scene without fruit, gives no views") {
   const Scene scene = one_ball();
   const TracedScene traced(scene);
   const Samples samples = fruit_samples(scene);
-  LimitParameters params;
-  params.candidates = 200;
+  LimitParameters parameters;
+  parameters.candidates = 200;
   Workcell cell;
   cell.world_T_base.translation().x() = 3.0;
-  const Observability o = observable(traced, samples, cell, params);
+  const Observability o = observable(traced, samples, cell, parameters);
   CHECK(o.views.empty());
   CHECK(o.observable.empty());
   CHECK(greedy_order(o, samples).views.empty());
   CHECK_THROWS_AS(most_frontal(o, {0, 0, 0}, {0, 1, 0}), InputError);
-  CHECK(observable(TracedScene(Scene{}), Samples{}, Workcell{}, params).views.empty());
-  CHECK_THROWS_AS(reachable_views(plan::reach_of(Workcell{}), Joints::Zero(), Aabb{}, params), InputError);
-  params.candidates = 0;
-  CHECK_THROWS_AS(observable(traced, samples, cell, params), ParameterError);
-  params = {};
-  params.distance_max = 0.1;
-  CHECK_THROWS_AS(observable(traced, samples, cell, params), ParameterError);
+  CHECK(observable(TracedScene(Scene{}), Samples{}, Workcell{}, parameters).views.empty());
+  CHECK_THROWS_AS(reachable_views(plan::reach_of(Workcell{}), Joints::Zero(), Aabb{}, parameters), InputError);
+  parameters.candidates = 0;
+  CHECK_THROWS_AS(observable(traced, samples, cell, parameters), ParameterError);
+  parameters = {};
+  parameters.distance_max = 0.1;
+  CHECK_THROWS_AS(observable(traced, samples, cell, parameters), ParameterError);
 }

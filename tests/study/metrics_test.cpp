@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Every fault of a result changes the figures that it should, by the amount computed by hand, and no others.
+// Each fault of a result changes the figures that it should, by the amount computed by hand, and no others.
+#include <agrisee/core/random.hpp>
 #include <agrisee/study/evaluate.hpp>
 #include <agrisee/study/truss.hpp>
+#include <agrisee/study/truss_mesh.hpp>
 
 #include <map>
 
@@ -39,7 +41,7 @@ double count(int id) { return double(std::count(truth().samples.fruit.begin(), t
 
 double all() { return double(truth().samples.size()); }
 
-/// What the true surface itself would give.
+/// The result that the true surface itself would give.
 ScanResult perfect() {
   ScanResult result;
   result.cloud.points = result.raw.points = truth().samples.points;
@@ -62,7 +64,7 @@ void add_stem_points(ScanResult& result, int n, int label) {
 
 using Changed = std::map<std::string, double>;
 
-/// All figures of a result, those named in `changed` as given there and all others perfect.
+/// Check all figures of a result: those in `changed` have the value given there, all others are perfect.
 void check_figures(const Metrics& m, Changed changed) {
   for (const auto& [name, value] : Changed{{"n_real", 3}, {"n_det", 3}, {"n_true", 3}, {"counting_error", 0}})
     changed.emplace(name, value);
@@ -96,9 +98,9 @@ TEST_CASE("a perfect result scores 1 everywhere") {
 }
 
 TEST_CASE("a generated truss, touching fruit and stem included, scores 1 by its own surface") {
-  TrussParameters params;
-  params.leaflets = 1;
-  const Truss truss = make_truss(params);
+  TrussParameters parameters;
+  parameters.leaflets = 1;
+  const Truss truss = make_truss(parameters);
   const Truth t = make_truth(truss.scene, truss.truth, truss.workcell.sensor);
   ScanResult result;
   result.cloud.points = result.raw.points = t.samples.points;
@@ -158,8 +160,7 @@ TEST_CASE("one fruit split into two instances") {
 TEST_CASE("a detection is true from an IoU of one half") {
   ScanResult result = perfect();
   double kept = 0.0;
-  for (std::size_t i = 0; i < result.labels.size();
-       ++i)  // thin instances that cover each other's samples would not do:
+  for (std::size_t i = 0; i < result.labels.size(); ++i)
     if (result.labels[i] == 1 && result.cloud.points[i].z() < float(kCenter[0].z() + 0.2 * kRadius[0]))
       result.labels[i] = 0;
   const Metrics m = evaluate(truth(), result);
@@ -196,7 +197,7 @@ TEST_CASE("a missing fruit") {
       {"n_det", 2},           {"n_true", 2}, {"counting_error", 1}, {"object_recall", 2.0 / 3.0}, {"recall", recall},
       {"recall_obs", recall}, {"f1", f1}};
   check_figures(evaluate(truth(), result), changed);
-  // Never even scanned.
+  // The fruit was not even scanned.
   ScanResult unseen;
   unseen.fruits = result.fruits;
   for (std::size_t i = 0; i < result.labels.size(); ++i)
@@ -209,7 +210,7 @@ TEST_CASE("a missing fruit") {
   check_figures(evaluate(truth(), unseen), changed);
 }
 
-TEST_CASE("stem in the cloud, labelled as nothing, as a fruit of its own, and as part of a fruit") {
+TEST_CASE("stem points without a label, as a fruit of their own, and as part of a fruit") {
   const int n = 800;
   const double share = all() / (all() + n), f1 = 2.0 * share / (share + 1.0);
   ScanResult result = perfect();
@@ -228,13 +229,13 @@ TEST_CASE("stem in the cloud, labelled as nothing, as a fruit of its own, and as
 
   result = perfect();
   add_stem_points(result, n, 1);
-  // The fruit's points stand for a sample each, and so do the stem's.
+  // Each point of the fruit stands for one sample, and so does each point of the stem.
   const double iou = count(1) / (count(1) + n);
   Changed part = changed;
   part["miou_surface"] = part["miou_point"] = (iou + 2.0) / 3.0;
   check_figures(evaluate(truth(), result), part);
 
-  // With every second point of the fruit left, each stands for two samples.
+  // If only every second point of the fruit is left, each point stands for two samples.
   result = {};
   result.fruits = perfect().fruits;
   double left = 0.0;
@@ -355,7 +356,7 @@ TEST_CASE("points that are not finite count as wrong") {
                                             {"miou_point", (iou + 2.0) / 3.0}});
 }
 
-TEST_CASE("what cannot be observed is not held against a result") {
+TEST_CASE("surface that cannot be observed does not count against a result") {
   Flags observable(truth().samples.size(), 1);
   ScanResult result;
   for (std::size_t i = 0; i < observable.size(); ++i) {
@@ -373,7 +374,7 @@ TEST_CASE("what cannot be observed is not held against a result") {
   }
   const Metrics m = evaluate(truth(), result, observable);
   CHECK(m.observable == Approx(0.5).margin(0.01));
-  CHECK(m.recall > m.observable);  // up to 5 mm beyond
+  CHECK(m.recall > m.observable);  // up to 5 mm farther
   CHECK(m.recall < 0.65);
   check_figures(m, {{"observable", m.observable},
                     {"recall", m.recall},
@@ -418,17 +419,17 @@ TEST_CASE("repeatability is the spread of a fruit's centroids") {
   CHECK(*repeatability({{1, 0, 0}, {1, 0, 0}, {1, 0.003, 0}}) == Approx(std::sqrt(2.0) * 0.001));
 }
 
-TEST_CASE("evaluation refuses what does not fit together") {
+TEST_CASE("evaluate rejects input that does not fit together") {
   ScanResult result = perfect();
   result.labels.pop_back();
   CHECK_THROWS_AS(evaluate(truth(), result), InputError);
   CHECK_THROWS_AS(evaluate(truth(), perfect(), Flags(3, 1)), InputError);
-  MetricParameters params;
-  params.threshold = 0.0;
-  CHECK_THROWS_AS(evaluate(truth(), perfect(), {}, params), ParameterError);
-  params = {};
-  params.min_iou = 1.5;
-  CHECK_THROWS_AS(evaluate(truth(), perfect(), {}, params), ParameterError);
+  MetricParameters parameters;
+  parameters.threshold = 0.0;
+  CHECK_THROWS_AS(evaluate(truth(), perfect(), {}, parameters), ParameterError);
+  parameters = {};
+  parameters.min_iou = 1.5;
+  CHECK_THROWS_AS(evaluate(truth(), perfect(), {}, parameters), ParameterError);
   GroundTruth other = truth().fruits;
   other.fruits.pop_back();
   CHECK_THROWS_AS(make_truth(three_balls(), other), InputError);

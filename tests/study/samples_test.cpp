@@ -1,9 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // MeshMoments, samples, visibility and matching against closed forms and brute force.
+#include <agrisee/core/random.hpp>
+#include <agrisee/geometry/bvh.hpp>
+#include <agrisee/study/ground_truth.hpp>
 #include <agrisee/study/matching.hpp>
+#include <agrisee/study/mesh_moments.hpp>
 #include <agrisee/study/truss_mesh.hpp>
 #include <agrisee/study/visibility.hpp>
 
+#include <algorithm>
 #include <numeric>
 
 #include "catch.hpp"
@@ -119,7 +124,7 @@ TEST_CASE("the visible cap of a ball has the area that geometry gives") {
   CHECK(share(samples, steep, 1) == Approx(0.5 * (1.0 - std::cos(theta))).margin(0.01));
   CHECK(share(samples, steep, 2) == 0.0);
   // The sensor sees the same as long as it looks there and is in range.
-  const sensor::L515 l515;
+  const sensor::DepthCamera l515 = sensor::l515();
   CHECK(visible_to(traced, samples, look_along(eye, {0, 1, 0}), l515) == steep);
   CHECK(visible_to(traced, samples, look_along(eye, {0, 1, 0}), l515, 3) == steep);
   CHECK(share(samples, visible_to(traced, samples, look_along(eye, {0, -1, 0}), l515), 1) == 0.0);

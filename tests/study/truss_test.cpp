@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Trusses are what they are said to be: closed, touching, hidden where asked, the same for the same seed.
+#include <agrisee/geometry/bvh.hpp>
 #include <agrisee/study/paper_truss.hpp>
+#include <agrisee/study/traced_scene.hpp>
+#include <agrisee/study/truss_mesh.hpp>
 
 #include <map>
 
@@ -167,16 +170,16 @@ TEST_CASE("trusses of all kinds are as asked") {
                                         {12, 0, 0, 0.028, 0.042},
                                         {12, 6, 6, 0.028, 0.042}}));
   for (const unsigned seed : {1u, 7u}) {
-    TrussParameters params;
-    params.total = c.total;
-    params.hidden = c.hidden;
-    params.leaflets = c.leaflets;
-    params.radius_min = c.radius_min;
-    params.radius_max = c.radius_max;
-    params.seed = seed;
+    TrussParameters parameters;
+    parameters.total = c.total;
+    parameters.hidden = c.hidden;
+    parameters.leaflets = c.leaflets;
+    parameters.radius_min = c.radius_min;
+    parameters.radius_max = c.radius_max;
+    parameters.seed = seed;
     INFO(c.total << " " << c.hidden << " " << seed);
-    const Truss truss = make_truss(params);
-    check_truss(truss, c.total, c.hidden, params.center);
+    const Truss truss = make_truss(parameters);
+    check_truss(truss, c.total, c.hidden, parameters.center);
     CHECK(truss.scene.objects.size() == std::size_t(c.total + 1 + c.leaflets));
     for (const TrueFruit& fruit : truss.truth.fruits) {
       CHECK(fruit.radii[0] <= c.radius_max);
@@ -186,21 +189,21 @@ TEST_CASE("trusses of all kinds are as asked") {
 }
 
 TEST_CASE("trusses depend on their seed and on nothing else") {
-  TrussParameters params;
-  params.leaflets = 2;
-  const Truss a = make_truss(params);
-  CHECK(equal(a, make_truss(params)));
-  params.seed = 2;
-  CHECK_FALSE(equal(a, make_truss(params)));
-  CHECK(*a.truth.fruits[0].growth_axis != *make_truss(params).truth.fruits[0].growth_axis);
+  TrussParameters parameters;
+  parameters.leaflets = 2;
+  const Truss a = make_truss(parameters);
+  CHECK(equal(a, make_truss(parameters)));
+  parameters.seed = 2;
+  CHECK_FALSE(equal(a, make_truss(parameters)));
+  CHECK(*a.truth.fruits[0].growth_axis != *make_truss(parameters).truth.fruits[0].growth_axis);
 }
 
 TEST_CASE("fruit of a truss touch") {
   for (const unsigned seed : {1u, 2u, 3u, 4u}) {
-    TrussParameters params;
-    params.seed = seed;
-    params.hidden = 3;
-    const Truss truss = make_truss(params);
+    TrussParameters parameters;
+    parameters.seed = seed;
+    parameters.hidden = 3;
+    const Truss truss = make_truss(parameters);
     int contacts = 0;
     for (int i = 0; i < 7; ++i) {
       const Bvh tree(truss.scene.objects[std::size_t(i)].mesh);
@@ -216,14 +219,14 @@ TEST_CASE("fruit of a truss touch") {
 }
 
 TEST_CASE("elongated fruit are longer along their growth axis, and still hang as asked") {
-  TrussParameters params;
-  params.total = 8;
-  params.hidden = 2;
-  params.radius_min = 0.018;
-  params.radius_max = 0.022;
-  params.elongation = 1.5;
-  const Truss truss = make_truss(params);
-  check_truss(truss, 8, 2, params.center);
+  TrussParameters parameters;
+  parameters.total = 8;
+  parameters.hidden = 2;
+  parameters.radius_min = 0.018;
+  parameters.radius_max = 0.022;
+  parameters.elongation = 1.5;
+  const Truss truss = make_truss(parameters);
+  check_truss(truss, 8, 2, parameters.center);
   for (const TrueFruit& fruit : truss.truth.fruits) {
     CHECK(fruit.radii[0] > 1.25 * fruit.radii[1]);
     REQUIRE(fruit.growth_axis);
@@ -233,11 +236,11 @@ TEST_CASE("elongated fruit are longer along their growth axis, and still hang as
 
 TEST_CASE("impossible trusses are refused by name") {
   const auto refuses = [](auto change, const char* field) {
-    TrussParameters params;
-    change(params);
+    TrussParameters parameters;
+    change(parameters);
     std::string said;
     try {
-      make_truss(params);
+      make_truss(parameters);
     } catch (const ParameterError& error) {
       said = error.what();
     }

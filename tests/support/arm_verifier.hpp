@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Judges postures of a UR3 without the library's kinematics and collision tests: forward kinematics from the maker's
-// Denavit-Hartenberg table in plain doubles, limits, and solids told to overlap by sampling them densely. Of the
-// library only data are used: the pieces' sizes, the mounting, the spaces. Metres, radians, seconds.
+// Denavit-Hartenberg table in plain doubles, joint limits, and overlap of solids by sampling them densely. It uses only
+// data of the library: the sizes of the arm's pieces, the mount and the keep-out spaces. Metres, radians.
 #pragma once
 
 #include <agrisee/arm/collision.hpp>
@@ -55,8 +55,8 @@ inline Vector apply(const Matrix& m, const Vector& p) {
   return out;
 }
 
-/// The UR3's links in base_link: each turns with its joint, about its own z; the last is tool0. The maker's table
-/// (theta, d, a, alpha) starts in `base`, which is base_link turned by half a turn.
+/// Poses of the UR3's links in base_link: each turns with its joint about its own z axis; the last is tool0. The
+/// maker's table (theta, d, a, alpha) starts in `base`, which is base_link turned by pi about z.
 inline std::array<Matrix, 6> links(const agrisee::Joints& q) {
   constexpr double pi = 3.14159265358979323846;
   const double d[6] = {0.1519, 0, 0, 0.11235, 0.08535, 0.0819}, a[6] = {0, -0.24365, -0.21325, 0, 0, 0};
@@ -70,7 +70,7 @@ inline std::array<Matrix, 6> links(const agrisee::Joints& q) {
   return out;
 }
 
-/// A cylinder's solid as points, at most about `spacing` apart, all of them inside or on it.
+/// Points that fill a solid cylinder, at most about `spacing` (m) apart; all of them are inside or on its surface.
 inline std::vector<Vector> sampled(const agrisee::OrientedCylinder& c, double spacing) {
   const Eigen::Vector3d u = c.axis.unitOrthogonal(), v = c.axis.cross(u);
   const int slices = std::max(1, int(std::ceil(c.height / spacing))),
@@ -103,7 +103,7 @@ inline double depth(const agrisee::KeepOut& space, const Vector& p) {
   return std::min(c.radius - across, 0.5 * c.height - std::abs(p[2] - c.center.z()));
 }
 
-/// A part of the arm where it stands: its points, and what is needed to tell whether a point is inside.
+/// A part of the arm at certain joint angles: its points, and what is needed to test whether a point is inside.
 struct Solid {
   agrisee::arm::Part part;
   Matrix world_T_part;
@@ -129,7 +129,7 @@ inline Matrix inverse(const Matrix& m) {
   return out;
 }
 
-/// All parts at joint angles q.
+/// All parts of the arm at joint angles `q` (rad), sampled at `spacing` (m).
 inline std::vector<Solid> solids(const agrisee::Joints& q, const agrisee::arm::Mount& mount, double spacing) {
   using agrisee::arm::Part;
   const Matrix world_T_base = matrix_of(mount.world_T_base);
@@ -152,20 +152,21 @@ inline std::vector<Solid> solids(const agrisee::Joints& q, const agrisee::arm::M
   return out;
 }
 
-/// Whether the arm's build lets two parts meet at all; neighbours overlap at their joint.
+/// Whether two parts of the arm can meet at all. Neighboring parts overlap at their joint, which does not count.
 inline bool can_meet(agrisee::arm::Part a, agrisee::arm::Part b) {
   // Along the chain: base 0, shoulder 1, upper arm 2, forearm 3, wrists 4 to 6, sensor 7.
   constexpr int along[] = {1, 2, 3, 4, 5, 6, 0, 7};
   int i = along[std::size_t(a)], j = along[std::size_t(b)];
   if (i > j) std::swap(i, j);
   if (j - i < 2) return false;
-  // Kept apart at all angles, or held by one another: base and upper arm, forearm and wrist 2, wrist 1 and 3, wrist 2
-  // and sensor.
+  // These pairs are kept apart at all angles, or one holds the other: base and upper arm, forearm and wrist 2, wrist 1
+  // and 3, wrist 2 and sensor.
   return !(i == 0 && j == 2) && !(i == 3 && j == 5) && !(i == 4 && j == 6) && !(i == 5 && j == 7);
 }
 
-/// What is wrong with a posture, or nothing: joints out of their limits, a part in a space, in another part or, but for
-/// the base, in one of some ellipsoids. Sampled points that are deeper than `touch` (m) count.
+/// What is wrong with a posture, or an empty string: a joint outside its limits; a part inside another part; a part
+/// other than the base inside a keep-out space or one of some ellipsoids. A part is inside when a sampled point lies
+/// deeper than `touch` (m).
 inline std::string fault_of(const agrisee::Joints& q, const agrisee::arm::Mount& mount,
                             const std::vector<agrisee::OrientedEllipsoid>& bodies = {}, double spacing = 0.01,
                             double touch = 1e-5) {

@@ -2,8 +2,8 @@
 // Friendly and awkward clouds, and neighbours by brute force.
 #pragma once
 
-#include <agrisee/core/neighbors.hpp>
 #include <agrisee/core/random.hpp>
+#include <agrisee/neighbors/neighbors.hpp>
 
 #include <string>
 #include <vector>

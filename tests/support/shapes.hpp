@@ -3,7 +3,7 @@
 #pragma once
 
 #include <agrisee/core/random.hpp>
-#include <agrisee/geometry/scene.hpp>
+#include <agrisee/study/scene.hpp>
 
 namespace agrisee::shapes {
 
@@ -65,9 +65,9 @@ inline Mesh soup(int n, double size, std::uint64_t seed) {
 }
 
 /// A scene of one object of class other.
-inline Scene scene_of(const Mesh& mesh) {
-  Scene scene;
-  scene.objects.push_back({0, ObjectClass::other, mesh});
+inline study::Scene scene_of(const Mesh& mesh) {
+  study::Scene scene;
+  scene.objects.push_back({0, study::ObjectClass::other, mesh});
   return scene;
 }
 

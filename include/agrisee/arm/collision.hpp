@@ -1,17 +1,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// @file
-/// Collisions of a UR3 and its sensor with the spaces to keep out of, and with itself.
+/// Collisions of a UR3 and its sensor with forbidden spaces and with themselves.
 ///
-/// Links are unions of flat-ended cylinders in their link frames, fitted around the collision meshes of the robot's
-/// published description (Universal_Robots_ROS2_Description, BSD-3) so that they enclose these entirely and stand out
-/// by some millimetres at most. The offsets of the upper arm (shoulder offset 0.1198 m) and of the forearm (elbow
-/// offset 0.0275 m) along the joints' axes are in their z. A capsule about each cylinder gives the first answer; only
-/// where capsules overlap the cylinders decide, since a capsule's round end would stand 2 to 3 cm out of a joint's flat
-/// cap.
+/// Each link is a union of flat-ended cylinders in its link frame. They were fitted around the collision meshes of the
+/// robot's published description (Universal_Robots_ROS2_Description, BSD-3): they enclose the meshes completely and
+/// protrude by a few millimetres at most. The shoulder offset (0.1198 m) of the upper arm and the elbow offset (0.0275
+/// m) of the forearm, both along the joints' axes, are part of the z coordinates. Each cylinder is enclosed by a
+/// capsule for a quick test. The cylinders are tested only if the capsules overlap, since the round ends of a capsule
+/// protrude 2 to 3 cm beyond the flat cap of a joint.
 ///
-/// Links from the shoulder on and the sensor's housing are tested against the spaces; the base, which stands on
-/// whatever carries it, is not. Among themselves, links are tested that are not neighbours and that can meet at all.
-/// Metres, world. Cost: 1 to 3 us a posture.
+/// The links from the shoulder to wrist 3 and the housing of the sensor are tested against the forbidden spaces. The
+/// base is not, since it stands on something. Links are tested against each other unless they are adjacent or can never
+/// meet. World frame, metres. Takes 1 to 3 us per posture.
 #pragma once
 
 #include <agrisee/arm/mount.hpp>
@@ -28,28 +28,28 @@ namespace agrisee::arm {
 /// The bodies that may collide. The six links are in the order of LinkFrames.
 enum class Part { shoulder, upper_arm, forearm, wrist_1, wrist_2, wrist_3, base, sensor };
 
-/// Its name.
+/// The name of a part, as messages use it.
 inline std::string_view to_string(Part part) {
   constexpr std::array<std::string_view, 8> names{"shoulder", "upper_arm", "forearm", "wrist_1",
                                                   "wrist_2",  "wrist_3",   "base",    "sensor"};
   return names[static_cast<std::size_t>(part)];
 }
 
-/// A piece of a part, in the part's own frame: the flat-ended cylinder and the capsule about it.
+/// One of the solids that make up a part: a flat-ended cylinder and the capsule that encloses it.
 struct Piece {
-  Part part = Part::shoulder;  ///< whose piece it is
-  OrientedCylinder cylinder;   ///< in the part's frame
-  Capsule capsule;             ///< about the cylinder
+  Part part = Part::shoulder;  ///< the part to which it belongs
+  OrientedCylinder cylinder;   ///< in the frame of the part, or in world
+  Capsule capsule;             ///< encloses the cylinder; in the same frame
 };
 
-/// The piece that is the cylinder of this radius (m) from a to b.
+/// Makes the piece with a cylinder of this radius (m) from a to b (m).
 inline Piece make_piece(Part part, const Eigen::Vector3d& a, const Eigen::Vector3d& b, double radius) {
   const OrientedCylinder cylinder{0.5 * (a + b), (b - a).normalized(), radius, (b - a).norm()};
   return {part, cylinder, enclosing_capsule(cylinder)};
 }
 
-/// The pieces of the links from the shoulder to wrist 3 in their link frames, then the base's in base_link (its
-/// connector left out).
+/// The pieces of the links from the shoulder to wrist 3 in their link frames, then that of the base in base_link,
+/// without the connector.
 inline const std::array<Piece, 15>& ur3_pieces() {
   static const std::array<Piece, 15> pieces{
       make_piece(Part::shoulder, {0.0, 0.0, -0.0665}, {0.0, 0.0, 0.0575}, 0.0525),
@@ -71,17 +71,17 @@ inline const std::array<Piece, 15>& ur3_pieces() {
   return pieces;
 }
 
-/// Two things that overlap.
+/// A collision: two things that overlap.
 struct Contact {
-  Part part = Part::shoulder;  ///< the one that touches
-  std::string_view with;       ///< a part or the name of a space, valid as long as the Mount
+  Part part = Part::shoulder;  ///< the part that collides
+  std::string_view with;       ///< the name of a part or of a forbidden space; valid as long as the Mount exists
 };
 
 namespace detail {
 
-/// Whether two parts are tested against each other, in the order of Part. Left out are neighbours (the sensor belongs
-/// to wrist 3) and pairs that the arm's build keeps apart at all angles: upper arm and base, forearm and wrist 2, wrist
-/// 1 and wrist 3.
+/// True if two parts, a before b in the order of Part, have to be tested against each other. Not tested are adjacent
+/// parts (the sensor is part of wrist 3) and pairs that cannot meet at any joint angles: upper arm and base, forearm
+/// and wrist 2, wrist 1 and wrist 3.
 constexpr bool may_meet(Part a, Part b) {
   switch (a) {
     case Part::shoulder:
@@ -105,8 +105,8 @@ constexpr bool may_meet(Part a, Part b) {
 
 }  // namespace detail
 
-/// The first space that the sensor's housing overlaps when it stands at world_T_optical, by name; its roll plays no
-/// part.
+/// The name of the first forbidden space that the housing of a sensor at world_T_optical overlaps, or nothing. The roll
+/// of the sensor does not matter.
 inline std::optional<std::string_view> sensor_collision(const Pose& world_T_optical, const Mount& mount) {
   const OrientedCylinder body = housing(mount.sensor, world_T_optical);
   for (const KeepOut& space : mount.keep_out)
@@ -114,10 +114,10 @@ inline std::optional<std::string_view> sensor_collision(const Pose& world_T_opti
   return std::nullopt;
 }
 
-/// All pieces of the arm at joint angles `q` and of its sensor, in world: shoulder to wrist 3, the base, the sensor.
-/// @throws InputError when a joint angle is not finite
+/// The pieces of the arm at joint angles `q` (rad) and of its sensor, in world: shoulder to wrist 3, base, sensor.
+/// @throws InputError if a joint angle is not finite
 inline std::array<Piece, 16> pieces_in_world(const Joints& q, const Mount& mount) {
-  std::array<Pose, 8> world_T_part;  // by Part; the sensor's is not used
+  std::array<Pose, 8> world_T_part;  // in the order of Part; that of the sensor is not used
   const LinkFrames frames = link_frames(q);
   for (std::size_t i = 0; i < frames.size(); ++i) world_T_part[i] = mount.world_T_base * frames[i];
   world_T_part[static_cast<std::size_t>(Part::base)] = mount.world_T_base;
@@ -136,9 +136,9 @@ inline std::array<Piece, 16> pieces_in_world(const Joints& q, const Mount& mount
   return out;
 }
 
-/// A collision of the arm at joint angles `q`, or nothing when it is free: spaces first, in their order, then the arm
-/// with itself.
-/// @throws InputError when a joint angle is not finite
+/// The first collision of the arm at joint angles `q` (rad), or nothing. Forbidden spaces are tested first, in their
+/// order, then the parts of the arm against each other.
+/// @throws InputError if a joint angle is not finite
 inline std::optional<Contact> find_collision(const Joints& q, const Mount& mount) {
   const auto pieces = pieces_in_world(q, mount);
   for (const KeepOut& space : mount.keep_out) {
@@ -161,7 +161,7 @@ inline std::optional<Contact> find_collision(const Joints& q, const Mount& mount
   return std::nullopt;
 }
 
-/// Whether the arm at joint angles `q` overlaps a space to keep out of, or itself.
+/// True if the arm at joint angles `q` (rad) overlaps a forbidden space or itself.
 inline bool collides(const Joints& q, const Mount& mount) { return find_collision(q, mount).has_value(); }
 
 }  // namespace agrisee::arm

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// @file
-/// Joint limits, the turns of a joint within them, and what a move between two postures costs.
+/// Joint limits, the choice among equivalent joint angles, and the duration of a move.
 ///
-/// Angles in rad, speeds in rad/s, times in s. A joint that turns more than once reaches the same posture at several
-/// angles, 2 pi apart; these functions choose among them.
+/// Angles in rad, speeds in rad/s, times in s. A joint with a range of more than a full turn reaches the same posture
+/// at several angles, 2 pi apart; the functions `nearest` choose among them.
 #pragma once
 
 #include <agrisee/core/error.hpp>
@@ -20,11 +20,12 @@ struct JointLimits {
   Joints max = (Joints() << kTwoPi, kTwoPi, kPi, kTwoPi, kTwoPi, kTwoPi).finished();        ///< rad
   Joints velocity = (Joints() << kPi, kPi, kPi, kTwoPi, kTwoPi, kTwoPi).finished();         ///< rad/s
 
-  /// The UR3's (its published description): 360 degrees either way, the elbow 180 since farther it meets the upper arm;
-  /// 180 deg/s, the wrists 360. Wrist 3 turns without end; 360 degrees either way spares the sensor's cable.
+  /// The limits of the UR3, from its published description: +-360 degrees, but +-180 for the elbow, beyond which the
+  /// forearm would hit the upper arm; 180 deg/s, and 360 deg/s for the wrists. Wrist 3 could turn without limit, but
+  /// +-360 degrees protect the cable of the sensor.
   static JointLimits ur3() { return {}; }
 
-  /// @throws ParameterError naming the field that is out of range
+  /// @throws ParameterError with the name of the field that is out of range
   void check() const {
     for (int j = 0; j < 6; ++j) {
       check_parameter(min[j] <= max[j], "limits.min", "at most limits.max", min[j]);
@@ -32,19 +33,20 @@ struct JointLimits {
     }
   }
 
-  /// True when every joint is within its limits, borders included.
+  /// True if every joint is within its limits, borders included.
   bool contain(const Joints& q) const { return (q.array() >= min.array()).all() && (q.array() <= max.array()).all(); }
 };
 
-/// The same direction in (-pi, pi] (rad).
+/// The equivalent angle in (-pi, pi] (rad).
 inline double wrap(double angle) {
   if (angle > -kPi && angle <= kPi) return angle;
   const double a = std::remainder(angle, kTwoPi);
   return a <= -kPi ? kPi : a;
 }
 
-/// The angle equal to `q` modulo 2 pi that lies in [min, max], nearest to `reference`; nothing when there is none.
-/// Where two are exactly as near, half a turn either side of the reference, it is the one farther from q itself.
+/// Of the angles equal to `q` modulo 2 pi that lie in [min, max], the one nearest to `reference` (all in rad); nothing
+/// if there is none. If two are equally near, half a turn on either side of the reference, it is the one farther from
+/// q.
 inline std::optional<double> nearest(double q, double reference, double min, double max) {
   double a = q + kTwoPi * std::round((reference - q) / kTwoPi);
   if (a > max)
@@ -55,8 +57,8 @@ inline std::optional<double> nearest(double q, double reference, double min, dou
   return a;
 }
 
-/// The angles of the same posture (each joint turned by a multiple of 2 pi) that lie within the limits, each nearest to
-/// those of `reference`; nothing when a joint has none.
+/// The joint angles of the same posture as `q` (each joint may differ by a multiple of 2 pi) that lie within the limits
+/// and nearest to those of `reference`; nothing if some joint has no such angle.
 inline std::optional<Joints> nearest(const Joints& q, const Joints& reference, const JointLimits& limits) {
   Joints out;
   for (int j = 0; j < 6; ++j) {
@@ -67,11 +69,12 @@ inline std::optional<Joints> nearest(const Joints& q, const Joints& reference, c
   return out;
 }
 
-/// Euclidean distance (rad) in joint space.
+/// Euclidean distance in joint space (rad).
 inline double joint_distance(const Joints& from, const Joints& to) { return (to - from).norm(); }
 
-/// Shortest time (s) of a straight move in joint space: the slowest joint turns at its speed limit all the way. A lower
-/// bound, since the UR3's acceleration limits are not published.
+/// Shortest duration (s) of a straight move in joint space, in which the joint that takes longest moves at its speed
+/// limit all the way. This is a lower bound: acceleration is ignored, since the UR3's acceleration limits are not
+/// published.
 inline double move_time(const Joints& from, const Joints& to, const JointLimits& limits = {}) {
   return ((to - from).cwiseAbs().cwiseQuotient(limits.velocity)).maxCoeff();
 }

@@ -1,15 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// @file
-/// Whether and how the arm can take a view: joint angles within the limits, out of the spaces to keep out of and free
-/// of self-collision, the ones that the arm reaches soonest from where it stands.
+/// Finds joint angles with which the arm can take a view: within the limits, without collisions, and those that the arm
+/// reaches soonest from its present posture.
 ///
-/// Either a full sensor pose is asked for, or a point to look at and a direction to look along, roll and distance free
-/// (paper, controller; a fixed distance and roll put most views of a UR3 out of reach). The posture alone is judged,
-/// not the path to it. World, metres, seconds. Cost: a few
-/// microseconds for a view by a sensor on the last joint's axis, about 60 us for others with 24 rolls.
+/// The caller gives either a full sensor pose, or a target point and a viewing direction. In the second case roll and
+/// distance are free, as in the controller of [1]; with a fixed distance and roll most views would be out of a UR3's
+/// reach. Only the posture is checked, not the path to it. World frame; metres, rad, seconds. A view takes a few
+/// microseconds if the optical axis is the axis of the last joint, otherwise about 60 us with 24 rolls.
 #pragma once
 
 #include <agrisee/arm/collision.hpp>
+#include <agrisee/core/parameter_range.hpp>
 
 #include <algorithm>
 #include <optional>
@@ -17,52 +18,45 @@
 
 namespace agrisee::arm {
 
-/// The freedom of a view.
+/// Which distances and rolls a view may have.
 struct ReachParameters {
-  double distance = 0.38;       ///< preferred distance from sensor to target (m)
-  double distance_min = 0.28;   ///< shortest distance (m)
-  double distance_max = 0.55;   ///< longest distance (m)
-  double distance_step = 0.02;  ///< between the distances that are tried (m)
-  int rolls = 24;               ///< rolls about the optical axis that are tried, evenly spaced
+  double distance = kViewDistance;  ///< preferred distance from the sensor to the target (m)
+  double distance_min = 0.28;       ///< shortest distance (m)
+  double distance_max = 0.55;       ///< longest distance (m)
+  double distance_step = 0.02;      ///< step between the distances that are tried (m)
+  int rolls = 24;                   ///< number of evenly spaced rolls about the optical axis that are tried
 
-  /// The paper's values: the view distance, held exactly.
+  /// The values of [1]: exactly the view distance.
   static ReachParameters paper() {
     ReachParameters p;
     p.distance_min = p.distance_max = p.distance;
     return p;
   }
 
-  /// @throws ParameterError naming the field that is out of range
-  void check() const {
-    check_parameter(distance_min > 0.0 && std::isfinite(distance_min), "distance_min", "positive", distance_min);
-    check_parameter(distance >= distance_min, "distance", "at least distance_min", distance);
-    check_parameter(distance <= distance_max, "distance", "at most distance_max", distance);
-    check_parameter(std::isfinite(distance_max), "distance_max", "finite", distance_max);
-    check_parameter(distance_step >= 1e-4, "distance_step", "at least 0.0001", distance_step);
-    check_parameter(rolls >= 1, "rolls", "at least 1", rolls);
-  }
+  /// @throws FieldError for the first field that is out of its range
+  void check() const { check_fields(*this); }
 
-  /// f(name, field) for every field.
+  /// Calls f(name, field, range) for every field.
   template <typename P, typename F>
   static void fields(P& p, F&& f) {
-    f("distance", p.distance);
-    f("distance_min", p.distance_min);
-    f("distance_max", p.distance_max);
-    f("distance_step", p.distance_step);
-    f("rolls", p.rolls);
+    f("distance", p.distance, Range::between({p.distance_min, "distance_min"}, {p.distance_max, "distance_max"}));
+    f("distance_min", p.distance_min, Range::positive());
+    f("distance_max", p.distance_max, Range::finite());
+    f("distance_step", p.distance_step, Range::at_least(1e-4));
+    f("rolls", p.rolls, Range::at_least(1));
   }
 };
 
 /// A view that the arm can take.
 struct Reached {
-  Joints joints = Joints::Zero();           ///< rad, within the limits, the turns nearest to the present joints
-  Pose world_T_optical = Pose::Identity();  ///< where the sensor then stands
-  double distance = 0.0;                    ///< from the sensor to the target (m); 0 where a pose was asked for
-  double move_time = 0.0;                   ///< from the present joints (s), see arm::move_time
+  Joints joints = Joints::Zero();           ///< joint angles (rad), within the limits and nearest to the present ones
+  Pose world_T_optical = Pose::Identity();  ///< pose of the sensor
+  double distance = 0.0;                    ///< from the sensor to the target (m); 0 if the request was a pose
+  double move_time = 0.0;                   ///< duration of the move from the present joints (s), see arm::move_time
 };
 
-/// The distances to try (m): the preferred one, then outward from it by steps, the farther of two first, the ends of
-/// the band included.
+/// The distances to try (m): the preferred one, then alternately a step farther and a step nearer, up to the longest
+/// and the shortest distance.
 inline std::vector<double> distances_to_try(const ReachParameters& p) {
   std::vector<double> out{p.distance};
   double up = p.distance, down = p.distance;
@@ -75,18 +69,18 @@ inline std::vector<double> distances_to_try(const ReachParameters& p) {
 
 namespace detail {
 
-/// Joint angles for one of the sensor poses that are being compared.
+/// Joint angles for one of several alternative sensor poses.
 struct Candidate {
   Joints joints;
-  double time = 0.0, turn = 0.0;  // s and rad from the present joints
-  int pose = 0;                   // which sensor pose
+  double time = 0.0, turn = 0.0;  // move time (s) and joint distance (rad) from the present joints
+  int pose = 0;                   // number of the sensor pose
 };
 
 inline Candidate candidate(const Mount& mount, const Joints& present, const Joints& q, int pose) {
   return {q, move_time(present, q, mount.limits), joint_distance(present, q), pose};
 }
 
-/// Append every solution for a sensor pose, turned towards the present joints.
+/// Appends all solutions for a pose of the tool, each at the joint angles nearest to the present ones.
 inline void add_solutions(const Mount& mount, const Pose& base_T_tool0, const Joints& present, int pose,
                           std::vector<Candidate>& out) {
   for_each_solution(base_T_tool0, present[5], [&](const Joints& q) {
@@ -94,17 +88,19 @@ inline void add_solutions(const Mount& mount, const Pose& base_T_tool0, const Jo
   });
 }
 
-/// Which way the view rolls when the last joint turns, +1 or -1; 0 for a sensor that is not on that joint's axis, where
-/// another roll is another posture of the whole arm.
+/// The sense in which the view rolls when the last joint turns: +1 or -1 if the optical axis is the axis of that joint,
+/// otherwise 0; then a different roll needs a different posture of the whole arm.
 inline int roll_of_last_joint(const Mount& mount) {
   const Eigen::Vector3d offset = mount.tool0_T_optical.translation(), ahead = mount.tool0_T_optical.linear().col(2);
   const double off = std::max({std::abs(offset.x()), std::abs(offset.y()), std::abs(ahead.x()), std::abs(ahead.y())});
   return off < 1e-9 ? (ahead.z() > 0.0 ? 1 : -1) : 0;
 }
 
-/// The same for all of `rolls` evenly spaced rolls of a sensor on the last joint's axis (`sense` as of
-/// roll_of_last_joint): that joint alone turns, and the postures collide alike, so of each solution the roll with the
-/// shortest turn is kept. False, and nothing appended, at a wrist singularity, where other joints move too.
+/// Appends the solutions for `rolls` evenly spaced rolls of a sensor on the axis of the last joint. The rolls of a
+/// solution differ in that joint alone and collide with the same things, so only the one with the shortest turn is
+/// appended.
+/// @param sense as returned by roll_of_last_joint; not 0
+/// @return false, and nothing is appended, at a wrist singularity, where other joints move as well
 inline bool add_rolled_solutions(const Mount& mount, const Pose& base_T_tool0, const Joints& present, int sense,
                                  int rolls, std::vector<Candidate>& out) {
   const std::size_t before = out.size();
@@ -129,7 +125,8 @@ inline bool add_rolled_solutions(const Mount& mount, const Pose& base_T_tool0, c
   return regular;
 }
 
-/// The candidate that collides with nothing and comes first by time, turn, sensor pose and order.
+/// The first candidate without collisions, in the order of move time, joint distance, sensor pose and position in
+/// `candidates`; nothing if all collide. Sorts the candidates.
 inline std::optional<Candidate> first_free(std::vector<Candidate>& candidates, const Mount& mount) {
   std::stable_sort(candidates.begin(), candidates.end(), [](const Candidate& a, const Candidate& b) {
     return a.time != b.time ? a.time < b.time : a.turn != b.turn ? a.turn < b.turn : a.pose < b.pose;
@@ -141,9 +138,10 @@ inline std::optional<Candidate> first_free(std::vector<Candidate>& candidates, c
 
 }  // namespace detail
 
-/// Joint angles that put the sensor at world_T_optical: of all free solutions the one soonest reached from `present`
-/// (shortest move time, then least joint-space distance, then the order of `inverse`); nothing when there is none.
-/// @throws InputError when the pose is not rigid or `present` is not finite, ParameterError when the mount is not sound
+/// Joint angles that put the sensor at world_T_optical. Of all solutions without collisions it is the one that is
+/// reached soonest from `present` (shortest move time, then smallest joint distance, then the order of `inverse`);
+/// nothing if there is none.
+/// @throws InputError if the pose is not rigid or `present` is not finite; ParameterError if the mount is invalid
 inline std::optional<Reached> reach(const Mount& mount, const Joints& present, const Pose& world_T_optical) {
   mount.check();
   check_input(present.allFinite(), "reach: a present joint angle is not finite");
@@ -157,16 +155,15 @@ inline std::optional<Reached> reach(const Mount& mount, const Joints& present, c
   return Reached{best->joints, world_T_optical, 0.0, best->time};
 }
 
-/// A view of `target` along `direction` (from the sensor to the target; need not be unit length), roll free and
-/// distance free within the band.
+/// Joint angles for a view of `target` (m) along `direction` (from the sensor to the target, of any length). The roll
+/// is free, and the distance is free within the limits of the parameters.
 ///
-/// Distances are tried in the order of distances_to_try; the first at which the arm can stand free is taken, and there,
-/// over all rolls and solutions, the one soonest reached from `present` (shortest move time, then least joint-space
-/// distance, then the order of rolls, which start with the image upright, and of `inverse`). Nothing when there is
-/// none.
-/// @throws InputError when target, direction or `present` is not finite or the direction zero; ParameterError when
-/// mount
-///   or parameters are not sound
+/// Distances are tried in the order of distances_to_try, until the arm has a posture without collisions at one. Of all
+/// rolls and solutions at that distance, the one that is reached soonest from `present` is returned (shortest move
+/// time, then smallest joint distance, then the order of the rolls, which starts with an upright image, then that of
+/// `inverse`); nothing if there is none.
+/// @throws InputError if target, direction or `present` is not finite or the direction is zero; ParameterError if the
+///   mount or the parameters are invalid
 inline std::optional<Reached> reach(const Mount& mount, const Joints& present, const Eigen::Vector3d& target,
                                     const Eigen::Vector3d& direction, const ReachParameters& parameters = {}) {
   mount.check();

@@ -1,15 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// @file
-/// Kinematics of the Universal Robots UR3: forward, Jacobian, and all inverse solutions in closed form.
+/// Kinematics of the Universal Robots UR3: forward kinematics, Jacobian, and all inverse solutions in closed form.
 ///
-/// Poses are those of tool0 in base_link (REP-103, x forward). The controller's DH chain starts in `base`, which is
-/// base_link turned by pi about z; the turn is folded into the first joint here. Link frames are those of the robot's
-/// published description; each joint turns about its own frame's z. Metres and radians.
+/// Poses are those of tool0 in base_link (REP-103, x forward). The DH chain of the controller starts in the frame
+/// `base`, which is base_link turned by pi about z; here this turn is part of the first joint. Link frames are those of
+/// the robot's published description: each joint turns about the z axis of its own frame. Metres and radians.
 ///
-/// The inverse follows from three parallel axes (shoulder lift, elbow, wrist 1; Hawkins, "Analytic Inverse Kinematics
-/// for the Universal Robots UR-5/UR-10 Arms", 2013), written with vectors: with n the direction of those axes, the
-/// wrist's centre lies at d4 along n, which gives joint 1; the angle between n and the tool's axis is joint 5; n as
-/// seen in the tool is joint 6; what is left is a planar arm of two links. About 2 us for all solutions.
+/// The inverse uses that three axes are parallel (shoulder lift, elbow, wrist 1; Hawkins, "Analytic Inverse Kinematics
+/// for the Universal Robots UR-5/UR-10 Arms", 2013). Let n be the direction of these axes. The wrist's center lies d4
+/// along n, which gives joint 1. The angle between n and the axis of the tool is joint 5. The direction of n in the
+/// frame of the tool gives joint 6. The remaining joints form a planar arm with two links. All solutions take about 2
+/// us.
 #pragma once
 
 #include <agrisee/arm/limits.hpp>
@@ -22,33 +23,35 @@
 
 namespace agrisee::arm {
 
-/// Denavit-Hartenberg lengths of the UR3 (m), as published by its maker.
+/// Denavit-Hartenberg lengths of the UR3 (m), as published by the manufacturer.
 namespace ur3 {
-constexpr double d1 = 0.1519;    ///< base to shoulder, along the joint's axis
+constexpr double d1 = 0.1519;    ///< from the base to the shoulder, along the axis of joint 1
 constexpr double a2 = -0.24365;  ///< upper arm
 constexpr double a3 = -0.21325;  ///< forearm
-constexpr double d4 = 0.11235;   ///< wrist 1, along the joint's axis
+constexpr double d4 = 0.11235;   ///< wrist 1, along its joint axis
 constexpr double d5 = 0.08535;   ///< wrist 2
-constexpr double d6 = 0.0819;    ///< wrist 3 to tool0
+constexpr double d6 = 0.0819;    ///< from wrist 3 to tool0
 }  // namespace ur3
 
-/// Below this |sin q5| joints 4 and 6 turn about one line: a wrist singularity.
+/// Below this |sin q5| the axes of joints 4 and 6 count as parallel: a wrist singularity.
 constexpr double kWristSingularity = 1e-10;
 
-/// Inverse solutions whose joints all agree to this (rad, modulo 2 pi) are one: the two branches of a singularity.
+/// Inverse solutions whose joints all agree to within this angle (rad, modulo 2 pi) count as one; at a singularity two
+/// branches of the solution coincide.
 constexpr double kSameSolution = 1e-6;
 
-/// Poses of the six link frames in base_link: shoulder, upper arm, forearm, wrist 1, wrist 2, wrist 3. Each frame turns
-/// with its link, about its own z axis; the last is tool0.
+/// Poses in base_link of the six link frames: shoulder, upper arm, forearm, wrist 1, wrist 2, wrist 3. Each frame moves
+/// with its link and turns about its own z axis. The last one is tool0.
 using LinkFrames = std::array<Pose, 6>;
 
 /// The link frames at joint angles `q` (rad).
-/// @throws InputError when a joint angle is not finite
+/// @throws InputError if a joint angle is not finite
 inline LinkFrames link_frames(const Joints& q) {
   check_input(q.allFinite(), "UR3: a joint angle is not finite");
   const Eigen::Vector3d up = Eigen::Vector3d::UnitZ();
   const double c1 = std::cos(q[0]), s1 = std::sin(q[0]);
-  const Eigen::Vector3d out(-c1, -s1, 0.0), n(-s1, c1, 0.0);  // the arm's vertical plane, and its normal
+  const Eigen::Vector3d out(-c1, -s1, 0.0),
+      n(-s1, c1, 0.0);  // horizontal direction and normal of the arm's vertical plane
   LinkFrames f;
   const auto set = [&](std::size_t i, const Eigen::Vector3d& x, const Eigen::Vector3d& y, const Eigen::Vector3d& z,
                        const Eigen::Vector3d& origin) { f[i].matrix() << x, y, z, origin, 0.0, 0.0, 0.0, 1.0; };
@@ -74,11 +77,11 @@ inline LinkFrames link_frames(const Joints& q) {
   return f;
 }
 
-/// base_link_T_tool0 at joint angles `q`.
+/// Forward kinematics: base_link_T_tool0 at joint angles `q` (rad).
 inline Pose forward(const Joints& q) { return link_frames(q)[5]; }
 
-/// Geometric Jacobian at `q`: joint speeds (rad/s) to tool0's velocity (m/s, rows 0-2) and angular velocity (rad/s,
-/// rows 3-5), both in base_link.
+/// Geometric Jacobian at joint angles `q` (rad). It maps joint speeds (rad/s) to the velocity of tool0 (m/s, rows 0-2)
+/// and its angular velocity (rad/s, rows 3-5), both in base_link.
 inline Eigen::Matrix<double, 6, 6> jacobian(const Joints& q) {
   const LinkFrames f = link_frames(q);
   Eigen::Matrix<double, 6, 6> j;
@@ -89,8 +92,9 @@ inline Eigen::Matrix<double, 6, 6> jacobian(const Joints& q) {
   return j;
 }
 
-/// False where no joint angles reach base_link_T_tool0, by the distance of the wrist's centre alone: the two links and
-/// the wrist stretched, and the cylinder of radius d4 about the base's axis. True says nothing. A few nanoseconds.
+/// A quick test that takes a few nanoseconds: if false, no joint angles reach base_link_T_tool0; if true, there may be
+/// some. It tests only whether the wrist's center is too far away for the stretched arm, or too near to the axis of the
+/// base (closer than d4).
 inline bool maybe_reachable(const Pose& base_link_T_tool0) {
   const Eigen::Vector3d p = base_link_T_tool0.translation() - ur3::d6 * base_link_T_tool0.linear().col(2);
   constexpr double far = -ur3::a2 - ur3::a3 + ur3::d5, slack = 1e-9;
@@ -100,7 +104,7 @@ inline bool maybe_reachable(const Pose& base_link_T_tool0) {
 
 namespace detail {
 
-/// Whether two solutions, their joints in (-pi, pi], are one.
+/// True if two solutions, with joints in (-pi, pi], are the same to within kSameSolution.
 inline bool same_solution(const Joints& a, const Joints& b) {
   for (int j = 0; j < 6; ++j) {
     const double d = std::abs(a[j] - b[j]);
@@ -109,14 +113,18 @@ inline bool same_solution(const Joints& a, const Joints& b) {
   return true;
 }
 
-/// Joint 6 at a wrist singularity, where z5 may point anywhere in the arm's plane: `desired`, or the angle nearest to
-/// it for which the links reach the wrist. (u, v) is the wrist's centre along `out` and up from the shoulder.
+/// Joint 6 (rad) at a wrist singularity, where z5, the z axis of wrist 2, may have any direction in the arm's plane. It
+/// is `desired`, or the nearest angle for which the links reach the wrist.
+/// @param desired the angle to prefer (rad)
+/// @param x6,y6 axes of tool0 in base_link
+/// @param out horizontal direction of the arm's plane
+/// @param u,v position (m) of the wrist's center relative to the shoulder, along `out` and upwards
 inline double singular_q6(double desired, const Eigen::Vector3d& x6, const Eigen::Vector3d& y6,
                           const Eigen::Vector3d& out, double u, double v) {
   const Eigen::Vector3d z5 = -std::sin(desired) * x6 - std::cos(desired) * y6;
   const double w = std::hypot(u, v), bearing = std::atan2(v, u);
   if (w < 1e-12) return desired;
-  // The links span |w - d5 z5|, which grows with the angle between the wrist's bearing and z5.
+  // The two links must span the distance |w - d5 z5|, which grows with the angle between the wrist's bearing and z5.
   const auto angle_at = [&](double span) {
     return std::acos(std::clamp((w * w + ur3::d5 * ur3::d5 - span * span) / (2.0 * ur3::d5 * w), -1.0, 1.0));
   };
@@ -128,12 +136,14 @@ inline double singular_q6(double desired, const Eigen::Vector3d& x6, const Eigen
   return std::atan2(-z5_allowed.dot(x6), -z5_allowed.dot(y6));
 }
 
-/// body(q) for every solution, joints in (-pi, pi], without regard to limits; see inverse, which also documents the
-/// order. The pose is not checked.
+}  // namespace detail
+
+/// Calls body(q) for every inverse solution, with joints in (-pi, pi] (rad) and regardless of joint limits. The pose is
+/// not checked. For the order of the solutions and for `q6_desired` see `inverse`.
 template <typename Body>
 void for_each_solution(const Pose& base_link_T_tool0, double q6_desired, Body&& body) {
   if (!maybe_reachable(base_link_T_tool0)) return;
-  constexpr double slack = 1e-10;  // of a cosine: what rounding may add at the border of the reach
+  constexpr double slack = 1e-10;  // of a cosine, for rounding errors at the border of the reach
   const Eigen::Vector3d x6 = base_link_T_tool0.linear().col(0), y6 = base_link_T_tool0.linear().col(1),
                         z6 = base_link_T_tool0.linear().col(2);
   const Eigen::Vector3d wrist = base_link_T_tool0.translation() - ur3::d6 * z6;
@@ -150,11 +160,13 @@ void for_each_solution(const Pose& base_link_T_tool0, double q6_desired, Body&& 
     const bool singular = s5 < kWristSingularity;
     for (const double sign5 : {1.0, -1.0}) {
       const double q5 = wrap(std::atan2(sign5 * s5, c5));
-      const double q6 = wrap(singular ? singular_q6(q6_desired, x6, y6, out, wrist.dot(out), wrist.z() - ur3::d1)
-                                      : std::atan2(-sign5 * y6.dot(n), sign5 * x6.dot(n)));
+      const double q6 =
+          wrap(singular ? detail::singular_q6(q6_desired, x6, y6, out, wrist.dot(out), wrist.z() - ur3::d1)
+                        : std::atan2(-sign5 * y6.dot(n), sign5 * x6.dot(n)));
       const Eigen::Vector3d z5 = -std::sin(q6) * x6 - std::cos(q6) * y6;
       const double q234 = std::atan2(z5.dot(out), -z5.z());
-      // The planar arm: a2 at angle q2 and a3 at angle q2 + q3 reach (u, v), along `out` and up from the shoulder.
+      // The planar arm: links a2 at angle q2 and a3 at angle q2 + q3 reach (u, v), along `out` and up from the
+      // shoulder.
       const double u = (wrist - ur3::d5 * z5).dot(out), v = wrist.z() - ur3::d5 * z5.z() - ur3::d1;
       const double c3 = (u * u + v * v - ur3::a2 * ur3::a2 - ur3::a3 * ur3::a3) / (2.0 * ur3::a2 * ur3::a3);
       if (!(std::abs(c3) <= 1.0 + slack)) continue;
@@ -165,7 +177,8 @@ void for_each_solution(const Pose& base_link_T_tool0, double q6_desired, Body&& 
         Joints q;
         q << q1, wrap(q2), wrap(q3), wrap(q234 - q2 - q3), q5, q6;
         const auto end = found.begin() + static_cast<std::ptrdiff_t>(n_found);
-        if (std::any_of(found.begin(), end, [&](const Joints& other) { return same_solution(q, other); })) continue;
+        if (std::any_of(found.begin(), end, [&](const Joints& other) { return detail::same_solution(q, other); }))
+          continue;
         found[n_found++] = q;
         body(static_cast<const Joints&>(q));
       }
@@ -173,27 +186,25 @@ void for_each_solution(const Pose& base_link_T_tool0, double q6_desired, Body&& 
   }
 }
 
-}  // namespace detail
-
-/// All joint angles that put tool0 at base_link_T_tool0: at most eight, each in (-pi, pi] where the limits allow, else
-/// at the turn within the limits that is nearest; solutions with a joint that cannot stay within its limits are left
-/// out. Empty when out of reach.
+/// Inverse kinematics: all joint angles (rad) that put tool0 at base_link_T_tool0. There are at most eight solutions,
+/// and none if the pose is out of reach. Each joint is in (-pi, pi] if its limits allow that, otherwise at the nearest
+/// equivalent angle within the limits. Solutions with a joint that has no angle within its limits are left out.
 ///
-/// The order is fixed: by joint 1 (the two differ by the side of the base on which the shoulder stands; the one
-/// counter-clockwise of the wrist's bearing first), then joint 5 (positive first), then the elbow (positive first).
-/// Solutions that coincide (at the singularities of shoulder, elbow and wrist) are listed once. At a wrist singularity
-/// (|sin q5| < kWristSingularity) joints 2, 3, 4 and 6 move together without moving the tool; joint 6 is then
-/// `q6_desired`, or the angle nearest to it that the links can reach.
-/// @param base_link_T_tool0 where tool0 shall be
+/// The order is fixed: by joint 1 (its two values differ by the side of the base on which the shoulder stands; the one
+/// counter-clockwise of the wrist's bearing comes first), then by joint 5 (positive first), then by the elbow (positive
+/// first). Solutions that coincide, at singularities of shoulder, elbow or wrist, are listed once. At a wrist
+/// singularity (|sin q5| < kWristSingularity) joints 2, 3, 4 and 6 can move together without moving the tool. Joint 6
+/// is then `q6_desired`, or the nearest angle that the links can reach.
+/// @param base_link_T_tool0 the desired pose of tool0
 /// @param limits of the joints
-/// @param q6_desired joint 6 at wrist singularities (rad); usually its present angle
-/// @throws InputError when the pose is not finite or its rotation is no rotation (to 1e-6)
+/// @param q6_desired joint 6 at wrist singularities (rad), usually its present angle
+/// @throws InputError if the pose is not finite or not rigid (to 1e-6)
 inline std::vector<Joints> inverse(const Pose& base_link_T_tool0, const JointLimits& limits = {},
                                    double q6_desired = 0.0) {
   check_input(is_rigid(base_link_T_tool0), "inverse: base_link_T_tool0 is not finite or not a rigid pose");
   check_input(std::isfinite(q6_desired), "inverse: q6_desired is not finite");
   std::vector<Joints> solutions;
-  detail::for_each_solution(base_link_T_tool0, q6_desired, [&](const Joints& q) {
+  for_each_solution(base_link_T_tool0, q6_desired, [&](const Joints& q) {
     if (const auto allowed = nearest(q, q, limits)) solutions.push_back(*allowed);
   });
   return solutions;

@@ -2,29 +2,31 @@
 /// @file
 /// Decides which round bodies a cloud holds: candidates compete for its points.
 ///
-/// Regions, clusters and voted centres each propose bodies. Every proposal is fitted (fit.hpp) and judged by the share
+/// Regions, clusters and voted centers each propose bodies. Every proposal is fitted (fit.hpp). Its score is the share
 /// of its surface that points cover, less what contradicts it: points inside it, and sight lines that went through it.
-/// The best is taken with its points, the rest are judged anew on what is left, until nothing is worth taking. Bodies
-/// may touch but not interpenetrate. Flat or ridge-like supports (leaves, stems) are told from round ones by their two
-/// curvatures. Lengths scale with the radius of the body; metres. Cost: linear in the points near each candidate.
+/// The best body is taken together with its points, the others are judged anew on the points that are left, and so on
+/// until no body scores enough. Bodies may touch but not go deep into each other. Leaves and stems are
+/// refused because the points on them are flat or ridge-like: of their two principal curvatures one is much the
+/// smaller. Metres; most limits are shares of the body's radius. Cost: linear in the points near each candidate.
 #pragma once
 
 #include <agrisee/cloud/fit.hpp>
 #include <agrisee/cloud/parameters.hpp>
 #include <agrisee/cloud/seen_through.hpp>
-#include <agrisee/core/grid.hpp>
 #include <agrisee/geometry/direction_bins.hpp>
 #include <agrisee/geometry/pca.hpp>
+#include <agrisee/neighbors/grid.hpp>
 
 #include <bitset>
+#include <optional>
 #include <string>
 
 namespace agrisee {
 
 /// A proposal of a body and what proposed it.
 struct BodyCandidate {
-  Ellipsoid body;        ///< to begin with
-  std::string found_by;  ///< what proposes it
+  Ellipsoid body;        ///< first guess
+  std::string found_by;  ///< what proposed it; see Fruit::found_by
 };
 
 /// A body that won.
@@ -37,27 +39,67 @@ struct FoundBody {
 
 namespace detail {
 
+/// Points near a body are looked up within this multiple of its mean radius from its center.
+constexpr double kNearBody = 1.35;
+
+/// Cosine of the largest angle between a point's normal and the body's for points that count as nearly on the body.
+inline double loose_cosine(const BodyParameters& parameters) {
+  return std::cos(std::min(kPi / 2, 1.6 * parameters.max_angle));
+}
+
 /// How a body fares against the points that are still free.
 struct Verdict {
-  double coverage = 0.0, inside = 0.0, seen_through = 0.0, roundness = 0.0;
-  std::size_t support = 0;  ///< points on its surface
+  double coverage = 0.0;      ///< share of the surface covered by points on it
+  double inside = 0.0;        ///< share of the directions in which there are points inside the body
+  double seen_through = 0.0;  ///< share of the surface that sight lines went through
+  double roundness = 0.0;     ///< smaller over larger principal curvature of the points on the surface
+  std::size_t support = 0;    ///< points on the surface
   double score() const { return coverage - 2.0 * inside - 1.5 * seen_through; }
 };
 
+/// Sums over the points on a body's surface or nearly so; positions are relative to the body's center.
+struct SupportSums {
+  Eigen::Vector3d p_mean = Eigen::Vector3d::Zero(), n_mean = Eigen::Vector3d::Zero();
+  Eigen::Matrix3d pp = Eigen::Matrix3d::Zero(), np = Eigen::Matrix3d::Zero();
+  double count = 0.0;
+
+  void add(const Eigen::Vector3d& q, const Eigen::Vector3d& normal) {
+    count += 1.0;
+    p_mean += q;
+    n_mean += normal;
+    pp += q.lazyProduct(q.transpose());
+    np += normal.lazyProduct(q.transpose());
+  }
+
+  /// Smaller over larger principal curvature, 0 where the smaller one is not positive. The normals are taken as a
+  /// linear function of position in the plane of the points' two longest directions; the curvatures are its
+  /// eigenvalues.
+  double roundness() {
+    p_mean /= count;
+    n_mean /= count;
+    pp -= count * p_mean * p_mean.transpose();
+    np -= count * n_mean * p_mean.transpose();
+    const Eigen::Matrix<double, 3, 2> plane = principal_axes<double>(p_mean, pp).axes.rightCols<2>();
+    const Eigen::Matrix2d spread = plane.transpose() * pp * plane + 1e-12 * Eigen::Matrix2d::Identity();
+    const Eigen::Matrix2d k = plane.transpose() * np * plane * spread.inverse();
+    const double mean = 0.5 * (k(0, 0) + k(1, 1));  // eigenvalues of the symmetric part: mean -+ half
+    const double half = std::hypot(0.5 * (k(0, 0) - k(1, 1)), 0.5 * (k(0, 1) + k(1, 0)));
+    return mean + half > 0.0 ? std::max(mean - half, 0.0) / (mean + half) : 0.0;
+  }
+};
+
+/// Judge a body by the points near it.
+/// @param taken whether a point belongs to a body that has won already
 template <typename S>
 Verdict judge(const PointCloud<S>& cloud, const Grid<S>& grid, const std::vector<char>& taken, const Ellipsoid& body,
               const BodyParameters& parameters, const SeenThrough& seen_through) {
   Verdict v;
   const double r = body.mean_radius();
   const double near = parameters.tolerance * r;
-  const double cos_max = std::cos(parameters.max_angle),
-               cos_loose = std::cos(std::min(kPi / 2, 1.6 * parameters.max_angle));
+  const double cos_max = std::cos(parameters.max_angle), cos_loose = loose_cosine(parameters);
   std::bitset<DirectionBins::kCount> covered, filled;
-  // Sums over the points on the surface or nearly so, for the support's curvatures; positions from the centre.
-  Eigen::Vector3d p_mean = Eigen::Vector3d::Zero(), n_mean = Eigen::Vector3d::Zero();
-  Eigen::Matrix3d pp = Eigen::Matrix3d::Zero(), np = Eigen::Matrix3d::Zero();
-  double count = 0.0;
-  grid.visit(body.center.cast<S>(), static_cast<S>(1.35 * r), [&](Index index, S) {
+  SupportSums sums;
+  grid.visit(body.center.cast<S>(), static_cast<S>(kNearBody * r), [&](Index index, S) {
     const auto i = static_cast<std::size_t>(index);
     const Eigen::Vector3d p = cloud.points[i].template cast<double>(), q = p - body.center;
     const auto foot = body.foot(p);
@@ -68,13 +110,7 @@ Verdict judge(const PointCloud<S>& cloud, const Grid<S>& grid, const std::vector
     if (taken[i] || std::abs(foot.distance) > 2.0 * near) return;
     const Eigen::Vector3d normal = cloud.normals[i].template cast<double>();
     const double cosine = foot.normal.dot(normal);
-    if (cosine >= cos_loose) {
-      count += 1.0;
-      p_mean += q;
-      n_mean += normal;
-      pp += q.lazyProduct(q.transpose());
-      np += normal.lazyProduct(q.transpose());
-    }
+    if (cosine >= cos_loose) sums.add(q, normal);
     if (std::abs(foot.distance) <= near && cosine >= cos_max) {
       covered.set(static_cast<std::size_t>(DirectionBins::bin(q)));
       ++v.support;
@@ -85,23 +121,12 @@ Verdict judge(const PointCloud<S>& cloud, const Grid<S>& grid, const std::vector
     if (filled[b]) v.inside += DirectionBins::shares()[b];
   }
   if (v.support < 8) return v;
-  // Principal curvatures: normals as a linear function of position, in the plane of the support's two longest
-  // directions.
-  p_mean /= count;
-  n_mean /= count;
-  pp -= count * p_mean * p_mean.transpose();
-  np -= count * n_mean * p_mean.transpose();
-  const Eigen::Matrix<double, 3, 2> plane = principal_axes<double>(p_mean, pp).axes.rightCols<2>();
-  const Eigen::Matrix2d spread = plane.transpose() * pp * plane + 1e-12 * Eigen::Matrix2d::Identity();
-  const Eigen::Matrix2d k = plane.transpose() * np * plane * spread.inverse();
-  const double mean = 0.5 * (k(0, 0) + k(1, 1));  // eigenvalues of the symmetric part: mean -+ half
-  const double half = std::hypot(0.5 * (k(0, 0) - k(1, 1)), 0.5 * (k(0, 1) + k(1, 0)));
-  v.roundness = mean + half > 0.0 ? std::max(mean - half, 0.0) / (mean + half) : 0.0;
+  v.roundness = sums.roundness();
   if (seen_through) v.seen_through = seen_through(body);
   return v;
 }
 
-/// How deep two bodies go into each other along the line of their centres (m); negative when apart.
+/// How deep two bodies go into each other along the line between their centers (m); negative when apart.
 inline double overlap(const Ellipsoid& a, const Ellipsoid& b) {
   const Eigen::Vector3d d = b.center - a.center;
   const double length = d.norm();
@@ -110,97 +135,120 @@ inline double overlap(const Ellipsoid& a, const Ellipsoid& b) {
   return (a.surface(u) - a.center).norm() + (b.surface(-u) - b.center).norm() - length;
 }
 
-}  // namespace detail
-
-/// Let candidates compete for the points of a cloud with outward normals.
-///
-/// @param cloud points (m) with normals
-/// @param candidates in the order that decides ties
-/// @param parameters see their struct
-/// @param seen_through evidence of free space, or empty
-/// @return the bodies that won, best first; their points are those that `assign_to_bodies` gives them
-/// @throws ParameterError; InputError when the cloud has no normals
+/// The competition for the points of one cloud; see find_bodies.
 template <typename S>
-std::vector<FoundBody> find_bodies(const PointCloud<S>& cloud, const std::vector<BodyCandidate>& candidates,
-                                   const BodyParameters& parameters = {}, const SeenThrough& seen_through = {}) {
-  parameters.check();
-  check_input(cloud.normals.size() == cloud.points.size(), "find_bodies: the cloud has no normals");
-  const Grid<S> grid(cloud, static_cast<S>(0.5 * parameters.radius_min));
-  std::vector<char> taken(cloud.size(), 0);
-  const auto plausible = [&](double r) { return parameters.plausible(r); };
-  FitParameters rough = parameters.fit;  // enough to see where a proposal ends up
-  rough.max_points = std::min(120, rough.max_points);
-  Indices near;
-  const auto refine = [&](const Ellipsoid& start, const FitParameters& fit) {
-    near.clear();
-    grid.visit(start.center.cast<S>(), static_cast<S>(1.35 * start.mean_radius()), [&](Index i, S) {
-      if (!taken[static_cast<std::size_t>(i)]) near.push_back(i);
-    });
-    return fit_ellipsoid(cloud, near, start, fit);
-  };
-  const auto alike = [](const Ellipsoid& a, const Ellipsoid& b) {
-    const double r = a.mean_radius(), gate = 0.05 * r;
-    return (a.center - b.center).norm() < gate && std::abs(b.mean_radius() - r) < gate;
-  };
+class Competition {
+ public:
+  Competition(const PointCloud<S>& cloud, const BodyParameters& parameters, const SeenThrough& seen_through)
+      : cloud_(cloud),
+        parameters_(parameters),
+        seen_through_(seen_through),
+        grid_(cloud, static_cast<S>(0.5 * parameters.radius_min)),
+        taken_(cloud.size(), 0) {}
 
+  /// Fit and judge the candidates. Those that score enough enter the competition.
+  void enter(const std::vector<BodyCandidate>& candidates) {
+    FitParameters rough = parameters_.fit;  // good enough to see where a proposal ends up
+    rough.max_points = std::min(120, rough.max_points);
+    std::vector<Ellipsoid> known;  // where proposals ended up; many end up at the same place
+    for (const BodyCandidate& c : candidates) {
+      throw_if_cancelled();
+      if (!parameters_.plausible(c.body.mean_radius())) continue;
+      // Not worth a fit if hardly anything supports even the first guess.
+      if (judge(cloud_, grid_, taken_, c.body, parameters_, {}).coverage < 0.3 * parameters_.min_coverage) continue;
+      const auto first = refine(c.body, rough);
+      if (!first || std::any_of(known.begin(), known.end(), [&](const Ellipsoid& k) { return alike(k, first->body); }))
+        continue;
+      known.push_back(first->body);
+      const auto fit = refine(first->body, parameters_.fit);
+      if (!fit) continue;
+      Entry e{*fit, &c.found_by, {}, true};
+      assess(e);
+      if (e.alive) entries_.push_back(std::move(e));
+    }
+  }
+
+  /// Take the best body again and again until none is left. @return the bodies taken, best first
+  std::vector<FoundBody> decide() {
+    std::vector<FoundBody> found;
+    while (Entry* best = best_entry()) {
+      best->alive = false;
+      if (clashes(best->fit.body, found)) continue;
+      found.push_back({best->fit, *best->found_by, best->verdict.coverage, best->verdict.score()});
+      take_points(best->fit.body);
+      judge_anew(best->fit.body);
+    }
+    return found;
+  }
+
+ private:
   struct Entry {
     EllipsoidFit fit;
     const std::string* found_by;
-    detail::Verdict verdict;
+    Verdict verdict;
     bool alive = true;
   };
-  const auto assess = [&](Entry& e) {
-    e.verdict = detail::judge(cloud, grid, taken, e.fit.body, parameters, seen_through);
-    e.alive = plausible(e.fit.body.mean_radius()) && e.verdict.score() >= parameters.min_coverage &&
-              e.verdict.roundness >= parameters.min_roundness;
-  };
-  std::vector<Entry> entries;
-  std::vector<Ellipsoid> known;  // where proposals ended up; most of them meet
-  for (const BodyCandidate& c : candidates) {
-    throw_if_cancelled();
-    if (!plausible(c.body.mean_radius())) continue;
-    // Not worth a fit where hardly anything supports even the first guess.
-    if (detail::judge(cloud, grid, taken, c.body, parameters, {}).coverage < 0.3 * parameters.min_coverage) continue;
-    const auto first = refine(c.body, rough);
-    if (!first || std::any_of(known.begin(), known.end(), [&](const Ellipsoid& k) { return alike(k, first->body); }))
-      continue;
-    known.push_back(first->body);
-    const auto fit = refine(first->body, parameters.fit);
-    if (!fit) continue;
-    Entry e{*fit, &c.found_by, {}, true};
-    assess(e);
-    if (e.alive) entries.push_back(std::move(e));
-  }
-  std::vector<FoundBody> found;
-  const auto area = [](const Entry& e) {
-    const double r = e.fit.body.mean_radius();
-    return e.verdict.score() * r * r;
-  };
-  while (true) {
-    Entry* best = nullptr;
-    for (Entry& e : entries)
-      if (e.alive && (!best || area(e) > area(*best))) best = &e;
-    if (!best) break;
-    best->alive = false;
-    const bool clashes = std::any_of(found.begin(), found.end(), [&](const FoundBody& f) {
-      const double smaller = std::min(f.fit.body.mean_radius(), best->fit.body.mean_radius());
-      return detail::overlap(f.fit.body, best->fit.body) > parameters.max_overlap * smaller;
+
+  /// Fit a body to the free points near it.
+  std::optional<EllipsoidFit> refine(const Ellipsoid& start, const FitParameters& fit) {
+    near_.clear();
+    grid_.visit(start.center.cast<S>(), static_cast<S>(kNearBody * start.mean_radius()), [&](Index i, S) {
+      if (!taken_[static_cast<std::size_t>(i)]) near_.push_back(i);
     });
-    if (clashes) continue;
-    found.push_back({best->fit, *best->found_by, best->verdict.coverage, best->verdict.score()});
-    // What the new body explains is no longer free, its calyx end and a margin included.
-    const Ellipsoid& body = best->fit.body;
-    const double margin = 1.5 * parameters.tolerance * body.mean_radius();
-    const double cos_loose = std::cos(std::min(kPi / 2, 1.6 * parameters.max_angle));
-    grid.visit(body.center.cast<S>(), static_cast<S>(1.35 * body.mean_radius()), [&](Index index, S) {
+    return fit_ellipsoid(cloud_, near_, start, fit);
+  }
+
+  /// Whether two bodies agree in center and size to within 5 % of the radius.
+  static bool alike(const Ellipsoid& a, const Ellipsoid& b) {
+    const double r = a.mean_radius(), gate = 0.05 * r;
+    return (a.center - b.center).norm() < gate && std::abs(b.mean_radius() - r) < gate;
+  }
+
+  /// Judge an entry by the free points; it is alive while it may win.
+  void assess(Entry& e) const {
+    e.verdict = judge(cloud_, grid_, taken_, e.fit.body, parameters_, seen_through_);
+    e.alive = parameters_.plausible(e.fit.body.mean_radius()) && e.verdict.score() >= parameters_.min_coverage &&
+              e.verdict.roundness >= parameters_.min_roundness;
+  }
+
+  /// The living entry with the largest score times radius squared, the first of equals; null if none is alive.
+  Entry* best_entry() {
+    const auto area = [](const Entry& e) {
+      const double r = e.fit.body.mean_radius();
+      return e.verdict.score() * r * r;
+    };
+    Entry* best = nullptr;
+    for (Entry& e : entries_)
+      if (e.alive && (!best || area(e) > area(*best))) best = &e;
+    return best;
+  }
+
+  /// Whether a body goes too deep into one of those found.
+  bool clashes(const Ellipsoid& body, const std::vector<FoundBody>& found) const {
+    return std::any_of(found.begin(), found.end(), [&](const FoundBody& f) {
+      const double smaller = std::min(f.fit.body.mean_radius(), body.mean_radius());
+      return overlap(f.fit.body, body) > parameters_.max_overlap * smaller;
+    });
+  }
+
+  /// Take the points that a body explains: those on it within a margin, and everything inside it, such as points in the
+  /// dimple at its calyx.
+  void take_points(const Ellipsoid& body) {
+    const double margin = 1.5 * parameters_.tolerance * body.mean_radius();
+    const double cos_loose = loose_cosine(parameters_);
+    grid_.visit(body.center.cast<S>(), static_cast<S>(kNearBody * body.mean_radius()), [&](Index index, S) {
       const auto i = static_cast<std::size_t>(index);
-      const Eigen::Vector3d p = cloud.points[i].template cast<double>();
+      const Eigen::Vector3d p = cloud_.points[i].template cast<double>();
       const auto foot = body.foot(p);
       if (foot.distance < margin &&
-          (foot.distance < -margin || foot.normal.dot(cloud.normals[i].template cast<double>()) >= cos_loose))
-        taken[i] = 1;
+          (foot.distance < -margin || foot.normal.dot(cloud_.normals[i].template cast<double>()) >= cos_loose))
+        taken_[i] = 1;
     });
-    for (Entry& e : entries) {
+  }
+
+  /// Judge the living entries near a body that has just won, and fit those again that lost points to it.
+  void judge_anew(const Ellipsoid& body) {
+    for (Entry& e : entries_) {
       throw_if_cancelled();
       if (!e.alive) continue;
       const double gap = (e.fit.body.center - body.center).norm() - e.fit.body.mean_radius() - body.mean_radius();
@@ -208,7 +256,7 @@ std::vector<FoundBody> find_bodies(const PointCloud<S>& cloud, const std::vector
       const std::size_t support = e.verdict.support;
       assess(e);  // most end here: their points are taken
       if (!e.alive || e.verdict.support == support) continue;
-      if (const auto again = refine(e.fit.body, parameters.fit)) {
+      if (const auto again = refine(e.fit.body, parameters_.fit)) {
         e.fit = *again;
         assess(e);
       } else {
@@ -216,11 +264,42 @@ std::vector<FoundBody> find_bodies(const PointCloud<S>& cloud, const std::vector
       }
     }
   }
-  return found;
+
+  const PointCloud<S>& cloud_;
+  const BodyParameters& parameters_;
+  const SeenThrough& seen_through_;
+  Grid<S> grid_;
+  std::vector<char> taken_;  // whether a point belongs to a body that has won
+  std::vector<Entry> entries_;
+  Indices near_;  // scratch of refine()
+};
+
+}  // namespace detail
+
+/// Let candidates compete for the points of a cloud with outward normals.
+///
+/// @param cloud points (m) with normals
+/// @param candidates of equally good ones the first wins
+/// @param parameters see their struct
+/// @param seen_through evidence of free space, or empty
+/// @return the bodies that won, best first; assign_to_bodies gives them their points
+/// @throws ParameterError; InputError if the cloud has no normals
+template <typename S>
+std::vector<FoundBody> find_bodies(const PointCloud<S>& cloud, const std::vector<BodyCandidate>& candidates,
+                                   const BodyParameters& parameters = {}, const SeenThrough& seen_through = {}) {
+  parameters.check();
+  check_input(cloud.normals.size() == cloud.points.size(), "find_bodies: the cloud has no normals");
+  detail::Competition<S> competition(cloud, parameters, seen_through);
+  competition.enter(candidates);
+  return competition.decide();
 }
 
-/// Label each point with the body (counted from 1) on whose surface it lies, 0 for none: the nearest body within
-/// `tolerance` of its radius whose normal agrees to within 1.6 `max_angle`.
+/// Label each point with the body (counted from 1) on whose surface it lies, 0 for none. That is the nearest body whose
+/// surface is within `tolerance` times its radius and whose normal there differs from the point's by at most 1.6 times
+/// `max_angle`; of equally near ones the first.
+/// @param cloud points (m) with normals
+/// @param bodies in the order of their labels
+/// @param parameters see their struct
 template <typename S>
 Labels assign_to_bodies(const PointCloud<S>& cloud, const std::vector<FoundBody>& bodies,
                         const BodyParameters& parameters = {}) {
@@ -228,7 +307,7 @@ Labels assign_to_bodies(const PointCloud<S>& cloud, const std::vector<FoundBody>
   if (bodies.empty()) return labels;
   const Grid<S> grid(cloud, static_cast<S>(0.5 * parameters.radius_min));
   std::vector<float> best(cloud.size(), std::numeric_limits<float>::infinity());
-  const double cos_loose = std::cos(std::min(kPi / 2, 1.6 * parameters.max_angle));
+  const double cos_loose = detail::loose_cosine(parameters);
   for (std::size_t b = 0; b < bodies.size(); ++b) {
     throw_if_cancelled();
     const Ellipsoid& body = bodies[b].fit.body;

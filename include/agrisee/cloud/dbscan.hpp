@@ -1,26 +1,27 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// @file
-/// DBSCAN (Ester et al., KDD 1996; paper, "Density-Based Spatial Clustering"): clusters of points with many neighbours.
+/// DBSCAN (Ester et al., KDD 1996; [1], 2.2.4, eq. 14 and 15): clusters of points with many neighbors.
 ///
-/// Any frame, metres. Cost: a grid, one count a point and one visit of half of each core point's neighbours, O(n
-/// neighbours) without storing any list; core points are joined by union-find, which gives the textbook algorithm's
-/// answer. Distance tests bound it, about three a neighbour.
+/// Any frame, metres. Cost O(n neighbors): a grid, a count for each point and a visit of half of each core point's
+/// neighbors, no lists. The time goes into distance tests, about three per neighbor. Core points are joined by
+/// union-find, which gives the textbook algorithm's answer.
 ///
-/// A neighbour is a point at distance <= eps, as in all searches here (Open3D and PCL take < eps; the two differ on
-/// exact ties only), and the point itself counts, as in Open3D.
+/// A neighbor is a point at distance <= eps, as in all searches of this library (Open3D and PCL take < eps, which
+/// differs only for distances of exactly eps). The point itself counts, as in Open3D.
 #pragma once
 
 #include <agrisee/cloud/parameters.hpp>
-#include <agrisee/core/components.hpp>
-#include <agrisee/core/count_neighbors.hpp>
 #include <agrisee/core/sums.hpp>
+#include <agrisee/neighbors/components.hpp>
+#include <agrisee/neighbors/count_neighbors.hpp>
 
 namespace agrisee {
 
 namespace detail {
 
-/// Number the clusters: a label a point, from 1 in the order of their first core points; 0 for the others.
-/// @param core whether a point is one
+/// Label the core points: clusters are numbered from 1 in the order of their first core points; other points get 0.
+/// @param core whether a point is a core point
+/// @param roots a number for each point, equal for core points of one cluster
 inline Labels number_clusters(const std::vector<char>& core, const std::vector<Index>& roots) {
   Labels labels(core.size(), 0), number(core.size(), 0);
   int clusters = 0;
@@ -33,23 +34,55 @@ inline Labels number_clusters(const std::vector<char>& core, const std::vector<I
   return labels;
 }
 
+/// Give each stored point without a label the least label of the core points within the radius, if there are any.
+/// @param counting the cloud's grid, its radius being eps
+/// @param stored_labels of the stored points; only core points have any
+/// @param labels receives the labels, one per point of the cloud
+template <typename S>
+void label_border(const CountingGrid<S>& counting, const Labels& stored_labels, int threads, Labels& labels) {
+  constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
+  const Grid<S>& grid = counting.grid;
+  const S *x = grid.x().data(), *y = grid.y().data(), *z = grid.z().data();
+  const S eps_sq = counting.radius * counting.radius;
+  for_cells(grid, threads, [&] {
+    return [&](const typename Grid<S>::Cell& cell, std::size_t first, std::size_t last) {
+      for (std::size_t j = first; j < last; ++j) {
+        if (stored_labels[j] != 0) continue;
+        const S qx = x[j], qy = y[j], qz = z[j];
+        auto least = kNone;
+        for (const StencilRow& row : counting.stencil) {
+          const auto [begin, end] =
+              grid.run(cell[2] - row.outer, cell[2] + row.outer, cell[1] + row.dy, cell[0] + row.dz);
+          for (std::size_t i = begin; i < end; ++i) {
+            const S dx = x[i] - qx, dy = y[i] - qy, dz = z[i] - qz;
+            const auto its = static_cast<std::uint32_t>(stored_labels[i]) - 1u;  // without a label: the largest number
+            least = std::min(least, sum_of_squares(dx, dy, dz) <= eps_sq ? its : kNone);
+          }
+        }
+        if (least != kNone) labels[static_cast<std::size_t>(grid.ids()[j])] = static_cast<int>(least) + 1;
+      }
+    };
+  });
+}
+
 }  // namespace detail
 
-/// One label per point: clusters from 1 in the order of their first core points, 0 = noise. A border point belongs to
-/// the first cluster that has a core point within eps of it. Points that are not finite are noise.
+/// Find clusters. A border point belongs to the first cluster that has a core point within eps of it. Points that are
+/// not finite are noise.
 /// @param cloud points (m), any cloud type
-/// @param params see their struct
+/// @param parameters see their struct
 /// @param search a KdTree or Grid over `cloud`
 /// @param threads the result does not depend on it
-/// @throws ParameterError for a bad parameter, InputError when the search is over a cloud of another size
+/// @return one label per point: clusters from 1 in the order of their first core points, 0 = noise
+/// @throws ParameterError for a bad parameter, InputError if the search is over a cloud of another size
 template <typename C, typename Search>
-Labels dbscan(const C& cloud, const DbscanParameters& params, const Search& search, int threads = 1) {
+Labels dbscan(const C& cloud, const DbscanParameters& parameters, const Search& search, int threads = 1) {
   using S = scalar_t<C>;
-  params.check();
+  parameters.check();
   const std::size_t n = agrisee::size(cloud);
   check_input(search.size() == n, "the search and the cloud differ in size");
-  const S eps = static_cast<S>(params.eps);
-  const auto needed = static_cast<std::size_t>(params.min_points);
+  const S eps = static_cast<S>(parameters.eps);
+  const auto needed = static_cast<std::size_t>(parameters.min_points);
 
   std::vector<char> core(n, 0);
   parallel_for(n, threads, [&](std::size_t i) { core[i] = search.count(point(cloud, i), eps, needed) >= needed; });
@@ -77,19 +110,17 @@ Labels dbscan(const C& cloud, const DbscanParameters& params, const Search& sear
   return labels;
 }
 
-/// The same with a search built for the call; several times as fast.
+/// The same clusters without a ready-made search; several times as fast.
 template <typename C>
-Labels dbscan(const C& cloud, const DbscanParameters& params = {}, int threads = 1) {
+Labels dbscan(const C& cloud, const DbscanParameters& parameters = {}, int threads = 1) {
   using S = scalar_t<C>;
-  params.check();
-  const S eps = static_cast<S>(params.eps), eps_sq = eps * eps;
-  const auto needed = static_cast<std::size_t>(params.min_points);
+  parameters.check();
+  const S eps = static_cast<S>(parameters.eps), eps_sq = eps * eps;
+  const auto needed = static_cast<std::size_t>(parameters.min_points);
   const CountingGrid<S> counting(cloud, eps, threads);
   const Grid<S>& grid = counting.grid;
   const S *x = grid.x().data(), *y = grid.y().data(), *z = grid.z().data();
-  const auto id = [&](std::size_t j) { return static_cast<std::size_t>(grid.ids()[j]); };
 
-  const std::size_t n = agrisee::size(cloud);
   std::vector<std::uint8_t> stored_core(grid.stored());
   counting.count(threads, [&](std::size_t j, std::size_t in) { stored_core[j] = in >= needed; });
 
@@ -109,31 +140,10 @@ Labels dbscan(const C& cloud, const DbscanParameters& params = {}, int threads =
   const Labels stored_labels = number_sets(
       sets, grid.stored(), 1, threads, [&](std::size_t j) { return stored_core[j] != 0; },
       [&](std::size_t j) { return grid.ids()[j]; });
-  Labels labels(n, 0);
-  parallel_for(
-      grid.stored(), threads, [&](std::size_t j) { labels[id(j)] = stored_labels[j]; }, 4096);
-
-  // Border points: the least label of the core points nearby.
-  constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
-  for_cells(grid, threads, [&] {
-    return [&](const typename Grid<S>::Cell& cell, std::size_t first, std::size_t last) {
-      for (std::size_t j = first; j < last; ++j) {
-        if (stored_core[j]) continue;
-        const S qx = x[j], qy = y[j], qz = z[j];
-        auto least = kNone;
-        for (const StencilRow& row : counting.stencil) {
-          const auto [begin, end] =
-              grid.run(cell[2] - row.outer, cell[2] + row.outer, cell[1] + row.dy, cell[0] + row.dz);
-          for (std::size_t i = begin; i < end; ++i) {
-            const S dx = x[i] - qx, dy = y[i] - qy, dz = z[i] - qz;
-            const auto its = static_cast<std::uint32_t>(stored_labels[i]) - 1u;  // of no cluster: the largest
-            least = std::min(least, detail::sum_of_squares(dx, dy, dz) <= eps_sq ? its : kNone);
-          }
-        }
-        if (least != kNone) labels[id(j)] = static_cast<int>(least) + 1;
-      }
-    };
-  });
+  Labels labels(agrisee::size(cloud), 0);
+  const auto label = [&](std::size_t j) { labels[static_cast<std::size_t>(grid.ids()[j])] = stored_labels[j]; };
+  parallel_for(grid.stored(), threads, label, 4096);
+  detail::label_border(counting, stored_labels, threads, labels);
   return labels;
 }
 

@@ -2,10 +2,11 @@
 /// @file
 /// Fits spheres and ellipsoids to points with normals, robustly.
 ///
-/// An ellipsoid is { p : |A (p - c)| = 1 } with A symmetric positive definite; its distance from a point is taken to
-/// first order at the point's radial projection, (g - 1) g / |A A (p - c)| with g = |A (p - c)| (cf. Taubin, PAMI
-/// 1991). Gauss-Newton with Tukey's biweight; where the data do not tell, a prior pulls towards a sphere, so that a
-/// crescent yields a sphere and a whole fruit its own shape. Units: metres. Cost: linear in the points per iteration.
+/// An ellipsoid is { p : |A (p - c)| = 1 } with A symmetric and positive definite. The distance of a point p from it is
+/// taken to first order at the point's radial projection: (g - 1) g / |A A (p - c)| with g = |A (p - c)| (cf. Taubin,
+/// PAMI 1991). The fit is by Gauss-Newton with Tukey's biweight. A prior pulls the shape towards a sphere as far as the
+/// points leave it open: of a fruit seen only as a crescent the fit gives a sphere, of one seen all around its own
+/// shape. Metres. Cost: linear in the points per iteration.
 #pragma once
 
 #include <agrisee/cloud/parameters.hpp>
@@ -36,14 +37,14 @@ struct Ellipsoid {
   Ellipsoid() = default;
   /// A sphere as an ellipsoid.
   explicit Ellipsoid(const Sphere& s) : center(s.center), A(Eigen::Matrix3d::Identity() / s.radius) {}
-  /// A v, written out: general products are not inlined.
+  /// The product A v, written out because Eigen's general product is not inlined.
   Eigen::Vector3d times(const Eigen::Vector3d& v) const {
     return {A(0, 0) * v.x() + A(0, 1) * v.y() + A(0, 2) * v.z(), A(1, 0) * v.x() + A(1, 1) * v.y() + A(1, 2) * v.z(),
             A(2, 0) * v.x() + A(2, 1) * v.y() + A(2, 2) * v.z()};
   }
-  /// How a point lies to the surface.
+  /// Where a point is relative to the surface.
   struct Foot {
-    double distance;         ///< signed (m), to first order, negative inside
+    double distance;         ///< signed distance of the point (m), to first order, negative inside
     Eigen::Vector3d normal;  ///< unit, outward, at the point's foot
   };
   /// The foot of p (m).
@@ -53,13 +54,13 @@ struct Ellipsoid {
     if (!(slope > 0.0)) return {-mean_radius(), Eigen::Vector3d::UnitZ()};
     return {(g - 1.0) * g / slope, n / slope};
   }
-  /// Signed distance of p to the surface (m), as of foot().
+  /// Signed distance of p from the surface (m); see foot().
   double distance(const Eigen::Vector3d& p) const { return foot(p).distance; }
   /// Unit normal at the foot of p, outward.
   Eigen::Vector3d normal(const Eigen::Vector3d& p) const { return foot(p).normal; }
-  /// Radius of the sphere whose inverse is the mean of the inverse semi-axes (m).
+  /// Harmonic mean of the semi-axes (m).
   double mean_radius() const { return 3.0 / A.trace(); }
-  /// Point of the surface in direction `d` (unit) from the centre.
+  /// Point of the surface in direction `d` (unit) from the center.
   Eigen::Vector3d surface(const Eigen::Vector3d& d) const { return center + d / (A * d).norm(); }
 };
 
@@ -67,7 +68,7 @@ struct Ellipsoid {
 inline std::pair<Eigen::Vector3d, Eigen::Matrix3d> semi_axes(const Ellipsoid& e) {
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(e.A);  // ascending: smallest inverse first
   Eigen::Matrix3d axes = solver.eigenvectors();
-  for (int i = 0; i < 2; ++i) {  // signs by a rule, so that equal bodies print alike
+  for (int i = 0; i < 2; ++i) {  // a rule for the signs, so that equal bodies print alike
     Eigen::Index largest;
     axes.col(i).cwiseAbs().maxCoeff(&largest);
     if (axes(largest, i) < 0.0) axes.col(i) *= -1.0;
@@ -76,18 +77,18 @@ inline std::pair<Eigen::Vector3d, Eigen::Matrix3d> semi_axes(const Ellipsoid& e)
   return {solver.eigenvalues().cwiseInverse(), axes};
 }
 
-/// What a fit found.
+/// The result of a fit.
 struct EllipsoidFit {
-  Ellipsoid body;                                               ///< as fitted
-  Eigen::Matrix3d center_covariance = Eigen::Matrix3d::Zero();  ///< m2
-  /// Of body.A as (xx, yy, zz, xy, xz, yz) (1/m2), what was expected of its shape included.
+  Ellipsoid body;                                               ///< the fitted ellipsoid
+  Eigen::Matrix3d center_covariance = Eigen::Matrix3d::Zero();  ///< covariance of body.center (m2)
+  /// Covariance of body.A as (xx, yy, zz, xy, xz, yz) (1/m2), with the prior on its shape.
   Eigen::Matrix<double, 6, 6> shape_covariance = Eigen::Matrix<double, 6, 6>::Zero();
-  double rms = 0.0;         ///< of the inliers (m)
-  std::size_t inliers = 0;  ///< points within three noises whose normals agree
+  double rms = 0.0;         ///< root mean square distance of the inliers (m)
+  std::size_t inliers = 0;  ///< points within three standard deviations whose normals agree
 };
 
-/// The sphere through points with outward normals: p = c + r n is linear in c and r, so r is the regression of points
-/// on normals. Empty for fewer than 4 points or normals that hardly differ.
+/// The sphere through points with outward normals: p = c + r n is linear in c and r, so r is the slope of the
+/// regression of points on normals. Empty for fewer than 4 points, or if their normals hardly differ.
 template <typename S>
 std::optional<Sphere> sphere_from_normals(const PointCloud<S>& cloud, const Indices& indices) {
   if (indices.size() < 4) return std::nullopt;
@@ -115,16 +116,18 @@ namespace detail {
 using Vector9 = Eigen::Matrix<double, 9, 1>;
 using Matrix9 = Eigen::Matrix<double, 9, 9>;
 
-/// What a point says of an ellipsoid, to first order at the point's radial projection: derivatives that saw the point's
-/// own error would be correlated with its residual, and crescents turn that into millimetres.
+/// One row of the least squares: what a point says of an ellipsoid. Derivatives are taken at the point's radial
+/// projection, not at the point: there they would be correlated with the point's own error, and crescents would come
+/// out millimetres too large or too small.
 struct EllipsoidRow {
   double residual = 0.0;  ///< distance of the point (m)
   double weight = 0.0;    ///< Tukey's biweight; 0: the point is beyond the gate, or its normal disagrees
-  Vector9 derivatives;    ///< of the residual by the centre / size and by size * A as (xx, yy, zz, xy, xz, yz)
+  Vector9 derivatives;    ///< of the residual by the center / size and by size * A as (xx, yy, zz, xy, xz, yz)
 };
 
-/// @param size by which the unknowns are scaled (m)
-/// @param gate residual at which a point's weight ends (m)
+/// The row of a point.
+/// @param size the unknowns are scaled by this length (m)
+/// @param gate from this residual (m) on the weight is 0
 /// @param cos_max cosine of the largest angle between the point's normal and the body's
 inline EllipsoidRow ellipsoid_row(const Ellipsoid& body, const Eigen::Vector3d& point, const Eigen::Vector3d& normal,
                                   double size, double gate, double cos_max) {
@@ -146,7 +149,7 @@ inline EllipsoidRow ellipsoid_row(const Ellipsoid& body, const Eigen::Vector3d& 
   return row;
 }
 
-/// Information of the prior that the deviatoric part of size * A is small.
+/// Information matrix of the prior that size * A is close to a multiple of the identity (its deviatoric part is small).
 inline Matrix9 shape_information(const Ellipsoid& body, double size, double shape_prior) {
   const double relative = body.A.trace() * size / 3.0;  // mean of the inverse semi-axes, in units of 1 / size
   Matrix9 prior = Matrix9::Zero();
@@ -156,12 +159,89 @@ inline Matrix9 shape_information(const Ellipsoid& body, double size, double shap
   return prior;
 }
 
+/// A point and its normal.
+struct FitSample {
+  Eigen::Vector3d point, normal;
+};
+
+/// `used` of the points `indices`, evenly picked.
+template <typename S>
+std::vector<FitSample> fit_samples(const PointCloud<S>& cloud, const Indices& indices, std::size_t used) {
+  std::vector<FitSample> samples(used);
+  for (std::size_t k = 0; k < used; ++k) {
+    const auto i = static_cast<std::size_t>(indices[k * indices.size() / used]);
+    samples[k] = {cloud.points[i].template cast<double>(), cloud.normals[i].template cast<double>()};
+  }
+  return samples;
+}
+
+/// Sums over the samples for one step.
+struct FitSums {
+  Matrix9 normal_matrix;    ///< of the weighted derivatives
+  Vector9 rhs;              ///< right-hand side of the normal equations
+  double weights = 0.0;     ///< sum of the weights
+  double squares = 0.0;     ///< sum of the inliers' squared residuals (m2)
+  std::size_t inliers = 0;  ///< samples close to the body
+};
+
+/// @param gate as of ellipsoid_row (m)
+/// @param inlier samples with smaller residuals (m) are inliers
+/// @throws Cancelled
+inline FitSums fit_sums(const std::vector<FitSample>& samples, const Ellipsoid& body, double size, double gate,
+                        double cos_max, double inlier) {
+  // The tenth row and column of the products belong to the residual.
+  Eigen::Matrix<double, 10, 10> products = Eigen::Matrix<double, 10, 10>::Zero();
+  double weights = 0.0, squares = 0.0;
+  std::size_t inliers = 0;
+  for (const FitSample& sample : samples) {
+    if (((&sample - samples.data()) & 0xFFF) == 0) throw_if_cancelled();
+    const auto row = ellipsoid_row(body, sample.point, sample.normal, size, gate, cos_max);
+    if (!(row.weight > 0.0)) continue;
+    Eigen::Matrix<double, 10, 1> j;
+    j << row.derivatives, row.residual;
+    products.noalias() += (row.weight * j).lazyProduct(j.transpose());
+    weights += row.weight;
+    if (std::abs(row.residual) < inlier) ++inliers, squares += row.residual * row.residual;
+  }
+  return {products.topLeftCorner<9, 9>(), -products.topRightCorner<9, 1>(), weights, squares, inliers};
+}
+
+/// Multiply the normal equations by the samples' information and add the prior on the shape.
+/// @param certainty information of one sample of full weight (1/m2)
+inline void add_prior(FitSums& sums, const Ellipsoid& body, double size, double certainty, double shape_prior) {
+  sums.normal_matrix *= certainty;
+  sums.rhs *= certainty;
+  const Eigen::Matrix3d B = body.A * size - Eigen::Matrix3d::Identity();
+  const Matrix9 prior = shape_information(body, size, shape_prior);
+  Vector9 b = Vector9::Zero();
+  b.tail<6>() << B(0, 0), B(1, 1), B(2, 2), B(0, 1), B(0, 2), B(1, 2);
+  sums.rhs -= prior * b;
+  sums.normal_matrix += prior;
+  sums.normal_matrix.diagonal().array() += 1e-9 * sums.normal_matrix.diagonal().maxCoeff();
+}
+
+/// Apply a step to a body; longer ones than 0.3 of its size are shortened to that.
+/// @param step change of the center / size and of size * A as (xx, yy, zz, xy, xz, yz)
+/// @return the length of the step, in units of the size, before it is shortened; empty if the body degenerates
+inline std::optional<double> apply_step(Ellipsoid& body, const Vector9& step, double size) {
+  if (!step.allFinite()) return std::nullopt;
+  const double longest = std::max(step.head<3>().norm(), step.tail<6>().cwiseAbs().maxCoeff());
+  const double damp = longest > 0.3 ? 0.3 / longest : 1.0;
+  body.center += damp * size * step.head<3>();
+  Eigen::Matrix3d dA;
+  dA << step[3], step[6], step[7], step[6], step[4], step[8], step[7], step[8], step[5];
+  body.A += damp * dA / size;
+  const Eigen::Vector3d inverse_axes = Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(body.A).eigenvalues();
+  if (!(inverse_axes[0] > 0.2 / size) || !(inverse_axes[2] < 5.0 / size)) return std::nullopt;
+  return longest;
+}
+
 }  // namespace detail
 
 /// Fit an ellipsoid to the points `indices` of a cloud with normals, starting from `start`.
 ///
-/// Empty when fewer than `parameters.independent / 10 + 4` points support it or the fit degenerates.
-/// @throws InputError when the cloud has no normals; ParameterError
+/// @return empty if fewer than `parameters.independent / 10 + 4` points support the body or the fit degenerates
+/// @throws InputError if the cloud has no normals; ParameterError
 template <typename S>
 std::optional<EllipsoidFit> fit_ellipsoid(const PointCloud<S>& cloud, const Indices& indices, const Ellipsoid& start,
                                           const FitParameters& parameters = {}) {
@@ -170,77 +250,34 @@ std::optional<EllipsoidFit> fit_ellipsoid(const PointCloud<S>& cloud, const Indi
   const std::size_t least = static_cast<std::size_t>(parameters.independent / 10 + 4);
   if (indices.size() < least) return std::nullopt;
   const double cos_max = std::cos(parameters.max_angle);
-  using detail::Matrix9, detail::Vector9;
-
-  // What is used of the cloud, gathered once.
-  struct Sample {
-    Eigen::Vector3d point, normal;
-  };
   const std::size_t used = std::min(indices.size(), std::max(least, static_cast<std::size_t>(parameters.max_points)));
-  std::vector<Sample> samples(used);
-  for (std::size_t k = 0; k < used; ++k) {
-    const auto i = static_cast<std::size_t>(indices[k * indices.size() / used]);
-    samples[k] = {cloud.points[i].template cast<double>(), cloud.normals[i].template cast<double>()};
-  }
-
+  const std::vector<detail::FitSample> samples = detail::fit_samples(cloud, indices, used);
   const double share = static_cast<double>(indices.size()) / static_cast<double>(used);  // points a sample stands for
 
+  // Unknowns: the center in units of `size`, and B = A * size - I as (xx, yy, zz, xy, xz, yz).
   EllipsoidFit fit;
   fit.body = start;
   const double size = start.mean_radius();
+  const double inlier = 3.0 * std::max(parameters.noise, 0.01 * size);
   double gate = std::max(6.0 * parameters.noise, 0.12 * size);
-  Matrix9 information = Matrix9::Zero();  // of the last step
+  detail::Matrix9 information = detail::Matrix9::Zero();  // of the last step
   for (int iteration = 0; iteration < parameters.iterations; ++iteration) {
-    // Unknowns: the centre in units of `size`, and B = A * size - I as (xx, yy, zz, xy, xz, yz). The tenth row and
-    // column of the products belong to the residual.
-    Eigen::Matrix<double, 10, 10> products = Eigen::Matrix<double, 10, 10>::Zero();
-    double weights = 0.0, squares = 0.0;
-    std::size_t inliers = 0;
-    const Ellipsoid body = fit.body;
-    const double inlier = 3.0 * std::max(parameters.noise, 0.01 * size);
-    for (const Sample& sample : samples) {
-      if (((&sample - samples.data()) & 0xFFF) == 0) throw_if_cancelled();
-      const auto row = detail::ellipsoid_row(body, sample.point, sample.normal, size, gate, cos_max);
-      if (!(row.weight > 0.0)) continue;
-      Eigen::Matrix<double, 10, 1> j;
-      j << row.derivatives, row.residual;
-      products.noalias() += (row.weight * j).lazyProduct(j.transpose());
-      weights += row.weight;
-      if (std::abs(row.residual) < inlier) ++inliers, squares += row.residual * row.residual;
-    }
-    Matrix9 normal_matrix = products.topLeftCorner<9, 9>();
-    Vector9 rhs = -products.topRightCorner<9, 1>();
-    if (share * weights < 0.3 * static_cast<double>(least)) return std::nullopt;
-    const double certainty = std::min(share, parameters.independent / weights) / (parameters.noise * parameters.noise);
-    normal_matrix *= certainty;
-    rhs *= certainty;
-    // The prior: the deviatoric part of B is small.
-    const Eigen::Matrix3d B = body.A * size - Eigen::Matrix3d::Identity();
-    const Matrix9 prior = detail::shape_information(body, size, parameters.shape_prior);
-    Vector9 b = Vector9::Zero();
-    b.tail<6>() << B(0, 0), B(1, 1), B(2, 2), B(0, 1), B(0, 2), B(1, 2);
-    rhs -= prior * b;
-    normal_matrix += prior;
-    normal_matrix.diagonal().array() += 1e-9 * normal_matrix.diagonal().maxCoeff();
-    const Eigen::LDLT<Matrix9> solver(normal_matrix);
-    const Vector9 step = solver.solve(rhs);
-    if (!step.allFinite()) return std::nullopt;
-    const double longest = std::max(step.head<3>().norm(), step.tail<6>().cwiseAbs().maxCoeff());
-    const double damp = longest > 0.3 ? 0.3 / longest : 1.0;
-    fit.body.center += damp * size * step.head<3>();
-    Eigen::Matrix3d dA;
-    dA << step[3], step[6], step[7], step[6], step[4], step[8], step[7], step[8], step[5];
-    fit.body.A += damp * dA / size;
-    const Eigen::Vector3d inverse_axes = Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(fit.body.A).eigenvalues();
-    if (!(inverse_axes[0] > 0.2 / size) || !(inverse_axes[2] < 5.0 / size)) return std::nullopt;
-    fit.inliers = static_cast<std::size_t>(share * static_cast<double>(inliers));
-    fit.rms = inliers ? std::sqrt(squares / static_cast<double>(inliers)) : 0.0;
-    information = normal_matrix;
+    detail::FitSums sums = detail::fit_sums(samples, fit.body, size, gate, cos_max, inlier);
+    if (share * sums.weights < 0.3 * static_cast<double>(least)) return std::nullopt;
+    const double certainty =
+        std::min(share, parameters.independent / sums.weights) / (parameters.noise * parameters.noise);
+    detail::add_prior(sums, fit.body, size, certainty, parameters.shape_prior);
+    const detail::Vector9 step = Eigen::LDLT<detail::Matrix9>(sums.normal_matrix).solve(sums.rhs);
+    const auto longest = detail::apply_step(fit.body, step, size);
+    if (!longest) return std::nullopt;
+    fit.inliers = static_cast<std::size_t>(share * static_cast<double>(sums.inliers));
+    fit.rms = sums.inliers ? std::sqrt(sums.squares / static_cast<double>(sums.inliers)) : 0.0;
+    information = sums.normal_matrix;
     gate = std::max(0.7 * gate, std::max(4.0 * parameters.noise, 0.05 * size));
-    if (iteration > 3 && longest < 1e-4) break;
+    if (iteration > 3 && *longest < 1e-4) break;
   }
   if (fit.inliers < least / 2) return std::nullopt;
-  const Matrix9 covariance = Eigen::LDLT<Matrix9>(information).solve(Matrix9::Identity());
+  const detail::Matrix9 covariance = Eigen::LDLT<detail::Matrix9>(information).solve(detail::Matrix9::Identity());
   fit.center_covariance = covariance.topLeftCorner<3, 3>() * size * size;
   fit.shape_covariance = covariance.bottomRightCorner<6, 6>() / (size * size);
   return fit;

@@ -1,22 +1,22 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// Surface normals: the axis of least variance of the nearest points within a radius (Hoppe et al., SIGGRAPH 1992;
-/// paper, "Segmentation via Region Growing": r_n, k_n), turned to the view that saw each point or to one viewpoint.
-/// Where neither is known, orient_normals.hpp makes them agree with their neighbours.
+/// [1], 2.2.3: r_n, k_n), turned to the sensor that saw each point. If that is not known,
+/// orient_normals.hpp makes them agree with their neighbors.
 ///
-/// Any frame, metres. Cost: a grid, the picking of some 30 neighbours and the least axis of a 3 x 3 matrix a point.
+/// Any frame, metres. Cost: a grid and, for each point, finding some 30 neighbors and the least axis of a 3 x 3 matrix.
 #pragma once
 
 #include <agrisee/cloud/parameters.hpp>
-#include <agrisee/core/neighbor_lists.hpp>
 #include <agrisee/geometry/pca.hpp>
+#include <agrisee/neighbors/neighbor_lists.hpp>
 
 namespace agrisee {
 
 namespace detail {
 
-/// The normal of the points that `moments` sums, or zero where there is none to be told.
-/// @param curvature receives the surface variation where it is not null
+/// The normal of the points that `moments` sums, or zero if they determine none.
+/// @param curvature receives the surface variation, if it is not null
 template <typename S>
 Vector3<S> normal_of(const Moments& moments, S* curvature) {
   Eigen::Vector3d variance;
@@ -29,19 +29,21 @@ Vector3<S> normal_of(const Moments& moments, S* curvature) {
 
 }  // namespace detail
 
-/// One unit normal a point, its sign arbitrary; zero where the normal is unknown: fewer than three neighbours, all of
-/// them on a line or at one place (within the rounding of the coordinates), or a point that is not finite.
+/// Estimate the normal of each point. It is unknown if the point is not finite, has fewer than three neighbors, or all
+/// of them lie on a line or at one place (within the rounding of the coordinates).
 /// @param cloud points (m), any cloud type
-/// @param params see their struct
+/// @param parameters see their struct
 /// @param search a KdTree or Grid over `cloud`
 /// @param threads the result does not depend on it
-/// @param curvatures if given, receives one surface variation (0 to 1/3; 0 where the normal is unknown) a point
-/// @throws ParameterError for a bad parameter, InputError when the search is over a cloud of another size
+/// @param curvatures if given, receives one surface variation per point (0 to 1/3; 0 if the normal is unknown)
+/// @return one unit normal per point, of arbitrary sign; zero if it is unknown
+/// @throws ParameterError for a bad parameter, InputError if the search is over a cloud of another size
 template <typename C, typename Search>
-std::vector<Vector3<scalar_t<C>>> estimate_normals(const C& cloud, const NormalParameters& params, const Search& search,
-                                                   int threads = 1, std::vector<scalar_t<C>>* curvatures = nullptr) {
+std::vector<Vector3<scalar_t<C>>> estimate_normals(const C& cloud, const NormalParameters& parameters,
+                                                   const Search& search, int threads = 1,
+                                                   std::vector<scalar_t<C>>* curvatures = nullptr) {
   using S = scalar_t<C>;
-  params.check();
+  parameters.check();
   const std::size_t n = agrisee::size(cloud);
   check_input(search.size() == n, "the search and the cloud differ in size");
   std::vector<Vector3<S>> normals(n, Vector3<S>::Zero());
@@ -50,8 +52,8 @@ std::vector<Vector3<scalar_t<C>>> estimate_normals(const C& cloud, const NormalP
     Neighbors<S> near;
     Moments moments;
     for (std::size_t i = begin; i < end; ++i) {
-      search.knn(point(cloud, i), static_cast<std::size_t>(params.max_neighbors), near);
-      while (!near.empty() && !(near.back().distance <= static_cast<S>(params.radius))) near.pop_back();
+      search.knn(point(cloud, i), static_cast<std::size_t>(parameters.max_neighbors), near);
+      while (!near.empty() && !(near.back().distance <= static_cast<S>(parameters.radius))) near.pop_back();
       if (near.size() < 3) continue;
       const auto at = [&](const Neighbor<S>& found) -> Eigen::Vector3d {
         return point(cloud, static_cast<std::size_t>(found.index)).template cast<double>();
@@ -64,19 +66,20 @@ std::vector<Vector3<scalar_t<C>>> estimate_normals(const C& cloud, const NormalP
   return normals;
 }
 
-/// The same, but for rounding, from neighbour lists that are there already, as far as they reach: `max_neighbors` of
-/// them within `radius`.
+/// Estimate the normals, up to rounding the same, from neighbor lists that exist already. Lists shorter than
+/// `max_neighbors` are used as far as they reach.
 template <typename C>
-std::vector<Vector3<scalar_t<C>>> estimate_normals(const C& cloud, const NormalParameters& params,
+std::vector<Vector3<scalar_t<C>>> estimate_normals(const C& cloud, const NormalParameters& parameters,
                                                    const NeighborLists& lists, int threads = 1,
                                                    std::vector<scalar_t<C>>* curvatures = nullptr) {
   using S = scalar_t<C>;
-  params.check();
-  const std::size_t n = agrisee::size(cloud), most = std::min(lists.k, static_cast<std::size_t>(params.max_neighbors));
-  check_input(lists.size() == n, "the neighbour lists and the cloud differ in size");
+  parameters.check();
+  const std::size_t n = agrisee::size(cloud),
+                    most = std::min(lists.k, static_cast<std::size_t>(parameters.max_neighbors));
+  check_input(lists.size() == n, "the neighbor lists and the cloud differ in size");
   std::vector<Vector3<S>> normals(n, Vector3<S>::Zero());
   if (curvatures) curvatures->assign(n, S(0));
-  const S reach_sq = static_cast<S>(params.radius) * static_cast<S>(params.radius);
+  const S reach_sq = static_cast<S>(parameters.radius) * static_cast<S>(parameters.radius);
   parallel_for(n, threads, [&](std::size_t i) {
     const Vector3<S> q = point(cloud, i);
     Moments moments;
@@ -93,12 +96,12 @@ std::vector<Vector3<scalar_t<C>>> estimate_normals(const C& cloud, const NormalP
   return normals;
 }
 
-/// The same, but for rounding, without a search; several times as fast.
+/// Estimate the normals, up to rounding the same, without a ready-made search; several times as fast.
 template <typename C>
-std::vector<Vector3<scalar_t<C>>> estimate_normals(const C& cloud, const NormalParameters& params = {}, int threads = 1,
-                                                   std::vector<scalar_t<C>>* curvatures = nullptr) {
+std::vector<Vector3<scalar_t<C>>> estimate_normals(const C& cloud, const NormalParameters& parameters = {},
+                                                   int threads = 1, std::vector<scalar_t<C>>* curvatures = nullptr) {
   using S = scalar_t<C>;
-  params.check();
+  parameters.check();
   const std::size_t n = agrisee::size(cloud);
   std::vector<Vector3<S>> normals(n, Vector3<S>::Zero());
   if (curvatures) curvatures->assign(n, S(0));
@@ -110,31 +113,30 @@ std::vector<Vector3<scalar_t<C>>> estimate_normals(const C& cloud, const NormalP
     for (std::size_t j = 0; j < near.size; ++j) moments.add(near.point(j).template cast<double>());
     normals[i] = detail::normal_of<S>(moments, curvatures ? &(*curvatures)[i] : nullptr);
   };
-  for_each_neighborhood<Order::any>(cloud, static_cast<std::size_t>(params.max_neighbors),
-                                    static_cast<S>(params.radius), threads, fit);
+  for_each_neighborhood<Order::any>(cloud, static_cast<std::size_t>(parameters.max_neighbors),
+                                    static_cast<S>(parameters.radius), threads, fit);
   return normals;
 }
 
-/// The normals, each turned so that it faces `viewpoint` (m, the cloud's frame).
-/// @throws InputError when the sizes disagree
-template <typename C>
-std::vector<Vector3<scalar_t<C>>> orient_normals_to_viewpoint(std::vector<Vector3<scalar_t<C>>> normals, const C& cloud,
-                                                              const Eigen::Vector3d& viewpoint) {
-  check_input(normals.size() == agrisee::size(cloud), "orienting normals needs one a point");
-  for (std::size_t i = 0; i < normals.size(); ++i) {
-    const Eigen::Vector3d sight = viewpoint - point(cloud, i).template cast<double>();
-    if (normals[i].template cast<double>().dot(sight) < 0.0) normals[i] = -normals[i];
-  }
-  return normals;
+/// A normal, turned so that it faces the sensor.
+/// @param normal unit, or zero
+/// @param sight from the normal's point to the sensor (m)
+/// @param least_cosine the normal is turned if the cosine of its angle with `sight` is less than this: 0 if nothing is
+///   known of its sign, a negative number if it is to be turned only if it clearly faces away
+template <typename S>
+Vector3<S> orient_towards(const Vector3<S>& normal, const Eigen::Vector3d& sight, double least_cosine = 0.0) {
+  const double along = normal.template cast<double>().dot(sight);
+  const double least = least_cosine == 0.0 ? 0.0 : least_cosine * sight.norm();
+  return along < least ? Vector3<S>(-normal) : normal;
 }
 
-/// The normals, each turned so that it faces the sensor that saw its point; those of points without a view (-1) are
-/// zero, since nothing is known of their side.
+/// The normals, each turned so that it faces the sensor that saw its point. Normals of points without a view (-1)
+/// become zero, since nothing is known of their side.
 /// @param normals one per point
 /// @param cloud points (m)
-/// @param views one index into `sensors` a point, or -1
-/// @param sensors sensor positions (m, the cloud's frame), one a view
-/// @throws InputError when sizes disagree or a view has no sensor position
+/// @param views for each point an index into `sensors`, or -1
+/// @param sensors sensor positions (m, the cloud's frame), one per view
+/// @throws InputError if sizes disagree or a view has no sensor position
 template <typename C>
 std::vector<Vector3<scalar_t<C>>> orient_normals_to_views(std::vector<Vector3<scalar_t<C>>> normals, const C& cloud,
                                                           const std::vector<int>& views,
@@ -148,7 +150,7 @@ std::vector<Vector3<scalar_t<C>>> orient_normals_to_views(std::vector<Vector3<sc
     }
     check_input(static_cast<std::size_t>(views[i]) < sensors.size(), "a point's view has no sensor position");
     const Eigen::Vector3d sight = sensors[static_cast<std::size_t>(views[i])] - point(cloud, i).template cast<double>();
-    if (normals[i].template cast<double>().dot(sight) < 0.0) normals[i] = -normals[i];
+    normals[i] = orient_towards(normals[i], sight);
   }
   return normals;
 }

@@ -1,17 +1,18 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// @file
-/// Normals of a cloud whose views are unknown, turned to agree with one another: signs spread along a minimum spanning
-/// tree of the neighbourhood graph, an edge costing 1 - |n_i . n_j| (Hoppe et al., SIGGRAPH 1992).
+/// Turns the normals of a cloud whose views are not known, so that they agree with one another: signs spread along a
+/// minimum spanning tree of the neighbor graph, in which an edge costs 1 - |n_i . n_j| (Hoppe et al., SIGGRAPH 1992).
 ///
-/// Where two bodies touch, their surfaces run side by side and an edge between them has the wrong sign. So an edge does
-/// not join two patches of which both know their outside (normals face away from a curved patch's centroid) and
-/// disagree.
+/// Where two bodies touch, their surfaces run side by side, and an edge between them would give one of them the wrong
+/// sign. The outside of a curved patch is known: there its normals face away from its centroid. So an edge does not
+/// join two patches if the outsides of both are known and disagree.
 ///
-/// Any frame, metres, radians. Cost: k nearest neighbours of every point and a sort of the O(k n) edges; 4 k + 12 k
-/// bytes a point.
+/// Any frame; metres, radians. Cost: the k nearest neighbors of every point and a sort of the O(k n) edges; 16 k bytes
+/// a point.
 #pragma once
 
-#include <agrisee/core/neighbor_lists.hpp>
+#include <agrisee/core/parameter_range.hpp>
+#include <agrisee/neighbors/neighbor_lists.hpp>
 
 #include <cmath>
 
@@ -19,31 +20,26 @@ namespace agrisee {
 
 /// Parameters of orient_normals_consistently.
 struct OrientationParameters {
-  int neighbors = 12;            ///< edges go from a point to this many nearest others
-  double max_distance = 0.01;    ///< that are at most this far (m)
-  double max_angle = deg(60.0);  ///< and whose normals, but for their sign, differ by at most this (rad): signs do not
-                                 ///< spread across a crease, where they would be guesses
+  int neighbors = 12;            ///< edges lead from a point to this many nearest others
+  double max_distance = 0.01;    ///< edges are at most this long (m)
+  double max_angle = deg(60.0);  ///< and join normals that, up to their sign, differ by at most this (rad): across a
+                                 ///< crease signs would be guesses
 
-  /// @throws ParameterError naming the field that is out of range
-  void check() const {
-    check_parameter(neighbors >= 1, "neighbors", "at least 1", neighbors);
-    check_parameter(std::isfinite(max_distance) && max_distance > 0, "max_distance", "positive and finite",
-                    max_distance);
-    check_parameter(max_angle >= 0 && max_angle <= kPi / 2, "max_angle", "from 0 to pi/2", max_angle);
-  }
+  /// @throws FieldError for the first field that is out of its range
+  void check() const { check_fields(*this); }
 
-  /// f(name, field) for every field.
+  /// f(name, field, range) for every field.
   template <typename P, typename F>
   static void fields(P& p, F&& f) {
-    f("neighbors", p.neighbors);
-    f("max_distance", p.max_distance);
-    f("max_angle", p.max_angle);
+    f("neighbors", p.neighbors, Range::at_least(1));
+    f("max_distance", p.max_distance, Range::positive());
+    f("max_angle", p.max_angle, Range::between(0.0, {kPi / 2, "pi/2"}));
   }
 };
 
 namespace detail {
 
-/// Sums over the points of a patch from which it follows whether its normals face away from its centroid.
+/// Sums over the points of a patch that tell whether its normals face away from its centroid.
 struct PatchSums {
   double count = 0.0;
   Eigen::Vector3d points = Eigen::Vector3d::Zero(), normals = Eigen::Vector3d::Zero();
@@ -63,17 +59,17 @@ struct PatchSums {
     const double spread = std::sqrt(std::max(0.0, squares / count - centroid.squaredNorm()));
     return spread > 0.0 ? (flux - normals.dot(centroid)) / (count * spread) : 0.0;
   }
-  /// Whether it is clear which side is outside.
+  /// Whether it is clear which side is the outside.
   bool decided() const { return count >= 20.0 && std::abs(outwardness()) > 0.1; }
 };
 
-/// Disjoint patches of points, each of which knows whether its sign differs from that of the patch's first point.
+/// Disjoint patches of points. Each point knows whether its sign differs from that of its patch's first point.
 class Patches {
  public:
   explicit Patches(std::vector<PatchSums> points) : parent_(points.size()), flip_(points.size(), 0), sums_(points) {
     for (std::size_t i = 0; i < parent_.size(); ++i) parent_[i] = i;
   }
-  /// First point of i's patch; afterwards `differs(i)` is relative to it.
+  /// The first point of i's patch.
   std::size_t root(std::size_t i) {
     std::size_t top = i;
     char flip = 0;
@@ -91,11 +87,13 @@ class Patches {
     }
     return top;
   }
+  /// Whether the sign of point i differs from that of its patch's first point; call root(i) before.
   bool differs(std::size_t i) const { return flip_[i] != 0; }
+  /// The sums of a patch, given its first point.
   const PatchSums& sums(std::size_t root) const { return sums_[root]; }
 
-  /// Join the patches of a and b such that the signs of a and b differ or not; unless both know their outside and one
-  /// of them would have to be turned inside out.
+  /// Join the patches of a and b, unless the outsides of both are known and one would be turned inside out.
+  /// @param differ whether a and b have different signs
   void join(std::size_t a, std::size_t b, bool differ) {
     const std::size_t ra = root(a), rb = root(b);
     if (ra == rb) return;
@@ -115,37 +113,29 @@ class Patches {
   std::vector<PatchSums> sums_;  // at roots
 };
 
-}  // namespace detail
+/// An edge of the neighbor graph; a < b.
+template <typename S>
+struct OrientationEdge {
+  S cost;
+  Index a, b;
+  bool operator<(const OrientationEdge& e) const {
+    return cost != e.cost ? cost < e.cost : a != e.a ? a < e.a : b < e.b;
+  }
+};
 
-/// The normals, turned so that neighbours agree and that each connected patch faces away from its own centroid:
-/// outwards for whole bodies and for the convex caps that are seen of them. A patch that has no such side (a plane)
-/// keeps the sign of its first point. Normals that are zero stay so.
-/// @param normals one per point, unit; zero where unknown
-/// @param cloud points (m)
-/// @param params see their struct
-/// @param lists neighbour lists of `cloud` of more than `params.neighbors` points (the point itself is one of them);
-///   shorter ones are used as far as they reach
-/// @param threads the result does not depend on it
-/// @throws ParameterError for a bad parameter, InputError when sizes disagree
-template <typename C>
-std::vector<Vector3<scalar_t<C>>> orient_normals_consistently(std::vector<Vector3<scalar_t<C>>> normals, const C& cloud,
-                                                              const OrientationParameters& params,
-                                                              const NeighborLists& lists, int threads = 1) {
+/// The edges of the neighbor graph, cheapest first.
+/// @param known known(i) tells whether point i has a place and a normal
+template <typename C, typename Known>
+std::vector<OrientationEdge<scalar_t<C>>> orientation_edges(const std::vector<Vector3<scalar_t<C>>>& normals,
+                                                            const C& cloud, const OrientationParameters& parameters,
+                                                            const NeighborLists& lists, int threads,
+                                                            const Known& known) {
   using S = scalar_t<C>;
-  params.check();
+  using Edge = OrientationEdge<S>;
   const std::size_t n = agrisee::size(cloud);
-  check_input(normals.size() == n && lists.size() == n,
-              "orienting normals needs one a point, and the cloud's neighbours");
-  const auto known = [&](std::size_t i) { return is_finite(point(cloud, i)) && normals[i].squaredNorm() > 0; };
-  const S cos_min = static_cast<S>(std::cos(params.max_angle));
-
-  struct Edge {
-    S cost;
-    Index a, b;
-    bool operator<(const Edge& e) const { return cost != e.cost ? cost < e.cost : a != e.a ? a < e.a : b < e.b; }
-  };
-  const auto k = std::min(static_cast<std::size_t>(params.neighbors), lists.k);
-  const double reach_sq = params.max_distance * params.max_distance;
+  const S cos_min = static_cast<S>(std::cos(parameters.max_angle));
+  const auto k = std::min(static_cast<std::size_t>(parameters.neighbors), lists.k);
+  const double reach_sq = parameters.max_distance * parameters.max_distance;
   // f(j) for the k nearest others of i.
   const auto others = [&](std::size_t i, auto&& f) {
     std::size_t left = k;
@@ -154,9 +144,9 @@ std::vector<Vector3<scalar_t<C>>> orient_normals_consistently(std::vector<Vector
       if (j != i && left > 0) --left, f(j);
     });
   };
-  std::vector<Edge> edges;  // a cost of 2 marks no edge
+  std::vector<Edge> edges;  // k a point; a cost of 2 marks those that are no edge
   edges.reserve(n * k);
-  while (edges.size() < n * k) {  // many: by parts, to be stopped between them
+  while (edges.size() < n * k) {  // part by part, so that it can be cancelled in between
     throw_if_cancelled();
     edges.resize(std::min(n * k, edges.size() + (std::size_t(1) << 18)), Edge{S(2), 0, 0});
   }
@@ -167,17 +157,24 @@ std::vector<Vector3<scalar_t<C>>> orient_normals_consistently(std::vector<Vector
       if (!known(j)) return;
       const S cosine = std::abs(normals[i].dot(normals[j]));
       if (double(distance_sq<S>(point(cloud, i), point(cloud, j))) > reach_sq || cosine < cos_min) return;
-      bool twice = false;  // what both list is the smaller index's edge
+      bool twice = false;  // an edge that both points list is entered for the smaller index
       if (j < i) others(j, [&](std::size_t l) { twice = twice || l == i; });
       if (!twice)
         edges[next++] = {S(1) - cosine, static_cast<Index>(std::min(i, j)), static_cast<Index>(std::max(i, j))};
     });
   });
   edges.erase(std::remove_if(edges.begin(), edges.end(), [](const Edge& e) { return e.cost == S(2); }), edges.end());
-  detail::sort_cancellably(edges.begin(), edges.end());
+  sort_cancellably(edges.begin(), edges.end());
+  return edges;
+}
 
-  std::vector<detail::PatchSums> points(n);
-  Eigen::Vector3d origin = Eigen::Vector3d::Zero();  // among the points, for the sake of the digits
+/// Every known point as a patch of its own.
+template <typename C, typename Known>
+std::vector<PatchSums> single_points(const std::vector<Vector3<scalar_t<C>>>& normals, const C& cloud,
+                                     const Known& known) {
+  const std::size_t n = agrisee::size(cloud);
+  std::vector<PatchSums> points(n);
+  Eigen::Vector3d origin = Eigen::Vector3d::Zero();  // the first known point; sums about it lose fewer digits
   for (std::size_t i = n; i-- > 0;)
     if (known(i)) origin = point(cloud, i).template cast<double>();
   for (std::size_t i = 0; i < n; ++i) {
@@ -187,9 +184,36 @@ std::vector<Vector3<scalar_t<C>>> orient_normals_consistently(std::vector<Vector
     const Eigen::Vector3d normal = normals[i].template cast<double>();
     points[i] = {1.0, p, normal, normal.dot(p), p.squaredNorm()};
   }
+  return points;
+}
+
+}  // namespace detail
+
+/// The normals, turned so that neighbors agree and that each connected patch faces away from its own centroid: outwards
+/// for whole bodies and for the convex parts of them that are seen. A patch without such a side (a plane) keeps the
+/// sign of its first point. Normals that are zero stay so.
+/// @param normals one unit normal per point; zero if unknown
+/// @param cloud points (m)
+/// @param parameters see their struct
+/// @param lists neighbor lists of `cloud`, of more than `parameters.neighbors` points as the point itself is one of
+/// them;
+///   shorter ones are used as far as they reach
+/// @param threads the result does not depend on it
+/// @throws ParameterError for a bad parameter, InputError if sizes disagree
+template <typename C>
+std::vector<Vector3<scalar_t<C>>> orient_normals_consistently(std::vector<Vector3<scalar_t<C>>> normals, const C& cloud,
+                                                              const OrientationParameters& parameters,
+                                                              const NeighborLists& lists, int threads = 1) {
+  parameters.check();
+  const std::size_t n = agrisee::size(cloud);
+  check_input(normals.size() == n && lists.size() == n,
+              "orienting normals needs one a point, and the cloud's neighbor lists");
+  const auto known = [&](std::size_t i) { return is_finite(point(cloud, i)) && normals[i].squaredNorm() > 0; };
+  const auto edges = detail::orientation_edges(normals, cloud, parameters, lists, threads, known);
+  auto points = detail::single_points(normals, cloud, known);
   throw_if_cancelled();
   detail::Patches patches(std::move(points));
-  for (const Edge& e : edges) {  // Kruskal: an edge inside a patch changes nothing
+  for (const auto& e : edges) {  // Kruskal's algorithm: an edge inside a patch changes nothing
     if (((&e - edges.data()) & 0xFFFF) == 0) throw_if_cancelled();
     const auto a = static_cast<std::size_t>(e.a), b = static_cast<std::size_t>(e.b);
     patches.join(a, b, normals[a].dot(normals[b]) < 0);
@@ -202,14 +226,14 @@ std::vector<Vector3<scalar_t<C>>> orient_normals_consistently(std::vector<Vector
   return normals;
 }
 
-/// The same with lists made for the call.
+/// The same with neighbor lists made for the call.
 template <typename C>
 std::vector<Vector3<scalar_t<C>>> orient_normals_consistently(std::vector<Vector3<scalar_t<C>>> normals, const C& cloud,
-                                                              const OrientationParameters& params = {},
+                                                              const OrientationParameters& parameters = {},
                                                               int threads = 1) {
-  params.check();
-  const NeighborLists lists = nearest_neighbors(cloud, static_cast<std::size_t>(params.neighbors) + 1, threads);
-  return orient_normals_consistently(std::move(normals), cloud, params, lists, threads);
+  parameters.check();
+  const NeighborLists lists = nearest_neighbors(cloud, static_cast<std::size_t>(parameters.neighbors) + 1, threads);
+  return orient_normals_consistently(std::move(normals), cloud, parameters, lists, threads);
 }
 
 }  // namespace agrisee

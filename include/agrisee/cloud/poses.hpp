@@ -1,25 +1,25 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// @file
-/// Where each fruit is and how it hangs: centroids, deviations and pose frames (paper, "Localization").
+/// Where each fruit is and how it hangs: centroids, deviations and pose frames ([1], 3.2.4, eq. 16, alg. 3).
 /// Metres, world frame. Cost: linear in the points.
 #pragma once
 
 #include <agrisee/cloud/fit.hpp>
 #include <agrisee/cloud/parameters.hpp>
-#include <agrisee/core/grid.hpp>
 #include <agrisee/core/pose.hpp>
+#include <agrisee/neighbors/grid.hpp>
 
 #include <limits>
 
 namespace agrisee {
 
-/// Mean and standard deviation per axis of some points (m).
+/// Mean of some points and their standard deviation along each axis.
 struct Centroid {
   Eigen::Vector3d mean = Eigen::Vector3d::Zero();   ///< m
-  Eigen::Vector3d sigma = Eigen::Vector3d::Zero();  ///< divided by n
+  Eigen::Vector3d sigma = Eigen::Vector3d::Zero();  ///< m; the variance is the mean square, not divided by n - 1
 };
 
-/// Of the points `indices` of a cloud; zero when there are none.
+/// The centroid of the points `indices` of a cloud; zero if there are none.
 template <typename C>
 Centroid centroid(const C& cloud, const Indices& indices) {
   Centroid out;
@@ -37,19 +37,8 @@ Centroid centroid(const C& cloud, const Indices& indices) {
   return out;
 }
 
-/// Indices of the points of each label 1..count; element 0 holds label 1.
-inline std::vector<Indices> indices_by_label(const Labels& labels) {
-  std::vector<Indices> out;
-  for (std::size_t i = 0; i < labels.size(); ++i) {
-    if (labels[i] <= 0) continue;
-    const auto l = static_cast<std::size_t>(labels[i]);
-    if (out.size() < l) out.resize(l);
-    out[l - 1].push_back(static_cast<Index>(i));
-  }
-  return out;
-}
-
-/// Index of the highest point (largest z in world; ties: the first), or -1 for an empty cloud.
+/// Index of the highest point (largest z in world; of equally high ones the first), or -1 for a cloud without finite
+/// points.
 template <typename C>
 Index highest_point(const C& cloud) {
   Index best = -1;
@@ -60,9 +49,9 @@ Index highest_point(const C& cloud) {
   return best;
 }
 
-/// The axes (columns x, y, z) of a frame whose z points along `z` and whose x points towards `x_hint`, made orthogonal
-/// to z; y completes a right-handed frame. Directions of no length fall back: z to up, x to any direction at right
-/// angles.
+/// The axes (columns x, y, z) of a right-handed frame whose z points along `z` and whose x points along that part of
+/// `x_hint` that is orthogonal to z. If `z` has no length, z points up; if that part of `x_hint` has none, x is some
+/// direction orthogonal to z.
 inline Eigen::Matrix3d frame_from_z_and_x(Eigen::Vector3d z, const Eigen::Vector3d& x_hint) {
   z = z.norm() > 1e-12 ? z.normalized() : Eigen::Vector3d(Eigen::Vector3d::UnitZ());
   Eigen::Vector3d x = x_hint - z * z.dot(x_hint);
@@ -72,7 +61,8 @@ inline Eigen::Matrix3d frame_from_z_and_x(Eigen::Vector3d z, const Eigen::Vector
   return frame;
 }
 
-/// The densest part of some points: the one with the most others of them within `radius` (m; ties: the lowest index).
+/// The one of the points `indices` (m) that has the most others of them within `radius` (m); of several the first. Zero
+/// if there are no points.
 template <typename S>
 Eigen::Vector3d densest_point(const PointCloud<S>& cloud, const Indices& indices, double radius) {
   if (indices.empty()) return Eigen::Vector3d::Zero();
@@ -90,8 +80,13 @@ Eigen::Vector3d densest_point(const PointCloud<S>& cloud, const Indices& indices
   return part.points[best].template cast<double>();
 }
 
-/// The paper's pose frame: origin at the centroid (not returned), z towards the highest point of the whole cloud, x
-/// towards the densest part (within `radius`, m) of the fruit's points, y completing a right-handed frame.
+/// The pose frame of [1]: origin at the centroid (not returned), z towards the highest point of the whole cloud, x
+/// towards the densest part of the fruit's points, y completing a right-handed frame.
+/// @param cloud points (m, world)
+/// @param indices the fruit's points
+/// @param mean their centroid (m)
+/// @param radius see densest_point (m)
+/// @return the axes as columns x, y, z
 template <typename S>
 Eigen::Matrix3d paper_pose_frame(const PointCloud<S>& cloud, const Indices& indices, const Eigen::Vector3d& mean,
                                  double radius = 0.006) {
@@ -102,25 +97,26 @@ Eigen::Matrix3d paper_pose_frame(const PointCloud<S>& cloud, const Indices& indi
   return frame_from_z_and_x(z, densest_point(cloud, indices, radius) - mean);
 }
 
-/// A line through a body's centre, and how well it is known.
+/// A line through a body's center, and how well its direction is known.
 struct BodyAxis {
   Eigen::Vector3d direction = Eigen::Vector3d::UnitZ();       ///< unit; its sign means nothing
-  double variance = std::numeric_limits<double>::infinity();  ///< of its direction (rad2)
+  double variance = std::numeric_limits<double>::infinity();  ///< of the direction (rad2)
 };
 
-/// The axis about which a body is closest to round: that of the semi-axis that stands apart from the other two. Its
-/// variance is that of the fit, and grows as the other two differ; a sphere, and a body of unknown covariance, has
-/// none.
+/// The axis about which a body is closest to round: the semi-axis whose length differs most from the other two. Its
+/// variance is that of the fit, and grows with the difference between the other two. It is infinite for a sphere and
+/// for a body whose covariance is not known.
 inline BodyAxis symmetry_axis(const EllipsoidFit& fit) {
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(fit.body.A);
-  const Eigen::Vector3d& inverse = solver.eigenvalues();  // of the semi-axes, ascending
+  const Eigen::Vector3d& inverse = solver.eigenvalues();  // inverse semi-axes, ascending
   const double below = inverse[1] - inverse[0], above = inverse[2] - inverse[1];
   const int apart = above >= below ? 2 : 0;
   const double gap = std::max(below, above);
   if (!(gap > 1e-9 * inverse[2]) || !(fit.shape_covariance.trace() > 0.0)) return {};  // a sphere, or not measured
   BodyAxis axis;
   axis.direction = solver.eigenvectors().col(apart);
-  double tilt = 0.0;  // an eigenvector turns towards another by their entry of A over the gap
+  double tilt =
+      0.0;  // (rad2): an eigenvector turns towards another by their entry of A over the gap of the eigenvalues
   for (int other = 0; other < 3; ++other) {
     if (other == apart) continue;
     const Eigen::Vector3d u = axis.direction, v = solver.eigenvectors().col(other);
@@ -135,13 +131,13 @@ inline BodyAxis symmetry_axis(const EllipsoidFit& fit) {
   return axis;
 }
 
-/// Direction (unit, world) from a fruit's centre towards its calyx, from what can be measured: fruit are round about
-/// their growth axis, so the body tells the line; the points that belong to no fruit and lie just outside the body
-/// (calyx, pedicel), which weigh by their nearness, and gravity, a weak prior, tell which way, and more where the body
-/// is a sphere.
+/// Direction (unit, world) from a fruit's center towards its calyx. Fruit are round about their growth axis, so the
+/// fitted body gives the line, except where it is a sphere. The direction along that line follows from the points just
+/// outside the body that belong to no fruit (calyx, pedicel; the nearer, the more they weigh) and from gravity, a weak
+/// prior; where the body is a sphere, these two give the whole direction.
 /// @param cloud points (m, world)
-/// @param labels 0: of no fruit
-/// @param fit of the fruit's body
+/// @param labels one per point; 0: the point belongs to no fruit
+/// @param fit the fruit's body
 /// @param parameters see their struct
 template <typename S>
 Eigen::Vector3d growth_axis(const PointCloud<S>& cloud, const Labels& labels, const EllipsoidFit& fit,
@@ -158,14 +154,14 @@ Eigen::Vector3d growth_axis(const PointCloud<S>& cloud, const Labels& labels, co
     if (d < -0.3 * r || d > parameters.shell * r) continue;
     const double near = 1.0 - std::max(d, 0.0) / (parameters.shell * r);
     const Eigen::Vector3d u = (p - body.center).normalized();
-    const double w = near * near * (1.0 + 0.8 * u.z());  // what hangs, hangs from above
+    const double w = near * near * (1.0 + 0.8 * u.z());  // the stem of a hanging fruit is above it
     sum += w * u;
     weights += w;
   }
   Eigen::Vector3d axis = parameters.up_weight * Eigen::Vector3d::UnitZ();
   if (weights > 0.0) axis += std::min(1.0, weights / 10.0) * sum / weights;
   const BodyAxis round = symmetry_axis(fit);
-  constexpr double kLeastVariance = 1e-3;  // rad2: no fruit is round to better than 2 degrees
+  constexpr double kLeastVariance = 1e-3;  // rad2: no fruit's axis is known to better than 2 degrees
   if (std::isfinite(round.variance)) {
     const double certainty = 1.0 / (std::max(round.variance, kLeastVariance) * parameters.stem_certainty);
     const double up = axis.norm() > 1e-9 ? round.direction.dot(axis) : round.direction.z();

@@ -1,32 +1,36 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// @file
-/// Region growing on normals (paper, "Segmentation via Region Growing" and its algorithm): from a seed, a region takes
-/// every neighbour nearer than r_v whose normal makes an angle below theta_th with the normal of the point that grows.
+/// Region growing on normals ([1], 2.2.3, eq. 10 to 13): a region starts from a seed
+/// and takes every neighbor that is nearer than r_v and whose normal makes an angle below theta_th with the normal of
+/// the point that grows.
 ///
-/// Any frame, metres, radians. Cost: a grid and a visit or two of each point's neighbours, O(n neighbours).
+/// Any frame; metres, radians. Cost: a grid and one or two visits of each point's neighbors, O(n neighbors).
 ///
-/// With the paper's rule the regions are the connected parts of a graph, so the order of growth does not matter.
-/// Options give the rule of PCL's RegionGrowing (Rabbani et al., 2006): k nearest neighbours (a directed graph, in
-/// which earlier seeds win), seeds by rising curvature, unsigned normals, and growth only from points of low curvature.
+/// With the rule of [1] the regions are the connected parts of a graph, so the order of growth does not matter.
+/// Options give the rule of PCL's RegionGrowing (Rabbani et al., 2006): the k nearest neighbors (a directed graph, in
+/// which earlier seeds win), seeds by rising curvature, normals without sign, and growth only from points of low
+/// curvature.
 #pragma once
 
 #include <agrisee/cloud/connected_regions.hpp>
+#include <agrisee/cloud/labels.hpp>
 #include <agrisee/cloud/nearest_regions.hpp>
-#include <agrisee/core/neighbor_lists.hpp>
+#include <agrisee/neighbors/neighbor_lists.hpp>
 
 namespace agrisee {
 
 namespace detail {
 
-/// Grow from seed to seed; `neighbors(i, offer)` calls offer(j) for the neighbours of point i.
+/// Grow one region after another, each from its seed.
+/// @param neighbors neighbors(i, offer) calls offer(j) for the neighbors j of point i
 template <typename C, typename Neighbors>
 Labels grow_from_seeds(const C& cloud, const std::vector<Vector3<scalar_t<C>>>& normals,
-                       const RegionGrowingParameters& params, const std::vector<scalar_t<C>>& curvatures,
+                       const RegionGrowingParameters& parameters, const std::vector<scalar_t<C>>& curvatures,
                        Neighbors&& neighbors) {
   using S = scalar_t<C>;
   const std::size_t n = agrisee::size(cloud);
-  const bool gated = params.max_curvature < 1.0 / 3.0;
-  const S cos_min = static_cast<S>(std::cos(params.smoothness));
+  const bool gated = parameters.max_curvature < 1.0 / 3.0;
+  const S cos_min = static_cast<S>(std::cos(parameters.smoothness));
 
   constexpr int kFree = 0;
   constexpr int kNever = -1;
@@ -36,7 +40,7 @@ Labels grow_from_seeds(const C& cloud, const std::vector<Vector3<scalar_t<C>>>& 
 
   int regions = 0;
   Indices queue;
-  for (const Index seed : seed_order<S>(n, params.seeds_by_curvature, curvatures)) {
+  for (const Index seed : seed_order<S>(n, parameters.seeds_by_curvature, curvatures)) {
     if (labels[static_cast<std::size_t>(seed)] != kFree) continue;
     labels[static_cast<std::size_t>(seed)] = ++regions;
     queue.assign(1, seed);
@@ -48,44 +52,45 @@ Labels grow_from_seeds(const C& cloud, const std::vector<Vector3<scalar_t<C>>>& 
         const auto j = static_cast<std::size_t>(index);
         if (labels[j] != kFree) return;
         const Vector3<S>& other = normals[j];
-        if (!(cosine(normal.x(), normal.y(), normal.z(), other.x(), other.y(), other.z(), params.unsigned_normals) >
+        if (!(cosine(normal.x(), normal.y(), normal.z(), other.x(), other.y(), other.z(), parameters.unsigned_normals) >
               cos_min))
           return;
         labels[j] = regions;
-        if (!gated || static_cast<double>(curvatures[j]) <= params.max_curvature) queue.push_back(index);
+        if (!gated || static_cast<double>(curvatures[j]) <= parameters.max_curvature) queue.push_back(index);
       });
     }
   }
   std::replace(labels.begin(), labels.end(), kNever, 0);
-  drop_small_regions(labels, regions, params.min_size);
+  drop_small(labels, parameters.min_size);
   return labels;
 }
 
 }  // namespace detail
 
-/// One label per point: regions from 1 in order of creation, 0 = residual. The cloud is not changed.
+/// Grow regions, looking up neighbors in a search that exists already.
 ///
-/// Points that are not finite, or whose normal is zero or not finite, never join.
+/// Points that are not finite, or whose normal is zero or not finite, never join a region.
 /// @param cloud points (m), any cloud type
-/// @param normals one unit normal a point, all turned to the same side unless `unsigned_normals`
-/// @param params see their struct
+/// @param normals one unit normal per point, all turned to the same side unless `unsigned_normals`
+/// @param parameters see their struct
 /// @param search a KdTree or Grid over `cloud`
-/// @param curvatures one finite surface variation a point where the parameters ask for it (estimate_normals gives them)
-/// @throws ParameterError for a bad parameter, InputError when sizes disagree or curvatures are missing
+/// @param curvatures one surface variation per point, if `parameters` ask for it (estimate_normals gives them)
+/// @return one label per point: regions from 1 in the order of their seeds, 0 for points of no region (the residual)
+/// @throws ParameterError for a bad parameter, InputError if sizes disagree or curvatures are missing
 template <typename C, typename Search>
 Labels grow_regions(const C& cloud, const std::vector<Vector3<scalar_t<C>>>& normals,
-                    const RegionGrowingParameters& params, const Search& search,
+                    const RegionGrowingParameters& parameters, const Search& search,
                     const std::vector<scalar_t<C>>& curvatures = {}) {
   using S = scalar_t<C>;
-  params.check();
+  parameters.check();
   const std::size_t n = agrisee::size(cloud);
   check_input(search.size() == n, "the search and the cloud differ in size");
-  detail::check_growing(cloud, normals, params, curvatures);
-  const S radius = static_cast<S>(params.radius), radius_sq = radius * radius;
+  detail::check_growing(cloud, normals, parameters, curvatures);
+  const S radius = static_cast<S>(parameters.radius), radius_sq = radius * radius;
   Neighbors<S> found;
-  return detail::grow_from_seeds(cloud, normals, params, curvatures, [&](std::size_t i, auto&& offer) {
-    if (params.neighbors > 0) {
-      search.knn(point(cloud, i), static_cast<std::size_t>(params.neighbors), found);
+  return detail::grow_from_seeds(cloud, normals, parameters, curvatures, [&](std::size_t i, auto&& offer) {
+    if (parameters.neighbors > 0) {
+      search.knn(point(cloud, i), static_cast<std::size_t>(parameters.neighbors), found);
       for (const auto& neighbor : found) offer(neighbor.index);
     } else {
       search.visit(point(cloud, i), radius, [&](Index index, S d_sq) {
@@ -95,41 +100,35 @@ Labels grow_regions(const C& cloud, const std::vector<Vector3<scalar_t<C>>>& nor
   });
 }
 
-/// The same with neighbour lists that are there already; their k stands for `params.neighbors`.
+/// Grow regions over neighbor lists that exist already; their k replaces `parameters.neighbors`.
 template <typename C>
 Labels grow_regions(const C& cloud, const std::vector<Vector3<scalar_t<C>>>& normals,
-                    const RegionGrowingParameters& params, const NeighborLists& lists,
+                    const RegionGrowingParameters& parameters, const NeighborLists& lists,
                     const std::vector<scalar_t<C>>& curvatures = {}) {
-  params.check();
-  check_input(lists.size() == agrisee::size(cloud), "the neighbour lists and the cloud differ in size");
-  detail::check_growing(cloud, normals, params, curvatures);
-  return detail::grow_from_seeds(cloud, normals, params, curvatures,
+  parameters.check();
+  check_input(lists.size() == agrisee::size(cloud), "the neighbor lists and the cloud differ in size");
+  detail::check_growing(cloud, normals, parameters, curvatures);
+  return detail::grow_from_seeds(cloud, normals, parameters, curvatures,
                                  [&](std::size_t i, auto&& offer) { lists.visit(i, offer); });
 }
 
-/// The same without a search; several times as fast.
+/// Grow regions without a ready-made search; several times as fast as with one, and with the same result.
+/// @param threads the result does not depend on it
 template <typename C>
 Labels grow_regions(const C& cloud, const std::vector<Vector3<scalar_t<C>>>& normals,
-                    const RegionGrowingParameters& params = {}, const std::vector<scalar_t<C>>& curvatures = {},
+                    const RegionGrowingParameters& parameters = {}, const std::vector<scalar_t<C>>& curvatures = {},
                     int threads = 1) {
-  params.check();
-  detail::check_growing(cloud, normals, params, curvatures);
-  const bool all_grow = params.max_curvature >= 1.0 / 3.0;
-  if (all_grow && params.neighbors > 0) return detail::nearest_regions(cloud, normals, params, curvatures, threads);
-  if (all_grow) return detail::connected_regions(cloud, normals, params, curvatures, threads);
-  if (params.neighbors > 0)  // the order matters
-    return grow_regions(cloud, normals, params,
-                        nearest_neighbors(cloud, static_cast<std::size_t>(params.neighbors), threads), curvatures);
-  return grow_regions(cloud, normals, params, Grid<scalar_t<C>>(cloud, static_cast<scalar_t<C>>(params.radius)),
+  parameters.check();
+  detail::check_growing(cloud, normals, parameters, curvatures);
+  const bool all_grow = parameters.max_curvature >= 1.0 / 3.0;
+  if (all_grow && parameters.neighbors > 0)
+    return detail::nearest_regions(cloud, normals, parameters, curvatures, threads);
+  if (all_grow) return detail::connected_regions(cloud, normals, parameters, curvatures, threads);
+  if (parameters.neighbors > 0)  // some points do not grow: the order matters
+    return grow_regions(cloud, normals, parameters,
+                        nearest_neighbors(cloud, static_cast<std::size_t>(parameters.neighbors), threads), curvatures);
+  return grow_regions(cloud, normals, parameters, Grid<scalar_t<C>>(cloud, static_cast<scalar_t<C>>(parameters.radius)),
                       curvatures);
-}
-
-/// Indices of the points without a label (0), ascending: the paper's set U, to which DBSCAN is applied.
-inline Indices residual(const Labels& labels) {
-  Indices out;
-  for (std::size_t i = 0; i < labels.size(); ++i)
-    if (labels[i] == 0) out.push_back(static_cast<Index>(i));
-  return out;
 }
 
 }  // namespace agrisee

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// @file
-/// Evidence of free space, as the split asks for it.
+/// How the split asks for evidence of free space, without knowing what gives it (fuse/free_space.hpp does).
 #pragma once
 
 #include <functional>
@@ -9,8 +9,8 @@ namespace agrisee {
 
 struct Ellipsoid;
 
-/// Share (0..1) of a body's surface (cloud/fit.hpp) that sight lines have gone through; see plan/free_space.hpp. May be
-/// empty: unknown.
+/// The share (0 to 1) of a body's surface that sight lines have gone through: where the body, if it were there, would
+/// have stopped them. An empty function means that nothing is known.
 using SeenThrough = std::function<double(const Ellipsoid&)>;
 
 }  // namespace agrisee

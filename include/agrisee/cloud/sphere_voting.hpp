@@ -1,19 +1,21 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// @file
-/// Finds where the centres of round bodies may lie: every point votes along its inward normal.
+/// Finds where the centers of round bodies may lie: every point votes along its inward normal.
 ///
-/// A point p with outward normal n lies on a sphere of radius r about p - r n. The votes of all points for all radii in
-/// the expected range meet at the centres of spheres (a Hough transform, cf. Rabbani & van den Heuvel, 2005), however
-/// little of each shows and however they touch. Cost: linear in points times radii; memory linear in the votes.
+/// A point p with outward normal n lies on a sphere of radius r about p - r n. Every point votes for the centers of all
+/// radii in the expected range; the votes meet at the centers of spheres (a Hough transform, cf. Rabbani & van den
+/// Heuvel, 2005), even if little of each sphere is seen and spheres touch. Cost: linear in points times radii, and a
+/// sort of the votes; memory linear in the votes.
 #pragma once
 
 #include <agrisee/core/cancellation.hpp>
 #include <agrisee/core/cloud.hpp>
 #include <agrisee/core/error.hpp>
-#include <agrisee/core/random.hpp>
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <cstdint>
 
 namespace agrisee {
 
@@ -23,79 +25,98 @@ struct VotedCenter {
   double votes;            ///< points that voted for it
 };
 
-/// Local maxima of the votes for sphere centres, best first (ties: by position).
-/// @param cloud points with outward unit normals (zero normals do not vote)
-/// @param radius_min, radius_max expected radii (m), 0 < min <= max
-/// @param min_votes weaker maxima are left out
-/// @throws ParameterError; InputError when the cloud has no normals
-template <typename S>
-std::vector<VotedCenter> vote_for_centers(const PointCloud<S>& cloud, double radius_min, double radius_max,
-                                          double min_votes) {
-  check_parameter(radius_min > 0, "radius_min", "positive", radius_min);
-  check_parameter(radius_max >= radius_min && std::isfinite(radius_max), "radius_max", ">= radius_min", radius_max);
-  check_input(cloud.normals.size() == cloud.points.size(), "vote_for_centers: the cloud has no normals");
-  if (cloud.empty()) return {};
-  const double pitch = radius_min / 5.0;
-  const int steps = std::max(1, static_cast<int>(std::lround((radius_max - radius_min) / pitch)) + 1);
+namespace detail {
 
-  // Cells are packed into one integer; 21 bits an axis around the first finite point.
-  Eigen::Vector3d origin = Eigen::Vector3d::Zero();
-  for (const auto& p : cloud.points)
-    if (is_finite(p)) {
-      origin = p.template cast<double>();
-      break;
-    }
-  constexpr std::int64_t kHalf = 1 << 20;
-  const auto pack = [](std::int64_t x, std::int64_t y, std::int64_t z) {
+/// The cells that are voted for: a cell is packed into one integer, 21 bits an axis about the origin, z first.
+struct VoteGrid {
+  static constexpr std::int64_t kHalf = 1 << 20;
+  using Cell = Eigen::Matrix<std::int64_t, 3, 1>;
+
+  Eigen::Vector3d origin;  ///< the first finite point (m)
+  double pitch;            ///< edge length of a cell (m)
+
+  static std::uint64_t pack(std::int64_t x, std::int64_t y, std::int64_t z) {
     return (static_cast<std::uint64_t>(z + kHalf) << 42) | (static_cast<std::uint64_t>(y + kHalf) << 21) |
            static_cast<std::uint64_t>(x + kHalf);
-  };
+  }
+  static Cell unpack(std::uint64_t key) {
+    return {static_cast<std::int64_t>(key & 0x1FFFFF) - kHalf,
+            static_cast<std::int64_t>((key >> 21) & 0x1FFFFF) - kHalf, static_cast<std::int64_t>(key >> 42) - kHalf};
+  }
+};
+
+/// A cell and the number of its votes.
+struct VotedCell {
+  std::uint64_t key;
+  float votes;
+};
+
+/// The votes about a cell.
+struct VoteSum {
+  std::uint64_t key;       ///< of the cell
+  double votes;            ///< of the cell and its 26 neighbors
+  Eigen::Vector3d center;  ///< their mean place (m)
+};
+
+template <typename S>
+Eigen::Vector3d first_finite_point(const PointCloud<S>& cloud) {
+  for (const auto& p : cloud.points)
+    if (is_finite(p)) return p.template cast<double>();
+  return Eigen::Vector3d::Zero();
+}
+
+/// All votes as the packed cells they are for, ascending.
+template <typename S>
+std::vector<std::uint64_t> cast_votes(const PointCloud<S>& cloud, const VoteGrid& grid, double radius_min,
+                                      double radius_max) {
+  const int steps = std::max(1, static_cast<int>(std::lround((radius_max - radius_min) / grid.pitch)) + 1);
   std::vector<std::uint64_t> votes;
   votes.reserve(cloud.size() * static_cast<std::size_t>(steps));
-  const double limit = pitch * double(kHalf - 4) - radius_max;
+  const double limit = grid.pitch * double(VoteGrid::kHalf - 4) - radius_max;  // points beyond it do not vote
   for (std::size_t i = 0; i < cloud.size(); ++i) {
     if ((i & 0xFFF) == 0) throw_if_cancelled();
     if (!is_finite(cloud.points[i]) || !(cloud.normals[i].squaredNorm() > S(0.5))) continue;
-    const Eigen::Vector3d p = cloud.points[i].template cast<double>() - origin;
+    const Eigen::Vector3d p = cloud.points[i].template cast<double>() - grid.origin;
     if (p.cwiseAbs().maxCoeff() > limit) continue;
     const Eigen::Vector3d n = cloud.normals[i].template cast<double>();
     for (int s = 0; s < steps; ++s) {
-      const Eigen::Vector3d c = (p - (radius_min + pitch * s) * n) / pitch;
-      votes.push_back(pack(std::llround(c.x()), std::llround(c.y()), std::llround(c.z())));
+      const Eigen::Vector3d c = (p - (radius_min + grid.pitch * s) * n) / grid.pitch;
+      votes.push_back(VoteGrid::pack(std::llround(c.x()), std::llround(c.y()), std::llround(c.z())));
     }
   }
-  detail::sort_cancellably(votes.begin(), votes.end());
-  struct Cell {
-    std::uint64_t key;
-    float votes;
-  };
-  std::vector<Cell> cells;
+  sort_cancellably(votes.begin(), votes.end());
+  return votes;
+}
+
+/// The cells that have votes, ascending.
+inline std::vector<VotedCell> count_votes(const std::vector<std::uint64_t>& votes) {
+  std::vector<VotedCell> cells;
   for (std::size_t i = 0; i < votes.size();) {
     std::size_t j = i;
     while (j < votes.size() && votes[j] == votes[i]) ++j;
     cells.push_back({votes[i], static_cast<float>(j - i)});
     i = j;
   }
-  // A centre's votes spread over neighbouring cells: sum the 27 around each cell that could matter.
-  struct Sum {
-    std::uint64_t key;
-    double votes;
-    Eigen::Vector3d center;
-  };
-  std::vector<Sum> sums;
-  // The cells of the nine rows about a cell are consecutive in the list, and move forward as the cell does.
+  return cells;
+}
+
+/// A center's votes spread over neighboring cells: sum the 27 cells about each one that could have `min_votes` in all.
+/// @return the sums of at least `min_votes`, most votes first; equal ones in the order of their cells
+inline std::vector<VoteSum> sum_votes(const std::vector<VotedCell>& cells, const VoteGrid& grid, double min_votes) {
+  std::vector<VoteSum> sums;
+  // The 27 cells are nine rows of three. The cells of a row are consecutive in the list, and move forward in it as the
+  // cell does.
   std::array<std::size_t, 9> rows{};
-  for (const Cell& c : cells) {
+  for (const VotedCell& c : cells) {
     if (((&c - cells.data()) & 0xFFFF) == 0) throw_if_cancelled();
     if (double(c.votes) < min_votes / 27.0) continue;
     double total = 0.0;
     Eigen::Vector3d mean = Eigen::Vector3d::Zero();
-    const auto x = static_cast<std::int64_t>(c.key & 0x1FFFFF) - kHalf;
-    const auto y = static_cast<std::int64_t>((c.key >> 21) & 0x1FFFFF) - kHalf;
-    const auto z = static_cast<std::int64_t>(c.key >> 42) - kHalf;
+    const VoteGrid::Cell cell = VoteGrid::unpack(c.key);
+    const std::int64_t x = cell.x(), y = cell.y(), z = cell.z();
     for (std::size_t row = 0; row < 9; ++row) {
       const auto dy = static_cast<std::int64_t>(row % 3) - 1, dz = static_cast<std::int64_t>(row / 3) - 1;
-      const std::uint64_t first = pack(x - 1, y + dy, z + dz);
+      const std::uint64_t first = VoteGrid::pack(x - 1, y + dy, z + dz);
       std::size_t& at = rows[row];
       while (at < cells.size() && cells[at].key < first) ++at;
       for (std::size_t k = at; k < cells.size() && cells[k].key <= first + 2; ++k) {
@@ -105,13 +126,18 @@ std::vector<VotedCenter> vote_for_centers(const PointCloud<S>& cloud, double rad
                                     double(z + dz));
       }
     }
-    if (total >= min_votes) sums.push_back({c.key, total, origin + pitch * mean / total});
+    if (total >= min_votes) sums.push_back({c.key, total, grid.origin + grid.pitch * mean / total});
   }
-  std::sort(sums.begin(), sums.end(),
-            [](const Sum& a, const Sum& b) { return a.votes > b.votes || (a.votes == b.votes && a.key < b.key); });
+  std::sort(sums.begin(), sums.end(), [](const VoteSum& a, const VoteSum& b) {
+    return a.votes > b.votes || (a.votes == b.votes && a.key < b.key);
+  });
+  return sums;
+}
+
+/// The first of the sums, and every other that is at least `apart` (m) from those before it; at most 400.
+inline std::vector<VotedCenter> thin_out(const std::vector<VoteSum>& sums, double apart) {
   std::vector<VotedCenter> out;
-  const double apart = 0.6 * radius_min;
-  for (const Sum& s : sums) {
+  for (const VoteSum& s : sums) {
     if (((&s - sums.data()) & 0xFFF) == 0) throw_if_cancelled();
     const bool free = std::none_of(out.begin(), out.end(),
                                    [&](const VotedCenter& o) { return (o.center - s.center).norm() < apart; });
@@ -119,6 +145,27 @@ std::vector<VotedCenter> vote_for_centers(const PointCloud<S>& cloud, double rad
     if (out.size() >= 400) break;  // more would only be noise
   }
   return out;
+}
+
+}  // namespace detail
+
+/// Local maxima of the votes for sphere centers, best first (of equal ones, in the order of their position).
+/// @param cloud points (m) with outward unit normals; points with zero normals do not vote
+/// @param radius_min smallest expected radius (m), positive
+/// @param radius_max largest expected radius (m), at least `radius_min`
+/// @param min_votes weaker maxima are left out
+/// @throws ParameterError; InputError if the cloud has no normals; Cancelled
+template <typename S>
+std::vector<VotedCenter> vote_for_centers(const PointCloud<S>& cloud, double radius_min, double radius_max,
+                                          double min_votes) {
+  check_parameter(radius_min > 0, "radius_min", "positive", radius_min);
+  check_parameter(radius_max >= radius_min && std::isfinite(radius_max), "radius_max", ">= radius_min", radius_max);
+  check_input(cloud.normals.size() == cloud.points.size(), "vote_for_centers: the cloud has no normals");
+  if (cloud.empty()) return {};
+  const detail::VoteGrid grid{detail::first_finite_point(cloud), radius_min / 5.0};
+  const auto votes = detail::cast_votes(cloud, grid, radius_min, radius_max);
+  const auto sums = detail::sum_votes(detail::count_votes(votes), grid, min_votes);
+  return detail::thin_out(sums, 0.6 * radius_min);
 }
 
 }  // namespace agrisee

@@ -1,17 +1,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// @file
-/// From a cloud with normals to fruit: region growing, DBSCAN on the residual and, unless only the paper's two stages
-/// are wanted, bodies that compete for the points (paper, "Segmentation"; bodies.hpp).
+/// From a cloud with normals to fruit (instance segmentation): region growing, DBSCAN on the residual and, unless only
+/// these two stages of [1] (3.2.3, alg. 2) are wanted, bodies that compete for the points (bodies.hpp).
 ///
-/// The paper's stages alone give a label a region or cluster. With bodies, regions, clusters and voted centres propose,
-/// the bodies that best explain the cloud win, and points are labelled by the body on which they lie. Metres, any
-/// frame.
+/// With the two stages alone, each region or cluster becomes a label. With bodies, the regions, the clusters and the
+/// centers found by voting are proposals; the bodies that explain the cloud best win, and each point gets the label of
+/// the body on which it lies. Metres, any frame.
 #pragma once
 
 #include <agrisee/cloud/bodies.hpp>
 #include <agrisee/cloud/dbscan.hpp>
+#include <agrisee/cloud/labels.hpp>
 #include <agrisee/cloud/parameters.hpp>
-#include <agrisee/cloud/poses.hpp>
 #include <agrisee/cloud/region_growing.hpp>
 #include <agrisee/cloud/spacing.hpp>
 #include <agrisee/cloud/sphere_voting.hpp>
@@ -25,22 +25,25 @@ namespace agrisee {
 struct Split {
   Labels labels;                 ///< one per point: the fruit, 0 = none
   std::vector<FoundBody> found;  ///< one per fruit; without bodies only `found_by` is set
-  Labels regions;                ///< what region growing alone found
+  Labels regions;                ///< one per point: the region that region growing found, 0 = none
   std::size_t residual = 0;      ///< points that region growing left to DBSCAN
-  int regions_found = 0;         ///< instances from region growing
-  int clusters_found = 0;        ///< and from DBSCAN on its residual
+  int regions_found = 0;         ///< number of regions
+  int clusters_found = 0;        ///< number of clusters that DBSCAN found in the residual
 };
 
-/// What the paper's two stages run with on a certain cloud.
+/// Parameters of the two stages for a certain cloud.
 struct StageParameters {
   RegionGrowingParameters growing;  ///< first stage
   DbscanParameters clustering;      ///< second stage
-  std::size_t min_residual = 0;     ///< DBSCAN runs when the residual holds more points than this
+  std::size_t min_residual = 0;     ///< DBSCAN runs if the residual holds more points than this
   int min_cluster = 1;              ///< smaller clusters are noise
 };
 
-/// The stages' parameters for a cloud of such spacing (m, see estimate_spacing): as given, or derived from it where
-/// they are adaptive; none then for a cloud that has no spacing (no two different points).
+/// Parameters of the two stages for a cloud of a given spacing. If `parameters` are adaptive, lengths and sizes are
+/// derived from the spacing.
+/// @param spacing of the cloud (m), see estimate_spacing; used only if `parameters` are adaptive
+/// @param parameters see their struct
+/// @return empty if `parameters` are adaptive and the spacing is not positive (a cloud without two different points)
 inline std::optional<StageParameters> stages_for(double spacing, const SplitParameters& parameters) {
   StageParameters stages{parameters.growing, parameters.clustering, static_cast<std::size_t>(parameters.min_residual),
                          1};
@@ -57,37 +60,56 @@ inline std::optional<StageParameters> stages_for(double spacing, const SplitPara
   return stages;
 }
 
-/// Drop labels of fewer than `least` points and number the others anew from 1 in their old order.
-/// @return the largest label left
-inline int drop_small(Labels& labels, int least) {
-  std::vector<int> sizes(1, 0);
-  for (int c : labels) {
-    if (static_cast<std::size_t>(c) >= sizes.size()) sizes.resize(static_cast<std::size_t>(c) + 1, 0);
-    ++sizes[static_cast<std::size_t>(c)];
-  }
-  std::vector<int> renumbered(sizes.size(), 0);
-  int largest = 0;
-  for (std::size_t c = 1; c < sizes.size(); ++c)
-    if (sizes[c] >= least) renumbered[c] = ++largest;
-  for (int& c : labels) c = renumbered[static_cast<std::size_t>(c)];
-  return largest;
-}
-
 namespace detail {
 
-/// Who found a body: the stage one of whose segments is mostly this body, and makes up most of it.
-inline std::string found_by(const Indices& points, const Labels& segments, const std::vector<std::size_t>& sizes,
-                            int first_cluster) {
+/// The segments that the two stages find: regions first, then clusters.
+struct Segments {
+  Labels labels;                 ///< one per point, from 1, 0 = none
+  std::vector<Indices> members;  ///< points of each segment
+  int first_cluster = 1;         ///< segments from this label on are clusters
+
+  /// The stage that found the segment with this label.
+  const char* found_by(std::size_t label) const {
+    return static_cast<int>(label) < first_cluster ? "region_growing" : "dbscan";
+  }
+};
+
+/// Run region growing, then DBSCAN on what it leaves.
+/// @param out receives the regions and the counts
+template <typename S>
+Segments find_segments(const PointCloud<S>& cloud, const StageParameters& stages, int threads, Split& out) {
+  out.regions = grow_regions(cloud, cloud.normals, stages.growing, {}, threads);
+  out.regions_found = *std::max_element(out.regions.begin(), out.regions.end());
+  const Indices rest = residual(out.regions);
+  out.residual = rest.size();
+  Segments segments;
+  segments.labels = out.regions;
+  if (rest.size() > stages.min_residual) {
+    Labels clusters = dbscan(select(cloud, rest), stages.clustering, threads);
+    out.clusters_found = drop_small(clusters, stages.min_cluster);
+    for (std::size_t i = 0; i < rest.size(); ++i)
+      if (clusters[i] > 0) segments.labels[static_cast<std::size_t>(rest[i])] = out.regions_found + clusters[i];
+  }
+  segments.first_cluster = out.regions_found + 1;
+  segments.members = indices_by_label(segments.labels);
+  return segments;
+}
+
+/// Which stage found a body: that of the segment to which most of its points belong, if that is at least half of its
+/// points and at least half of the segment's; otherwise the vote for centers.
+/// @param points of the body
+/// @param sizes number of points of each segment, by label; element 0 is not used
+inline std::string found_by(const Indices& points, const Segments& segments, const std::vector<std::size_t>& sizes) {
   std::vector<std::size_t> votes(sizes.size(), 0);
-  for (Index i : points) ++votes[static_cast<std::size_t>(segments[static_cast<std::size_t>(i)])];
+  for (Index i : points) ++votes[static_cast<std::size_t>(segments.labels[static_cast<std::size_t>(i)])];
   std::size_t best = 0;
   for (std::size_t s = 1; s < votes.size(); ++s)
     if (best == 0 || votes[s] > votes[best]) best = s;
   if (best == 0 || 2 * votes[best] < points.size() || 2 * votes[best] < sizes[best]) return "sphere_voting";
-  return static_cast<int>(best) < first_cluster ? "region_growing" : "dbscan";
+  return segments.found_by(best);
 }
 
-/// The distance from a voted centre at which most points face away from it (m), 0 when there are none.
+/// The distance from a voted center at which most points face away from it (m); 0 if there are none.
 template <typename S>
 double likely_radius(const PointCloud<S>& cloud, const Grid<S>& grid, const Eigen::Vector3d& center,
                      const BodyParameters& parameters) {
@@ -111,10 +133,10 @@ double likely_radius(const PointCloud<S>& cloud, const Grid<S>& grid, const Eige
   return best == 0 ? 0.0 : low + (best - 0.5) * width;
 }
 
-/// Votes that a centre needs to be proposed.
+/// Votes that a center needs to be proposed.
 inline double least_votes(const RegionGrowingParameters& growing) { return 1.5 * growing.min_size; }
 
-/// Propose a sphere of roughly an expected radius.
+/// Propose a sphere, unless its radius is far from what is expected.
 inline void propose(Sphere sphere, const char* by, const BodyParameters& parameters,
                     std::vector<BodyCandidate>& candidates) {
   if (!(sphere.radius > 0.5 * parameters.radius_min && sphere.radius < 2.0 * parameters.radius_max)) return;
@@ -122,8 +144,8 @@ inline void propose(Sphere sphere, const char* by, const BodyParameters& paramet
   candidates.push_back({Ellipsoid(sphere), by});
 }
 
-/// Propose bodies about the centres for which the points of `voters`, a part of `cloud`, vote; but for those that one
-/// of `candidates` already stands for: they would only be fitted twice.
+/// Propose bodies about the centers for which the points of `voters`, a part of `cloud`, vote. Centers that coincide
+/// with one of the `candidates` given are left out: they would only be fitted twice.
 template <typename S>
 void propose_voted(const PointCloud<S>& cloud, const PointCloud<S>& voters, const Grid<S>& grid, double min_votes,
                    const BodyParameters& parameters, std::vector<BodyCandidate>& candidates) {
@@ -139,12 +161,25 @@ void propose_voted(const PointCloud<S>& cloud, const PointCloud<S>& voters, cons
   }
 }
 
-/// Give a body what an ellipsoid cannot follow: points in its dimples (inside an opaque body there is nothing else),
-/// and points of a smooth region that is mostly this body's (shoulders, lobes).
+/// Fit each body once more to all points of its own label, and assign the points anew; twice.
 template <typename S>
-void extend_labels(Labels& labels, const PointCloud<S>& cloud, const std::vector<FoundBody>& found,
-                   const Labels& regions, int region_count, const BodyParameters& parameters) {
-  const std::size_t columns = found.size() + 1;
+void refit(const PointCloud<S>& cloud, const BodyParameters& bodies, Split& out) {
+  FitParameters last_fit = bodies.fit;
+  last_fit.max_points = std::max(last_fit.max_points, static_cast<int>(cloud.size()));
+  for (int round = 0; round < 2; ++round) {
+    auto own = indices_by_label(out.labels);
+    own.resize(out.found.size());
+    for (std::size_t b = 0; b < out.found.size(); ++b)
+      if (const auto fit = fit_ellipsoid(cloud, own[b], out.found[b].fit.body, last_fit))
+        if (bodies.plausible(fit->body.mean_radius())) out.found[b].fit = *fit;
+    out.labels = assign_to_bodies(cloud, out.found, bodies);
+  }
+}
+
+/// The body to which at least 60 % of the points of each region belong, by the region's label; 0 if there is none.
+inline std::vector<std::size_t> owners_of_regions(const Labels& labels, std::size_t bodies, const Labels& regions,
+                                                  int region_count) {
+  const std::size_t columns = bodies + 1;
   std::vector<std::size_t> votes(static_cast<std::size_t>(region_count + 1) * columns, 0);
   for (std::size_t i = 0; i < labels.size(); ++i)
     ++votes[static_cast<std::size_t>(regions[i]) * columns + static_cast<std::size_t>(labels[i])];
@@ -156,6 +191,15 @@ void extend_labels(Labels& labels, const PointCloud<S>& cloud, const std::vector
         10 * *most >= 6 * std::accumulate(row, row + static_cast<std::ptrdiff_t>(columns), std::size_t{0}))
       owner[r] = static_cast<std::size_t>(most - row);
   }
+  return owner;
+}
+
+/// Give a body the points that an ellipsoid cannot follow: points in its dimples (there is nothing else inside an
+/// opaque body), and points of a smooth region that mostly belongs to it (shoulders, lobes).
+template <typename S>
+void extend_labels(Labels& labels, const PointCloud<S>& cloud, const std::vector<FoundBody>& found,
+                   const Labels& regions, int region_count, const BodyParameters& parameters) {
+  const std::vector<std::size_t> owner = owners_of_regions(labels, found.size(), regions, region_count);
   for (std::size_t i = 0; i < labels.size(); ++i) {
     if ((i & 0xFFF) == 0) throw_if_cancelled();
     if (labels[i] != 0) continue;
@@ -176,92 +220,70 @@ void extend_labels(Labels& labels, const PointCloud<S>& cloud, const std::vector
   }
 }
 
+/// Let segments and voted centers propose bodies, and give the points to the bodies that win.
+template <typename S>
+void split_by_bodies(const PointCloud<S>& cloud, const Segments& segments, const RegionGrowingParameters& growing,
+                     const BodyParameters& bodies, const SeenThrough& seen_through, int threads, Split& out) {
+  std::vector<BodyCandidate> candidates;
+  for (std::size_t s = 0; s < segments.members.size(); ++s)
+    if (const auto sphere = sphere_from_normals(cloud, segments.members[s]))
+      propose(*sphere, segments.found_by(s + 1), bodies, candidates);
+  const Grid<S> grid(cloud, static_cast<S>(growing.radius), threads);
+  propose_voted(cloud, cloud, grid, least_votes(growing), bodies, candidates);
+  out.found = find_bodies(cloud, candidates, bodies, seen_through);
+  out.labels = assign_to_bodies(cloud, out.found, bodies);
+  refit(cloud, bodies, out);
+  extend_labels(out.labels, cloud, out.found, out.regions, out.regions_found, bodies);
+
+  std::vector<std::size_t> sizes(segments.members.size() + 1, 0);
+  for (std::size_t s = 0; s < segments.members.size(); ++s) sizes[s + 1] = segments.members[s].size();
+  auto own = indices_by_label(out.labels);
+  own.resize(out.found.size());
+  for (std::size_t b = 0; b < out.found.size(); ++b) out.found[b].found_by = found_by(own[b], segments, sizes);
+}
+
 }  // namespace detail
 
 /// Split a cloud with normals (facing outwards) into fruit.
 /// @param cloud points (m) with normals
 /// @param parameters see their struct
 /// @param seen_through evidence of free space for the competition, or empty
-/// @throws ParameterError; InputError when the cloud has no normals
+/// @param threads the result does not depend on it
+/// @throws ParameterError; InputError if the cloud has no normals; Cancelled
 template <typename S>
-Split split(const PointCloud<S>& cloud, const SplitParameters& parameters = {}, const SeenThrough& seen_through = {}) {
+Split split(const PointCloud<S>& cloud, const SplitParameters& parameters = {}, const SeenThrough& seen_through = {},
+            int threads = 1) {
   parameters.check();
   check_input(cloud.normals.size() == cloud.points.size(), "split: the cloud has no normals");
   Split out;
   out.labels.assign(cloud.size(), 0);
   out.regions.assign(cloud.size(), 0);
   if (cloud.empty()) return out;
-
   const auto stages = stages_for(parameters.adaptive ? estimate_spacing(cloud) : 0.0, parameters);
   if (!stages) return out;
-  const RegionGrowingParameters& growing = stages->growing;
 
-  // Region growing, then DBSCAN on what it leaves.
-  const Grid<S> grid(cloud, static_cast<S>(growing.radius));
-  out.regions = grow_regions(cloud, cloud.normals, growing, grid);
-  out.regions_found = *std::max_element(out.regions.begin(), out.regions.end());
-  const Indices rest = residual(out.regions);
-  out.residual = rest.size();
-  Labels segments = out.regions;
-  if (rest.size() > stages->min_residual) {
-    Labels clusters = dbscan(select(cloud, rest), stages->clustering);
-    out.clusters_found = drop_small(clusters, stages->min_cluster);
-    for (std::size_t i = 0; i < rest.size(); ++i)
-      if (clusters[i] > 0) segments[static_cast<std::size_t>(rest[i])] = out.regions_found + clusters[i];
-  }
-  const int first_cluster = out.regions_found + 1;
-  const auto members = indices_by_label(segments);
-  if (!parameters.fit_bodies) {
-    out.labels = segments;
-    for (std::size_t s = 0; s < members.size(); ++s) {
-      FoundBody found;
-      found.found_by = static_cast<int>(s) + 1 < first_cluster ? "region_growing" : "dbscan";
-      out.found.push_back(std::move(found));
-    }
+  const detail::Segments segments = detail::find_segments(cloud, *stages, threads, out);
+  if (parameters.fit_bodies) {
+    detail::split_by_bodies(cloud, segments, stages->growing, parameters.bodies, seen_through, threads, out);
     return out;
   }
-
-  // Segments and voted centres propose bodies; the best explanation wins.
-  const BodyParameters& bodies = parameters.bodies;
-  std::vector<BodyCandidate> candidates;
-  for (std::size_t s = 0; s < members.size(); ++s)
-    if (const auto sphere = sphere_from_normals(cloud, members[s]))
-      detail::propose(*sphere, static_cast<int>(s) + 1 < first_cluster ? "region_growing" : "dbscan", bodies,
-                      candidates);
-  detail::propose_voted(cloud, cloud, grid, detail::least_votes(growing), bodies, candidates);
-  out.found = find_bodies(cloud, candidates, bodies, seen_through);
-  out.labels = assign_to_bodies(cloud, out.found, bodies);
-
-  // Each body is fitted once more to all the points that are its own, and the points are assigned anew.
-  FitParameters last_fit = bodies.fit;
-  last_fit.max_points = std::max(last_fit.max_points, static_cast<int>(cloud.size()));
-  for (int round = 0; round < 2; ++round) {
-    auto own = indices_by_label(out.labels);
-    own.resize(out.found.size());
-    for (std::size_t b = 0; b < out.found.size(); ++b)
-      if (const auto fit = fit_ellipsoid(cloud, own[b], out.found[b].fit.body, last_fit))
-        if (bodies.plausible(fit->body.mean_radius())) out.found[b].fit = *fit;
-    out.labels = assign_to_bodies(cloud, out.found, bodies);
+  out.labels = segments.labels;
+  for (std::size_t s = 0; s < segments.members.size(); ++s) {
+    FoundBody found;
+    found.found_by = segments.found_by(s + 1);
+    out.found.push_back(std::move(found));
   }
-  detail::extend_labels(out.labels, cloud, out.found, out.regions, out.regions_found, bodies);
-
-  std::vector<std::size_t> sizes(members.size() + 1, 0);
-  for (int s : segments) ++sizes[static_cast<std::size_t>(s)];
-  auto own = indices_by_label(out.labels);
-  own.resize(out.found.size());
-  for (std::size_t b = 0; b < out.found.size(); ++b)
-    out.found[b].found_by = detail::found_by(own[b], segments, sizes, first_cluster);
   return out;
 }
 
-/// The bodies of a cloud that has grown, or changed a little, since `known` were found: those and what the points off
-/// them vote for compete anew. Far quicker than `split`, and as good while the cloud grows view by view; who found a
-/// body is kept. Points are labelled by the body on which they lie; regions are not grown.
+/// Find the bodies of a cloud that has grown, or changed a little, since the bodies `known` were found. These and the
+/// bodies for which the other points vote compete anew. Far quicker than `split`, and as good while the cloud grows
+/// view by view. Bodies keep their `found_by`. Points are labelled by the body on which they lie; no regions are grown.
 /// @param cloud points (m) with normals
 /// @param known bodies found before
 /// @param parameters see their struct
 /// @param seen_through evidence of free space for the competition, or empty
-/// @throws ParameterError; InputError when the cloud has no normals
+/// @throws ParameterError; InputError if the cloud has no normals; Cancelled
 template <typename S>
 Split track(const PointCloud<S>& cloud, const std::vector<FoundBody>& known, const SplitParameters& parameters = {},
             const SeenThrough& seen_through = {}) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// @file
-/// How large and how heavy a fitted fruit is, and how well that is known: for yield.
+/// Volume and mass of a fitted fruit with their standard errors, for estimates of yield.
 #pragma once
 
 #include <agrisee/cloud/fit.hpp>
@@ -17,11 +17,15 @@ struct Estimate {
 /// Volume (m3) of an ellipsoid.
 inline double volume(const Ellipsoid& body) { return 4.0 / 3.0 * kPi / body.A.determinant(); }
 
-/// Relative standard error of the volume of a body that was fitted to the points `indices` of a cloud: of the logarithm
-/// of 1 / det A, whose derivative by A is -A^-1, under the covariance of centre and A together. Points, derivatives,
-/// certainty and prior are those of fit_ellipsoid; what the points leave open is as wide as the prior on the shape.
-/// Relative to the size nothing is known beforehand, so that too few points give a large error (at most 1).
-/// @throws InputError when the cloud has no normals; ParameterError
+/// Relative standard error of a fitted body's volume. This is the standard error of the logarithm of 1 / det A, whose
+/// derivative by A is -A^-1, under the joint covariance of center and A. Points, derivatives, weights and prior are
+/// those of fit_ellipsoid: what the points leave open of the shape is as uncertain as the prior says. There is no prior
+/// on the size, so too few points give a large error (at most 1).
+/// @param cloud points (m) with normals
+/// @param indices the points to which the body was fitted
+/// @param body the fitted body
+/// @param parameters those of the fit
+/// @throws InputError if the cloud has no normals; ParameterError
 template <typename S>
 double relative_volume_error(const PointCloud<S>& cloud, const Indices& indices, const Ellipsoid& body,
                              const FitParameters& parameters = {}) {
@@ -56,8 +60,9 @@ double relative_volume_error(const PointCloud<S>& cloud, const Indices& indices,
   return variance > 0.0 && variance < 1.0 ? std::sqrt(variance) : 1.0;
 }
 
-/// Volume (m3) of a fitted body, with its standard error: that of the fit and that of the shape.
-/// @param body as fitted
+/// Volume (m3) of a fitted body. Its standard error combines that of the fit and the deviation of real fruit from an
+/// ellipsoid (MassParameters::shape_error).
+/// @param body the fitted body
 /// @param relative_fit_error see relative_volume_error
 /// @param parameters see their struct
 inline Estimate volume_of(const Ellipsoid& body, double relative_fit_error, const MassParameters& parameters = {}) {
@@ -65,7 +70,7 @@ inline Estimate volume_of(const Ellipsoid& body, double relative_fit_error, cons
   return {v, v * std::hypot(relative_fit_error, parameters.shape_error)};
 }
 
-/// Mass (kg) of a volume (m3), with its standard error: that of the volume and that of the density.
+/// Mass (kg) of a volume (m3). Its standard error combines those of the volume and of the density.
 inline Estimate mass_of(const Estimate& volume, const MassParameters& parameters = {}) {
   return {parameters.density * volume.value,
           std::hypot(parameters.density * volume.error, parameters.density_error * volume.value)};

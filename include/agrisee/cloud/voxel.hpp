@@ -1,21 +1,22 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// @file
-/// Thins a cloud: one point, the mean, for each occupied cell of a grid anchored at the origin.
-/// Metres. Cost O(n): a sort of 16 bytes a point, by as many digits as the cloud is wide in cells; O(n log n) for
-/// clouds that reach a million cells from the origin.
+/// Thins a cloud: the points in each cell of a grid anchored at the origin are replaced by their mean.
+/// Metres. Cost O(n): a radix sort of 16 bytes a point, with more digits the more cells the cloud is wide; O(n log n)
+/// for clouds that reach a million cells from the origin.
 #pragma once
 
 #include <agrisee/core/cloud.hpp>
 #include <agrisee/core/error.hpp>
-#include <agrisee/core/hash_grid.hpp>
-#include <agrisee/core/radix_sort.hpp>
+#include <agrisee/neighbors/detail/radix_sort.hpp>
+#include <agrisee/neighbors/hash_grid.hpp>
 
 namespace agrisee {
 
 namespace detail {
 
-/// The finite points in the order of their cells of edge `leaf` (m), by z, then y, then x, where these are numbered
-/// from `least` on with `across` cells a side.
+/// The finite points in the order of their cells, by z, then y, then x. Cells are numbered from the cell `least`.
+/// @param inverse 1 / edge length of a cell (1/m)
+/// @param across number of cells along each axis
 template <typename Key, typename S>
 Uninitialized<Keyed<Key>> by_number(const std::vector<Vector3<S>>& points, double inverse, const CellIndex& least,
                                     const Eigen::Matrix<Key, 3, 1>& across) {
@@ -30,7 +31,7 @@ Uninitialized<Keyed<Key>> by_number(const std::vector<Vector3<S>>& points, doubl
   return order;
 }
 
-/// The same for cells too far from the origin to have small integers for names.
+/// The finite points in the order of their cells, for cells too far from the origin for small integer coordinates.
 template <typename S>
 Uninitialized<Keyed<std::uint64_t>> by_far_cell(const std::vector<Vector3<S>>& points, double inverse) {
   Uninitialized<Keyed<std::uint64_t>> order;
@@ -46,8 +47,9 @@ Uninitialized<Keyed<std::uint64_t>> by_far_cell(const std::vector<Vector3<S>>& p
   return order;
 }
 
-/// f(order) with the finite points in the order of their cells of edge `leaf` (m), by z, then y, then x; equal keys are
-/// one cell.
+/// Call f(order) with the finite points in the order of their cells, by z, then y, then x. Points with equal keys are
+/// in one cell.
+/// @param leaf edge length of a cell (m)
 template <typename S, typename F>
 void by_cell(const std::vector<Vector3<S>>& points, double leaf, F&& f) {
   const double inverse = 1.0 / leaf;
@@ -68,7 +70,7 @@ void by_cell(const std::vector<Vector3<S>>& points, double leaf, F&& f) {
     f(by_number<std::uint64_t>(points, inverse, least, across.template cast<std::uint64_t>().eval()));
 }
 
-/// The mean of each run of equal keys; see average_in_voxels.
+/// The mean point of each run of equal keys; see average_in_voxels.
 template <typename S, typename Order>
 PointCloud<S> average_runs(const PointCloud<S>& cloud, const Order& order, std::vector<int>* members) {
   const bool with_normals = cloud.normals.size() == cloud.points.size();
@@ -101,12 +103,12 @@ PointCloud<S> average_runs(const PointCloud<S>& cloud, const Order& order, std::
 
 }  // namespace detail
 
-/// The mean point of every cell of edge `leaf` (m) that holds finite points, cells by z, then y, then x.
-/// Normals, where all points have them, are averaged and made unit; views are dropped.
+/// The mean point of every cell that holds finite points, in the order of the cells by z, then y, then x. If the cloud
+/// has normals, they are averaged and scaled to unit length (zero if they cancel out); views are dropped.
 /// @param cloud points (m)
-/// @param leaf edge of the voxels (m)
+/// @param leaf edge length of the cells (m)
 /// @param members if given, receives the number of points behind each mean
-/// @throws ParameterError when `leaf` is not finite, not positive or so small that 1 / `leaf` is not finite
+/// @throws ParameterError if `leaf` is not finite, not positive or so small that 1 / `leaf` is not finite
 template <typename S>
 PointCloud<S> average_in_voxels(const PointCloud<S>& cloud, double leaf, std::vector<int>* members = nullptr) {
   check_parameter(std::isfinite(leaf) && leaf > 0 && std::isfinite(1.0 / leaf), "leaf", "positive, more than 1e-308",

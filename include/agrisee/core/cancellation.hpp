@@ -1,24 +1,24 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// @file
-/// Stopping work from another thread: whoever wants to be able to stop a call makes a Cancellation, the current one of
-/// the thread that makes the call; once it is requested the call throws Cancelled. Threads that the call starts look at
-/// the same one.
+/// Stops long work from another thread. A thread that makes a long call first makes a Cancellation its current one, by
+/// a CancellationScope. When another thread requests that cancellation, the call throws Cancelled. Threads that the
+/// call uses obey the same cancellation.
 ///
 /// ```
-/// agrisee::Cancellation stop;                       // shared by copying
+/// agrisee::Cancellation stop;                       // copies share their state
 /// std::thread worker([&, stop] {
-///   const agrisee::CancellationScope scope(stop);   // for what this thread calls from here on
+///   const agrisee::CancellationScope scope(stop);   // applies to all calls that this thread makes in the scope
 ///   try {
 ///     result = agrisee::process(cloud);
 ///   } catch (const agrisee::Cancelled&) {
 ///   }
 /// });
-/// stop.request();                                   // from any thread, or a signal handler
+/// stop.request();                                   // from any thread or from a signal handler
 /// ```
 ///
-/// The library looks between blocks of work, some ms apart at most. Without a scope that costs a look at a thread's own
-/// variable a block. What a cancelled call was given, and objects whose const members were called, are as before; for
-/// what changes an object see its documentation.
+/// The library checks between blocks of work, at most some milliseconds apart. Without a scope a check costs one read
+/// of a thread-local variable. A cancelled call leaves its arguments, and objects whose const members it called, as
+/// they were; the documentation of functions that change an object says what becomes of it.
 #pragma once
 
 #include <agrisee/core/error.hpp>
@@ -32,19 +32,19 @@
 namespace agrisee {
 
 namespace detail {
-/// What stops the work of this thread; null: nothing. No destructor and a constant to begin with, so that access is
-/// plain.
+/// The flag that stops this thread's work, or null if nothing can stop it. A plain pointer with a constant initial
+/// value: access needs no initialisation guard.
 inline thread_local const std::atomic<bool>* current_cancellation = nullptr;
 }  // namespace detail
 
-/// A wish to stop, shared by all copies. Any number of threads may ask and request at once; both only touch an atomic
-/// flag, so that a signal handler may, too.
+/// A request to stop that all copies share. Any thread may request or query it at any time; both only access an atomic
+/// flag, so a signal handler may do so as well.
 class Cancellation {
  public:
   Cancellation() : flag_(std::make_shared<std::atomic<bool>>(false)) {}
-  /// Ask all work to stop that runs, or will run, in a scope of this cancellation. For good: there is no way back.
+  /// Asks all present and future work in scopes of this cancellation to stop. This cannot be undone.
   void request() const noexcept { flag_->store(true, std::memory_order_relaxed); }
-  /// Whether that was asked.
+  /// True once request() has been called on any copy.
   bool requested() const noexcept { return flag_->load(std::memory_order_relaxed); }
 
  private:
@@ -52,11 +52,11 @@ class Cancellation {
   std::shared_ptr<std::atomic<bool>> flag_;
 };
 
-/// Makes a cancellation the calling thread's current one while it lives; the innermost scope counts. Belongs to the
-/// thread that made it.
+/// Makes a cancellation the current one of the calling thread for as long as this object lives. Scopes nest: only the
+/// innermost one applies. An object must be destroyed by the thread that made it.
 class CancellationScope {
  public:
-  /// @param cancellation what stops the thread's work from here on
+  /// @param cancellation what may stop the work of this thread from here on
   explicit CancellationScope(Cancellation cancellation)
       : cancellation_(std::move(cancellation)), before_(detail::current_cancellation) {
     detail::current_cancellation = cancellation_.flag_.get();
@@ -70,19 +70,19 @@ class CancellationScope {
   const std::atomic<bool>* before_;
 };
 
-/// Whether the calling thread's work can be stopped.
+/// True if the calling thread has a current cancellation.
 inline bool cancellable() noexcept { return detail::current_cancellation != nullptr; }
 
-/// To be called between blocks of long work.
-/// @throws Cancelled when the thread's current cancellation is requested
+/// Checks the calling thread's current cancellation. Long work calls this between blocks.
+/// @throws Cancelled if the cancellation has been requested
 inline void throw_if_cancelled() {
   if (detail::current_cancellation && detail::current_cancellation->load(std::memory_order_relaxed)) throw Cancelled();
 }
 
 namespace detail {
 
-/// Puts another cancellation in place of the thread's while it lives: that of the caller in its workers, or none around
-/// changes that must not be left half done.
+/// Replaces the thread's current cancellation for as long as this object lives: by the caller's in helper threads, or
+/// by none around changes that must be completed.
 class CancellationSwap {
  public:
   explicit CancellationSwap(const std::atomic<bool>* other) : before_(current_cancellation) {
@@ -96,8 +96,8 @@ class CancellationSwap {
   const std::atomic<bool>* before_;
 };
 
-/// std::sort that looks for cancellation every some ten thousand comparisons.
-/// @throws Cancelled; the range then holds its items in some order
+/// std::sort that checks for cancellation every 16,384 comparisons.
+/// @throws Cancelled; the range then holds the same items in an unspecified order
 template <typename Iterator, typename Less = std::less<>>
 void sort_cancellably(Iterator first, Iterator last, Less less = {}) {
   if (!cancellable()) return std::sort(first, last, less);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// @file
-/// AgriSEE's own cloud: points and, where known, their normals and the view each came from.
+/// AgriSEE's own point cloud: points and, if known, their normals and the view that each came from.
 #pragma once
 
 #include <agrisee/core/error.hpp>
@@ -10,38 +10,37 @@
 
 namespace agrisee {
 
-/// A cloud as a structure of arrays. `normals` and `views` are either empty or as long as `points`.
+/// A point cloud as a structure of arrays. `normals` and `views` are empty or as long as `points`.
 template <typename S>
 struct PointCloud {
-  std::vector<Vector3<S>> points;   ///< metres, in one frame (world unless said otherwise)
-  std::vector<Vector3<S>> normals;  ///< unit normals towards the side the surface was seen from; zero = unknown
-  std::vector<int> views;           ///< index of the view that observed the point, -1 = unknown
+  std::vector<Vector3<S>> points;   ///< m, in the world frame unless said otherwise
+  std::vector<Vector3<S>> normals;  ///< unit normals towards the side that was seen; zero = unknown
+  std::vector<int> views;           ///< index of the view that observed the point; -1 = unknown
 
   /// Number of points.
   std::size_t size() const { return points.size(); }
-  /// Whether there is none.
+  /// True if there are no points.
   bool empty() const { return points.empty(); }
 };
 
-/// Our own clouds.
+/// Traits of AgriSEE's own clouds.
 template <typename S>
 struct CloudTraits<PointCloud<S>> {
-  /// Of coordinates.
-  using Scalar = S;
+  using Scalar = S;  ///< type of a coordinate
   /// Number of points.
   static std::size_t size(const PointCloud<S>& c) { return c.points.size(); }
   /// Point i (m).
   static const Vector3<S>& point(const PointCloud<S>& c, std::size_t i) { return c.points[i]; }
-  /// Normal i; zero where it is not known.
+  /// Unit normal i, or zero if it is not known.
   static Vector3<S> normal(const PointCloud<S>& c, std::size_t i) {
     return c.normals.empty() ? Vector3<S>(Vector3<S>::Zero()) : c.normals[i];
   }
 };
 
-/// The cloud type of the pipeline: single precision keeps 0.1 um at arm's length and halves the memory traffic.
+/// The cloud type of the pipeline. Single precision resolves 0.1 um at arm's length and halves the memory traffic.
 using Cloud = PointCloud<float>;
 
-/// True when all three coordinates are finite.
+/// True if all three coordinates are finite.
 template <typename V>
 bool is_finite(const V& p) {
   return std::isfinite(p.x()) && std::isfinite(p.y()) && std::isfinite(p.z());
@@ -57,7 +56,7 @@ Indices finite_indices(const C& cloud) {
   return kept;
 }
 
-/// The finite points of any cloud as our own: in single precision, with its normals where its traits know any. O(n).
+/// Copies the finite points of any cloud, in single precision, with their normals if the traits know any. O(n).
 template <typename C>
 Cloud finite_points(const C& cloud) {
   Cloud out;
@@ -75,7 +74,7 @@ Cloud finite_points(const C& cloud) {
   return out;
 }
 
-/// The points `indices` of any cloud, as our own cloud (points only).
+/// Copies the points `indices` of any cloud; points only.
 template <typename C>
 PointCloud<scalar_t<C>> select(const C& cloud, const Indices& indices) {
   PointCloud<scalar_t<C>> out;
@@ -84,7 +83,7 @@ PointCloud<scalar_t<C>> select(const C& cloud, const Indices& indices) {
   return out;
 }
 
-/// The points `indices` of our own cloud with whatever is known of them.
+/// Copies the points `indices` of a PointCloud with their normals and views.
 template <typename S>
 PointCloud<S> select(const PointCloud<S>& cloud, const Indices& indices) {
   PointCloud<S> out;

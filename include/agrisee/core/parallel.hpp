@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// @file
-/// Loops over several threads whose results do not depend on how many there are.
+/// Parallel loops whose results do not depend on the number of threads.
 #pragma once
 
 #include <agrisee/core/cancellation.hpp>
@@ -14,18 +14,20 @@
 
 namespace agrisee {
 
-/// Call `body(begin, end)` on consecutive chunks of [0, n), on up to `threads` threads (the caller's included).
+/// Calls `body(begin, end)` for consecutive chunks of [0, n), on up to `threads` threads including the caller's.
 ///
-/// Chunks are handed out as threads become free; `body` must write only what belongs to its own indices, so the result
-/// does not depend on the order. The first exception thrown by `body` is rethrown here after all threads have ended.
-/// Between chunks the caller's cancellation is looked at; it is that of all the threads, and so is the caller's
-/// rounding of numbers. Callers on several threads share the helpers: there are as many as the largest `threads` less
-/// one, and no fewer results where they are busy or cannot be started.
-/// @param n how many items
-/// @param threads at most so many
-/// @param chunk indices a chunk (at least 1); small loops (n <= chunk) never start a thread
+/// A thread that becomes free takes the next chunk. `body` must write only what belongs to its own indices; then the
+/// result does not depend on the order in which the chunks run. The first exception that `body` throws ends the loop
+/// and is rethrown here once all threads are done. The caller's cancellation is checked before each chunk, and all
+/// threads work with the caller's floating-point environment (rounding mode).
+///
+/// Several threads may call this at the same time. They share one pool of helper threads, which grows to the largest
+/// `threads` - 1 that was asked for. If helpers are busy or cannot be started, the remaining threads do their share.
+/// @param n number of indices
+/// @param threads largest number of threads to use
+/// @param chunk indices in a chunk (0 counts as 1); a loop with n <= chunk runs on the caller's thread alone
 /// @param body called as body(begin, end)
-/// @throws Cancelled; what `body` throws
+/// @throws Cancelled; whatever `body` throws
 template <typename Body>
 void parallel_chunks(std::size_t n, int threads, std::size_t chunk, Body&& body) {
   chunk = std::max<std::size_t>(chunk, 1);
@@ -58,7 +60,7 @@ void parallel_chunks(std::size_t n, int threads, std::size_t chunk, Body&& body)
   if (failure) std::rethrow_exception(failure);
 }
 
-/// Call `body(i)` for every i in [0, n) on up to `threads` threads; see parallel_chunks.
+/// Calls `body(i)` for every i in [0, n) on up to `threads` threads, `chunk` indices at a time; see parallel_chunks.
 template <typename Body>
 void parallel_for(std::size_t n, int threads, Body&& body, std::size_t chunk = 512) {
   parallel_chunks(n, threads, chunk, [&](std::size_t begin, std::size_t end) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// @file
-/// Rigid poses. `a_T_b` takes coordinates in frame b to frame a.
+/// Rigid poses. A pose named `a_T_b` transforms coordinates in frame b to frame a.
 #pragma once
 
 #include <agrisee/core/error.hpp>
@@ -13,7 +13,7 @@ namespace agrisee {
 /// A rigid transform in double precision.
 using Pose = Eigen::Isometry3d;
 
-/// Pose from a translation (m) and URDF's roll, pitch, yaw (rad; rotations about the fixed axes x, y, z in turn).
+/// Pose from a translation (m) and roll, pitch, yaw (rad) as in URDF: rotations about the fixed axes x, y, z in turn.
 inline Pose pose_from_xyz_rpy(const Eigen::Vector3d& xyz, const Eigen::Vector3d& rpy) {
   Pose pose = Pose::Identity();
   pose.linear() =
@@ -24,8 +24,8 @@ inline Pose pose_from_xyz_rpy(const Eigen::Vector3d& xyz, const Eigen::Vector3d&
   return pose;
 }
 
-/// A unit vector at right angles to the unit vector `n`; a continuous function of `n` but for n = -z.
-/// Duff et al., "Building an Orthonormal Basis, Revisited", JCGT 6(1), 2017.
+/// A unit vector perpendicular to the unit vector `n`, by Duff et al., "Building an Orthonormal Basis, Revisited",
+/// JCGT 6(1), 2017.
 template <typename S>
 Vector3<S> any_orthogonal(const Vector3<S>& n) {
   const S sign = std::copysign(S(1), n.z());
@@ -33,12 +33,12 @@ Vector3<S> any_orthogonal(const Vector3<S>& n) {
   return Vector3<S>(S(1) + sign * n.x() * n.x() * a, sign * n.x() * n.y() * a, -sign * n.x());
 }
 
-/// `world_T_optical` of a sensor at `position` that looks along `direction` (need not be unit length).
+/// The pose world_T_optical of a sensor at `position` (m) that looks along `direction` (of any length).
 ///
-/// The optical frame is REP-103's: z forward, x right, y down. With `roll` = 0 the image's y axis points down
-/// (towards -z of world); `roll` (rad) turns the camera about its own z axis. Looking straight up or down, x is world's
-/// x.
-/// @throws InputError when `direction` is zero or not finite
+/// The optical frame follows REP-103: z forward, x right, y down. With `roll` = 0 the image's y axis points down,
+/// towards -z of world; `roll` (rad) then turns the camera about its own z axis. For a sensor that looks straight up or
+/// down, its x axis is that of world.
+/// @throws InputError if `direction` is zero or not finite
 inline Pose look_along(const Eigen::Vector3d& position, const Eigen::Vector3d& direction, double roll = 0.0) {
   const double length = direction.norm();
   check_input(std::isfinite(length) && length > 0.0, "look_along: the viewing direction is zero or not finite");
@@ -57,19 +57,25 @@ inline Pose look_along(const Eigen::Vector3d& position, const Eigen::Vector3d& d
   return pose;
 }
 
-/// True when the rotation is a rotation (orthonormal, right-handed, to 1e-6) and everything is finite.
+/// Hand-eye transform (tool0_T_optical) where none is given: the optical frame 30 mm ahead of tool0, axes parallel.
+inline Pose default_hand_eye() { return pose_from_xyz_rpy({0.0, 0.0, 0.03}, Eigen::Vector3d::Zero()); }
+
+/// True if all entries are finite and the rotation matrix is orthonormal (to 1e-6) and right-handed.
 inline bool is_rigid(const Pose& pose) {
   return pose.matrix().allFinite() &&
          (pose.linear() * pose.linear().transpose() - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff() < 1e-6 &&
          pose.linear().determinant() > 0.0;
 }
 
-/// The rotation as a unit quaternion with w >= 0, so that equal rotations print alike.
+/// A rotation as a unit quaternion with w >= 0, which makes it unique (but for half turns).
 inline Eigen::Quaterniond quaternion(const Eigen::Matrix3d& rotation) {
   Eigen::Quaterniond q(rotation);
   q.normalize();
   if (q.w() < 0.0) q.coeffs() = -q.coeffs();
   return q;
 }
+
+/// Angle (rad) of a pose's rotation. It is accurate for small angles too, unlike the arc cosine of the trace.
+inline double angle_of(const Pose& pose) { return Eigen::AngleAxisd(Eigen::Quaterniond(pose.linear())).angle(); }
 
 }  // namespace agrisee

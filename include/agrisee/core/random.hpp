@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// @file
-/// Random numbers that are the same on every platform, standard library and number of threads.
+/// Random numbers that are the same on every platform, with every standard library and for any number of threads.
 #pragma once
 
 #include <agrisee/core/types.hpp>
@@ -9,7 +9,7 @@
 
 namespace agrisee {
 
-/// One step of SplitMix64 (Steele, Lea & Flood, OOPSLA 2014): a well mixed function of its argument.
+/// Hashes 64 bits to 64 bits: one step of SplitMix64 (Steele, Lea & Flood, OOPSLA 2014).
 constexpr std::uint64_t mix(std::uint64_t x) {
   x += 0x9E3779B97F4A7C15ULL;
   x = (x ^ (x >> 30)) * 0xBF58476D1CE4E5B9ULL;
@@ -17,11 +17,12 @@ constexpr std::uint64_t mix(std::uint64_t x) {
   return x ^ (x >> 31);
 }
 
-/// A small generator (SplitMix64). Streams for independent uses come from `Rng(seed, stream...)`: a frame's pixel u
-/// draws from its own stream, so the noise does not depend on which thread computes it.
+/// A small random number generator (SplitMix64). Different stream numbers give independent sequences for the same
+/// seed: for example, each pixel of a frame draws from its own stream, so its noise does not depend on which thread
+/// computes it.
 class Rng {
  public:
-  /// The numbers that a seed, a stream and a substream name; others are independent of them.
+  /// Starts the sequence of this seed, stream and substream.
   explicit Rng(std::uint64_t seed, std::uint64_t stream = 0, std::uint64_t substream = 0)
       : state_(mix(mix(mix(seed) ^ stream) ^ substream)) {}
 
@@ -35,7 +36,7 @@ class Rng {
   double uniform() { return static_cast<double>(bits() >> 11) * 0x1.0p-53; }
   /// Uniform in [low, high).
   double uniform(double low, double high) { return low + (high - low) * uniform(); }
-  /// Standard normal (Box-Muller; two uniforms a draw, so that the stream's position is plain).
+  /// Standard normal, by Box-Muller. Each draw uses exactly two uniform numbers.
   double normal() {
     const double u = 1.0 - uniform();
     const double v = uniform();
@@ -43,7 +44,7 @@ class Rng {
   }
   /// Uniform integer in [0, n), n > 0.
   std::uint64_t below(std::uint64_t n) { return static_cast<std::uint64_t>(uniform() * static_cast<double>(n)); }
-  /// Uniform on the unit sphere.
+  /// A unit vector, uniformly distributed on the sphere.
   Eigen::Vector3d direction() {
     const double z = uniform(-1.0, 1.0);
     const double a = uniform(0.0, kTwoPi);

@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// @file
-/// Sums of three products that come out the same to the last bit wherever they are written. Where the processor can
-/// multiply and add in one rounding, compilers do so at one place and not at the next; ties and limits would be decided
-/// here in one way and there in another.
+/// Sums of three products that give the same bits wherever they are computed. On processors with a fused
+/// multiply-add, compilers use it in some places and not in others, so the same distance computed twice could differ in
+/// the last bit, and ties and limits would be decided differently. These functions fix the order and the rounding.
 #pragma once
 
 #include <cmath>
 
 namespace agrisee::detail {
 
-/// Whether the processor multiplies and adds numbers of the type in one rounding as fast as it multiplies.
+/// True if the processor has a fast fused multiply-add for the type S.
 template <typename S>
 constexpr bool kFuses = false;
 #ifdef __FP_FAST_FMAF
@@ -21,7 +21,7 @@ template <>
 constexpr bool kFuses<double> = true;
 #endif
 
-/// a u + b v + c w, from left to right, in one rounding each where that costs nothing, in two elsewhere.
+/// a u + b v + c w, summed from left to right, with fused multiply-adds where they are fast.
 template <typename S>
 S sum_of_products(S a, S b, S c, S u, S v, S w) {
   if constexpr (kFuses<S>)

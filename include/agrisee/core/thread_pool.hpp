@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// @file
-/// Threads that are kept for the next loop: to start one takes longer than many a loop. They are started when they are
-/// first asked for, one pool a process, and run until it ends. After fork() the child starts threads of its own.
+/// A pool of helper threads for parallel loops. Starting a thread takes longer than many loops do, so threads are kept:
+/// each process has one pool, which starts threads when they are first needed and keeps them until the process ends.
+/// After fork() the child process starts threads of its own.
 ///
-/// A shared library that holds a pool must stay loaded. GCC sees to that (the pool is a unique symbol); with other
-/// compilers, or symbols hidden, link what dlclose may unload with `-Wl,-z,nodelete`.
+/// A shared library that contains the pool must not be unloaded. GCC ensures this, because the pool is a unique symbol.
+/// With other compilers, or with hidden symbols, link libraries that dlclose() might unload with `-Wl,-z,nodelete`.
 #pragma once
 
 #include <algorithm>
@@ -26,25 +27,26 @@
 
 namespace agrisee::detail {
 
-/// Threads that help whoever has work for several. Any number of threads may ask at once, helpers too.
+/// Helper threads that any number of threads, helpers included, may ask for help at the same time.
 class ThreadPool {
  public:
-  /// The one of the process. It is never destroyed: loops may run, and helpers be at work, while a process ends.
+  /// The pool of this process. It is never destroyed, because loops may still run while the process exits.
   static ThreadPool& shared() {
-    static const bool forks_seen = see_forks();
-    static_cast<void>(forks_seen);
+    static const bool forks_handled = handle_forks();
+    static_cast<void>(forks_handled);
     ThreadPool* pool = current().load();
     if (pool) return *pool;
     auto* mine = new ThreadPool;
     if (current().compare_exchange_strong(pool, mine)) return *mine;
-    delete mine;  // another thread was first
+    delete mine;  // another thread made the pool first
     return *pool;
   }
 
-  /// Calls work() on this thread and on up to `helpers` others at the same time; returns once all of these calls have.
-  /// Helpers that are busy elsewhere, cannot be started or come late are done without, so the work of a call must be
-  /// whatever is left to do.
-  /// @param helpers at most so many others  @param work called without arguments; must not throw
+  /// Calls work() on this thread and on up to `helpers` others at the same time, and returns when all these calls have
+  /// returned. Fewer helpers take part if they are busy, cannot be started or come too late, so each call of work() has
+  /// to do whatever is still left to do.
+  /// @param helpers largest number of helper threads
+  /// @param work called without arguments; must not throw
   template <typename Work>
   void run(std::size_t helpers, const Work& work) {
     Job job{[](const void* w) { (*static_cast<const Work*>(w))(); }, &work, helpers, {}, {}};
@@ -58,9 +60,9 @@ class ThreadPool {
   struct Job {
     void (*call)(const void*);
     const void* work;
-    std::size_t wanted;                // helpers that may still begin
-    std::atomic<std::size_t> running;  // helpers that have begun and not ended
-    std::fenv_t arithmetic;            // how numbers are rounded: as where the loop is
+    std::size_t wanted;                // number of helpers that may still join
+    std::atomic<std::size_t> running;  // number of helpers at work
+    std::fenv_t arithmetic;            // floating-point environment of the caller
   };
 
   ThreadPool() = default;
@@ -69,14 +71,14 @@ class ThreadPool {
     static std::atomic<ThreadPool*> pool{nullptr};
     return pool;
   }
-  /// The pool of the process that this one was forked from; known, that no leak is seen, but not to be touched:
-  /// its threads are not here, its locks may never open.
+  /// The pool of the parent process, after fork(). The child must not use it: the threads do not exist in the child,
+  /// and the mutex may be locked for ever. The pointer is kept so that leak checkers do not report the pool.
   static const ThreadPool*& before_fork() {
     static const ThreadPool* pool = nullptr;
     return pool;
   }
-  /// From now on a child of fork() has no pool until it needs one.
-  static bool see_forks() {
+  /// Registers a handler by which a child process starts without a pool and makes its own when it needs one.
+  static bool handle_forks() {
 #ifdef AGRISEE_POSIX_THREADS
     return ::pthread_atfork(nullptr, nullptr, [] {
              if (const ThreadPool* pool = current().exchange(nullptr)) before_fork() = pool;
@@ -86,6 +88,7 @@ class ThreadPool {
 #endif
   }
 
+  /// Offers a job to the helpers and wakes as many as it wants.
   void post(Job& job) {
     std::unique_lock<std::mutex> lock(mutex_);
     start(job.wanted);
@@ -96,35 +99,36 @@ class ThreadPool {
     for (std::size_t i = 0; i < awake; ++i) posted_.notify_one();
   }
 
-  /// Sees to it that there are so many helpers, or as many as can be had.
+  /// Starts threads until there are `helpers` of them, or as many as the system allows.
   void start(std::size_t helpers) {
     if (helpers_ >= helpers) return;
 #ifdef AGRISEE_POSIX_THREADS
-    sigset_t all, before;  // signals are for the threads of the application
+    sigset_t all, before;  // helpers block signals: the application's own threads handle them
     sigfillset(&all);
-    sigdelset(&all, SIGPROF);  // profilers may look
+    sigdelset(&all, SIGPROF);  // needed by profilers
     const bool blocked = ::pthread_sigmask(SIG_SETMASK, &all, &before) == 0;
 #endif
     try {
       for (; helpers_ < helpers; ++helpers_) std::thread([this] { serve(); }).detach();
-    } catch (...) {  // no more threads, or memory, to be had: those that are there do the work
+    } catch (...) {  // no more threads or no memory: continue with the threads there are
     }
 #ifdef AGRISEE_POSIX_THREADS
     if (blocked) ::pthread_sigmask(SIG_SETMASK, &before, nullptr);
 #endif
   }
 
+  /// Lets no more helpers join a job, and waits for those at work.
   void withdraw(Job& job) {
     std::unique_lock<std::mutex> lock(mutex_);
     jobs_.erase(std::find(jobs_.begin(), jobs_.end(), &job));
     lock.unlock();
     const auto ended = [&] { return job.running.load(std::memory_order_acquire) == 0; };
-    if (soon(ended)) return;
+    if (spin_until(ended)) return;
     lock.lock();
     ended_.wait(lock, ended);
   }
 
-  /// What a helper does, for ever.
+  /// The endless loop of a helper thread: take part in jobs, wait for more.
   void serve() {
     std::unique_lock<std::mutex> lock(mutex_);
     while (true) {
@@ -137,17 +141,17 @@ class ThreadPool {
         std::fesetenv(&job.arithmetic);
         job.call(job.work);
         lock.lock();
-        if (job.running.fetch_sub(1, std::memory_order_release) == 1) ended_.notify_all();  // the job may be gone now
+        if (job.running.fetch_sub(1, std::memory_order_release) == 1) ended_.notify_all();  // job may no longer exist
         continue;
       }
       const std::uint64_t seen = posts_.load(std::memory_order_relaxed);
       const auto more = [&] { return posts_.load(std::memory_order_acquire) != seen; };
-      if (looking_ < processors_) {  // more would only take the time of those at work
-        ++looking_;
+      if (spinning_ < processors_) {  // more spinning threads would slow down those at work
+        ++spinning_;
         lock.unlock();
-        soon(more);
+        spin_until(more);
         lock.lock();
-        --looking_;
+        --spinning_;
       }
       ++asleep_;
       posted_.wait(lock, more);
@@ -155,10 +159,11 @@ class ThreadPool {
     }
   }
 
-  /// Whether it happens within a short while, during which this thread does not sleep but lets others go first: one
-  /// that sleeps is woken 50 to 250 us late.
+  /// Waits up to 1 ms without sleeping, since waking a thread that sleeps takes 50 to 250 us. The thread yields to
+  /// others in the meantime.
+  /// @return true if `happened()` became true in that time
   template <typename Happened>
-  static bool soon(const Happened& happened) {
+  static bool spin_until(const Happened& happened) {
     const auto until = std::chrono::steady_clock::now() + std::chrono::microseconds(1000);
     while (!happened()) {
       if (std::chrono::steady_clock::now() >= until) return false;
@@ -170,9 +175,9 @@ class ThreadPool {
   std::mutex mutex_;
   std::condition_variable posted_, ended_;
   std::vector<Job*> jobs_;
-  std::atomic<std::uint64_t> posts_{0};  // jobs so far
-  std::size_t helpers_ = 0, looking_ = 0, asleep_ = 0;
-  const std::size_t processors_ = std::max(2u, std::thread::hardware_concurrency()) - 1;  // for helpers
+  std::atomic<std::uint64_t> posts_{0};                  // number of jobs posted so far
+  std::size_t helpers_ = 0, spinning_ = 0, asleep_ = 0;  // number of helpers in all, spinning and asleep
+  const std::size_t processors_ = std::max(2u, std::thread::hardware_concurrency()) - 1;  // left for helpers
 };
 
 }  // namespace agrisee::detail

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// @file
-/// The contract that a foreign point cloud meets to be used without copying: its scalar, its size, its point i.
+/// What any point cloud type has to provide so that the library can read it without copying.
 ///
-/// Fulfilled here for `std::vector<Eigen::Matrix<S, 3, 1>>` and for every dense Eigen expression with three rows
-/// (a point a column) or, failing that, three columns (a point a row): matrices, maps over any stride, blocks.
-/// Specialise `CloudTraits<C>` for others; see `interop/` for examples (PCL, Open3D, ROS).
+/// This file covers `std::vector<Eigen::Matrix<S, 3, 1>>` and dense Eigen expressions (matrices, maps with any stride,
+/// blocks) with three rows, where each column is a point, or with three columns, where each row is a point. Specialise
+/// `CloudTraits<C>` for other types; `interop/` does so for PCL, Open3D and ROS.
 #pragma once
 
 #include <agrisee/core/types.hpp>
@@ -14,30 +14,27 @@
 
 namespace agrisee {
 
-/// `Scalar`, `size(cloud)` and `point(cloud, i)` of a cloud type `C`; where it may know normals also `normal(cloud,
-/// i)`: a unit vector towards the side from which the surface was seen, or zero, which means unknown.
+/// `Scalar`, `size(cloud)` and `point(cloud, i)` of a cloud type `C`. Types that may hold normals also have
+/// `normal(cloud, i)`: a unit vector towards the side from which the surface was seen, or zero if unknown.
 template <typename C, typename Enable = void>
 struct CloudTraits;
 
-/// Vectors of Eigen vectors.
+/// Traits of vectors of Eigen vectors.
 template <typename S, typename A>
 struct CloudTraits<std::vector<Vector3<S>, A>> {
-  /// Of coordinates.
-  using Scalar = S;
+  using Scalar = S;  ///< type of a coordinate
   /// Number of points.
   static std::size_t size(const std::vector<Vector3<S>, A>& c) { return c.size(); }
   /// Point i (m).
   static const Vector3<S>& point(const std::vector<Vector3<S>, A>& c, std::size_t i) { return c[i]; }
 };
 
-/// Dense Eigen expressions with three rows or columns.
+/// Traits of dense Eigen expressions with three rows or columns.
 template <typename C>
 struct CloudTraits<C, std::enable_if_t<std::is_base_of<Eigen::DenseBase<C>, C>::value &&
                                        (C::RowsAtCompileTime == 3 || C::ColsAtCompileTime == 3)>> {
-  /// Of coordinates.
-  using Scalar = typename C::Scalar;
-  /// Whether a point is a column.
-  static constexpr bool by_column = C::RowsAtCompileTime == 3;
+  using Scalar = typename C::Scalar;                            ///< type of a coordinate
+  static constexpr bool by_column = C::RowsAtCompileTime == 3;  ///< true if each column is a point
   /// Number of points.
   static std::size_t size(const C& c) { return static_cast<std::size_t>(by_column ? c.cols() : c.rows()); }
   /// Point i (m).
@@ -50,7 +47,7 @@ struct CloudTraits<C, std::enable_if_t<std::is_base_of<Eigen::DenseBase<C>, C>::
   }
 };
 
-/// Scalar of a cloud's coordinates.
+/// Type of a coordinate of a cloud.
 template <typename C>
 using scalar_t = typename CloudTraits<C>::Scalar;
 
@@ -60,7 +57,7 @@ std::size_t size(const C& cloud) {
   return CloudTraits<C>::size(cloud);
 }
 
-/// Point i of a cloud (metres), 0 <= i < size(cloud).
+/// Point i of a cloud (m), 0 <= i < size(cloud).
 template <typename C>
 decltype(auto) point(const C& cloud, std::size_t i) {
   return CloudTraits<C>::point(cloud, i);
@@ -68,7 +65,7 @@ decltype(auto) point(const C& cloud, std::size_t i) {
 
 namespace detail {
 
-/// Whether the traits of C have `normal`.
+/// True if CloudTraits<C> has `normal`.
 template <typename C, typename = void>
 struct KnowsNormals : std::false_type {};
 template <typename C>

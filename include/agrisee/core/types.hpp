@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// @file
-/// The few types that every module shares. Units are metres, radians and seconds throughout the library.
+/// Types, constants and small helpers that every module uses. Units are metres, radians and seconds throughout the
+/// library.
 #pragma once
 
 #include <Eigen/Core>
@@ -12,7 +13,7 @@
 
 namespace agrisee {
 
-/// A point or direction.
+/// A point or a direction in space.
 template <typename S>
 using Vector3 = Eigen::Matrix<S, 3, 1>;
 /// A 3 x 3 matrix.
@@ -23,16 +24,25 @@ using Matrix3 = Eigen::Matrix<S, 3, 3>;
 using Index = std::int32_t;
 /// Indices of points in a cloud, ascending unless a function says otherwise.
 using Indices = std::vector<Index>;
-/// One label per point of a cloud; instances count from 1, 0 is "none".
+/// One label per point of a cloud. Instances are numbered from 1; 0 means that the point belongs to none.
 using Labels = std::vector<int>;
 
 /// Joint angles (rad) of a six-axis arm in the controller's convention, shoulder pan to wrist 3.
 using Joints = Eigen::Matrix<double, 6, 1>;
 
 constexpr double kPi = 3.14159265358979323846;  ///< pi
-constexpr double kTwoPi = 2.0 * kPi;            ///< a whole turn (rad)
+constexpr double kTwoPi = 2.0 * kPi;            ///< a full turn (rad)
 
-/// Degrees to radians.
+/// Converts degrees to radians.
 constexpr double deg(double degrees) { return degrees * (kPi / 180.0); }
+
+/// Element `i` of a vector, by reference: `v[i]` for a signed index, which must lie in [0, v.size()).
+template <typename V>
+decltype(auto) at(V& v, Index i) {
+  return v[static_cast<std::size_t>(i)];
+}
+
+/// d of [1]: distance (m) from the sensor to what it looks at, where nothing else is asked for.
+constexpr double kViewDistance = 0.38;
 
 }  // namespace agrisee

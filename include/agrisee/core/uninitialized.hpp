@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// @file
-/// Vectors whose new elements are left as they are, for what all threads write at once: the system hands out a page of
-/// memory when it is first written to, and that takes longer than writing it.
+/// Vectors that do not zero new elements. Large arrays are then first written by the threads that fill them in
+/// parallel. The operating system maps a page of memory when it is first written to, which takes longer than the write
+/// itself, so zeroing them on one thread first would cost more than the rest of the work.
 #pragma once
 
 #include <memory>
@@ -11,33 +12,32 @@
 
 namespace agrisee::detail {
 
-/// std::allocator but for elements that are made without a value: numbers are not set.
+/// std::allocator, except that elements made without arguments are default-initialised: numbers keep whatever value the
+/// memory holds.
 template <typename T>
-struct LeavingAllocator : std::allocator<T> {
-  LeavingAllocator() = default;
-  /// Of another type.
+struct DefaultInitAllocator : std::allocator<T> {
+  DefaultInitAllocator() = default;
   template <typename U>
-  LeavingAllocator(const LeavingAllocator<U>&) noexcept {}
-  /// Of another type.
+  DefaultInitAllocator(const DefaultInitAllocator<U>&) noexcept {}
   template <typename U>
   struct rebind {
-    using other = LeavingAllocator<U>;  ///< the type
+    using other = DefaultInitAllocator<U>;
   };
 
-  /// Makes an element without a value.
+  /// Default-initialises an element.
   template <typename U>
   void construct(U* p) {
     ::new (static_cast<void*>(p)) U;
   }
-  /// Makes one of values.
+  /// Constructs an element from arguments.
   template <typename U, typename... Args>
   void construct(U* p, Args&&... args) {
     ::new (static_cast<void*>(p)) U(std::forward<Args>(args)...);
   }
 };
 
-/// A vector of numbers, or structs of them, whose resize() leaves new ones for whoever writes them first.
+/// A vector whose resize() leaves new numbers, or structs of numbers, without a value.
 template <typename T>
-using Uninitialized = std::vector<T, LeavingAllocator<T>>;
+using Uninitialized = std::vector<T, DefaultInitAllocator<T>>;
 
 }  // namespace agrisee::detail

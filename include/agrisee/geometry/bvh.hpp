@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// @file
-/// A bounding volume hierarchy over triangles: what a ray meets first, whether it meets anything, and which point of
-/// the surface is nearest. Built top down with a binned surface area heuristic (Wald, "On fast Construction of
-/// SAH-based Bounding Volume Hierarchies", 2007) in O(n log n); about 70 bytes a triangle; a query is O(log n) on usual
-/// scenes.
+/// A bounding volume hierarchy over triangles. It finds what a ray hits first, whether a ray hits anything, and the
+/// point of the surface nearest to a given point. It is built top down with a binned surface area heuristic (Wald, "On
+/// fast Construction of SAH-based Bounding Volume Hierarchies", 2007) in O(n log n). Memory: about 70 bytes per
+/// triangle. A query is O(log n) in usual scenes.
 #pragma once
 
 #include <agrisee/core/cloud.hpp>
@@ -20,78 +20,81 @@
 
 namespace agrisee {
 
-/// A static tree over the triangles of a mesh, in the mesh's own frame. Immutable: queries may run in parallel.
+/// A tree over the triangles of a mesh, in the mesh's own frame. It never changes, so queries may run in parallel.
 ///
-/// Every answer equals that of testing all triangles one by one: boxes are tested in single precision with a margin for
-/// its rounding (Ize, "Robust BVH Ray Traversal", JCGT 2(2), 2013), triangles in double. Equal distances go to the
-/// lowest triangle index. Triangles without area and triangles with corners that are not finite are never found.
+/// Every answer equals that of testing all triangles one by one. Boxes are tested in single precision with a margin for
+/// rounding (Ize, "Robust BVH Ray Traversal", JCGT 2(2), 2013), triangles in double precision. Of triangles at equal
+/// distances, the one with the smallest index is reported. Triangles without area and triangles with corners that are
+/// not finite are never found.
 class Bvh {
  public:
-  /// What a ray meets.
+  /// Where a ray hits the surface.
   struct Hit {
-    float t;                 ///< distance in units of the direction's length
+    float t;                 ///< distance along the ray, in units of the length of its direction
     std::uint32_t triangle;  ///< index in the mesh
-    float u;                 ///< barycentric coordinates: (1 - u - v) a + u b + v c
-    float v;                 ///< the other of them
+    float u;                 ///< barycentric coordinate: the point is (1 - u - v) a + u b + v c
+    float v;                 ///< barycentric coordinate, see u
   };
-  /// A point of the surface.
+  /// A point of the surface, and how far it is from the query.
   struct SurfacePoint {
-    float distance;          ///< from the query (m)
+    float distance;          ///< m
     std::uint32_t triangle;  ///< index in the mesh
-    Eigen::Vector3f point;   ///< where (m)
+    Eigen::Vector3f point;   ///< m
   };
 
-  /// Nothing to hit.
+  /// A tree without triangles.
   Bvh() = default;
 
-  /// @param mesh its triangles
+  /// @param mesh the triangles; it is not needed afterwards
   /// @param threads the tree does not depend on it
-  /// @throws InputError when a triangle names a vertex that the mesh does not have
+  /// @throws InputError if a triangle refers to a vertex that the mesh does not have
   explicit Bvh(const Mesh& mesh, int threads = 1);
 
-  /// Number of triangles of the mesh, the degenerate ones included.
+  /// Number of triangles of the mesh, including degenerate ones.
   std::size_t size() const { return triangles_.size() + degenerate_; }
-  /// Number of triangles left out: without area, or with a corner that is not finite.
+  /// Number of degenerate triangles: without area, or with a corner that is not finite. They are left out.
   std::size_t degenerate() const { return degenerate_; }
-  /// Box around all triangles that can be found; empty when there are none.
+  /// The box around all triangles that are not degenerate.
   Aabb bounds() const;
 
-  /// The first triangle that the ray meets at t in [max(t_min, 0), t_max], seen from either side.
+  /// The first triangle that the ray hits, from either side, at a t in [max(t_min, 0), t_max].
   ///
-  /// @param origin, direction any length but zero; a ray that is not finite meets nothing
-  /// @param t_min nearest distance along the ray that counts
-  /// @param t_max farthest
+  /// @param origin of the ray (m); a ray that is not finite hits nothing
+  /// @param direction of any length but zero
+  /// @param t_min smallest t that counts, in units of the length of `direction`
+  /// @param t_max largest t that counts
   std::optional<Hit> closest(const Eigen::Vector3f& origin, const Eigen::Vector3f& direction, float t_min = 0.0f,
                              float t_max = std::numeric_limits<float>::infinity()) const;
 
-  /// True when the ray meets a triangle at t in [max(t_min, 0), t_max]; faster than closest().
+  /// True if the ray hits a triangle at a t in [max(t_min, 0), t_max]. Faster than closest().
   bool any(const Eigen::Vector3f& origin, const Eigen::Vector3f& direction, float t_min = 0.0f,
            float t_max = std::numeric_limits<float>::infinity()) const;
 
-  /// The point of the surface nearest to p, if it is within `max_distance` (m); none for a p that is not finite.
+  /// The point of the surface nearest to p (m), if it is within `max_distance` (m); none if p is not finite.
   std::optional<SurfacePoint> nearest(const Eigen::Vector3f& p,
                                       float max_distance = std::numeric_limits<float>::infinity()) const;
 
-  /// Visit the triangles of all leaves whose boxes `keep` keeps.
+  /// Calls f for the triangles of all leaves whose boxes `keep` accepts.
   ///
-  /// @param keep `bool(const Eigen::Vector3f& min, const Eigen::Vector3f& max)`; must keep a box that contains one it
-  /// keeps
-  /// @param f    `bool(std::uint32_t triangle, const Triangle& corners)`; false ends the visit
+  /// @param keep `bool(const Eigen::Vector3f& min, const Eigen::Vector3f& max)`; if it accepts a box, it must accept
+  /// every
+  ///   box that contains it
+  /// @param f `bool(std::uint32_t triangle, const Triangle& corners)`; the visit ends when it returns false
   template <typename Keep, typename F>
   void visit(Keep&& keep, F&& f) const;
 
  private:
   using Node = detail::BvhNode;
 
-  /// Calls `hit(Hit)` for triangles met, roughly from near to far; it returns the t beyond which nothing matters any
-  /// more.
+  /// Calls `hit(Hit)` for the triangles that the ray hits, roughly from near to far. `hit` returns the largest t that
+  /// is still of interest.
   template <typename F>
   void traverse(const Eigen::Vector3f& origin, const Eigen::Vector3f& direction, float t_min, float t_max,
                 F&& hit) const;
 
-  detail::Uninitialized<Node> nodes_;          // the root first, siblings side by side
+  detail::Uninitialized<Node> nodes_;          // the root first; siblings are adjacent
   detail::Uninitialized<Triangle> triangles_;  // in the order of the leaves
-  detail::Uninitialized<std::uint32_t> ids_;   // of triangles_ in the mesh
+  detail::Uninitialized<std::uint32_t> ids_;   // index in the mesh of each of triangles_
   std::size_t degenerate_ = 0;
 };
 
@@ -143,8 +146,8 @@ void Bvh::traverse(const Eigen::Vector3f& origin, const Eigen::Vector3f& directi
   const Eigen::Vector3d o = origin.cast<double>(), d = direction.cast<double>();
   float limit = t_max * kMargin;
 
-  // Where the ray enters a box, infinity if it does not. A ray that runs within a face of the box gives 0 * inf = NaN,
-  // which the order of the comparisons ignores.
+  // The t at which the ray enters a box, or infinity. A ray that lies in the plane of a face gives 0 * inf = NaN; the
+  // comparisons are written such that NaN changes nothing.
   constexpr float kMiss = std::numeric_limits<float>::infinity();
   const auto enter = [&](const Node& node) {
     float near = t_min, far = limit;
@@ -210,7 +213,7 @@ void Bvh::traverse(const Eigen::Vector3f& origin, const Eigen::Vector3f& directi
   bool found = false;
   traverse(origin, direction, t_min, t_max, [&](const Hit&) {
     found = true;
-    return -1.0f;  // nothing matters any more
+    return -1.0f;  // ends the search
   });
   return found;
 }
@@ -241,7 +244,7 @@ void Bvh::traverse(const Eigen::Vector3f& origin, const Eigen::Vector3f& directi
       Waiting b{node.first + 1, distance_sq(nodes_[node.first + 1])};
       if (a.distance_sq < b.distance_sq) std::swap(a, b);
       stack[waiting++] = a;
-      stack[waiting++] = b;  // the nearer is next
+      stack[waiting++] = b;  // the nearer one is taken first
       continue;
     }
     for (std::uint32_t i = node.first; i < node.first + node.count; ++i) {

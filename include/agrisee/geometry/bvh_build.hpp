@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// @file
-/// How the tree of bvh.hpp is built: top down, each node split where the surface area heuristic over bins along
-/// the axes is lowest (Wald 2007). O(n log n); deterministic.
+/// Builds the tree of bvh.hpp top down. Each node is split where the surface area heuristic, evaluated between bins
+/// along the axes, has the lowest cost (Wald 2007, see bvh.hpp). O(n log n); the result does not depend on the number
+/// of threads.
 #pragma once
 
 #include <agrisee/core/parallel.hpp>
@@ -16,7 +17,8 @@
 
 namespace agrisee::detail {
 
-/// A node: inner (count 0, children `first` and `first + 1`) or a leaf (`count` triangles from `first`). 32 bytes.
+/// A node of 32 bytes: an inner node (count 0; its children are the nodes `first` and `first + 1`) or a leaf (with the
+/// `count` triangles from `first`).
 struct BvhNode {
   Eigen::Vector3f min;
   std::uint32_t first;
@@ -24,12 +26,12 @@ struct BvhNode {
   std::uint32_t count;
 };
 
-/// Deeper than this the heuristic gives way to halving, which needs at most 32 more levels.
+/// Below this depth ranges are simply halved, which takes at most 32 more levels.
 constexpr int kBvhSahDepth = 60;
-/// Bound of the depth of every tree.
+/// No tree is deeper than this.
 constexpr int kBvhMaxDepth = kBvhSahDepth + 36;
 
-/// A box of four floats (the last unused), so that its minima and maxima are single instructions.
+/// A box with corners of four floats, the last unused, so that minima and maxima take one vector instruction.
 struct BvhBox {
   Eigen::Array4f min = Eigen::Array4f::Constant(std::numeric_limits<float>::max());
   Eigen::Array4f max = Eigen::Array4f::Constant(std::numeric_limits<float>::lowest());
@@ -41,23 +43,24 @@ struct BvhBox {
     min = min.min(p);
     max = max.max(p);
   }
-  /// Half of the surface area, in units of the largest box (1 / scale), so that it neither overflows nor vanishes.
+  /// Half of the surface area, with lengths multiplied by `scale`, so that it neither overflows nor underflows.
   float half_area(float scale) const {
     const Eigen::Array4f d = (max - min) * scale;
     return d[0] * d[1] + d[1] * d[2] + d[2] * d[0];
   }
 };
 
-/// A triangle while the tree is built, or none. It has no value to begin with.
+/// A triangle while the tree is being built, or none. The default constructor leaves it without a value.
 struct BvhItem {
   static constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
-  Eigen::Array4f min, max;  // of its box
-  std::uint32_t triangle;   // its index
+  Eigen::Array4f min, max;  // corners of its box (m)
+  std::uint32_t triangle;   // its index in the mesh
   BvhItem() {}
   BvhItem(const Triangle& t, std::uint32_t index) : triangle(index) {
     BvhBox around;
     for (const Eigen::Vector3f& p : t)
-      around.extend(Eigen::Array4f(p[0], p[1], p[2], 0.0f) + 0.0f);  // no -0, which is no less than 0
+      around.extend(Eigen::Array4f(p[0], p[1], p[2], 0.0f) +
+                    0.0f);  // turns -0 into 0, since min and max may return either
     min = around.min;
     max = around.max;
   }
@@ -66,19 +69,19 @@ struct BvhItem {
   Eigen::Array4f center() const { return 0.5f * min + 0.5f * max; }
 };
 
-/// A run of items that becomes a node, and the boxes around them and around their centers.
+/// A run of items that becomes a node, with the box around them and the box around their centers.
 struct BvhRange {
   std::size_t begin = 0, end = 0;
   BvhBox box, centers;
 
   std::size_t size() const { return end - begin; }
-  /// Take in the item at `end`.
+  /// Adds the item at `end`.
   void push(const BvhItem& item) {
     box.extend(item.box());
     centers.extend(item.center());
     ++end;
   }
-  /// Take in as many items as `other` has, which are those that follow.
+  /// Adds the items of `other`, which must follow those of this range.
   void add(const BvhRange& other) {
     box.extend(other.box);
     centers.extend(other.centers);
@@ -86,7 +89,7 @@ struct BvhRange {
   }
 };
 
-/// Bins along the three axes of the box around the centers of a range.
+/// Bins along the three axes of the box around the centers of a range's items.
 struct BvhBins {
   static constexpr int kMost = 16;
   struct Bin {
@@ -94,8 +97,8 @@ struct BvhBins {
     std::uint32_t n = 0;
   };
 
-  int size;                    ///< bins an axis
-  Eigen::Array4f from, scale;  ///< of bin coordinates; the scale is 0 along axes that cannot be split
+  int size;                    ///< number of bins per axis
+  Eigen::Array4f from, scale;  ///< bin = (center - from) * scale; the scale is 0 along axes that cannot be split
 
   explicit BvhBins(const BvhRange& range)
       : size(range.size() < 16   ? 4
@@ -108,7 +111,7 @@ struct BvhBins {
       const float k = static_cast<float>(size) * (1.0f - 1e-6f) / extent[a];
       if (!(extent[a] > 0.0f) || !std::isfinite(k)) continue;
       from[a] = range.centers.min[a];
-      scale[a] = k;  // small enough for rounding never to reach bin `size`
+      scale[a] = k;  // slightly reduced, so that rounding never gives bin `size`
     }
   }
   bool usable() const { return (scale > 0.0f).any(); }
@@ -118,14 +121,14 @@ struct BvhBins {
   }
 };
 
-/// Items with a bin below `bin` along `axis` are the left side.
+/// A split of a range: items with a bin below `bin` along `axis` go to the left.
 struct BvhSplit {
-  int axis = -1;  ///< -1 = the heuristic found none
+  int axis = -1;  ///< -1: the heuristic found no split
   int bin = 0;
   float cost = std::numeric_limits<float>::infinity();
 };
 
-/// What a range's items are in each bin along each axis.
+/// The box and the number of a range's items in each bin along each axis.
 struct BvhHistogram {
   BvhBins::Bin all[3][BvhBins::kMost];
 
@@ -146,8 +149,8 @@ struct BvhHistogram {
   }
 };
 
-/// `total`, with which the parts of items [begin, end) that `add_to(part, begin, end)` makes are joined by part.add.
-/// Large runs are divided among threads; the order of the parts must not matter.
+/// Adds the items [begin, end) to `total` by add_to(part, begin, end). Large runs are divided among threads, each of
+/// which fills a part of its own; the parts are then added to `total` in any order, which must not change the result.
 template <typename Part, typename AddTo>
 void add_parts(Part& total, std::size_t begin, std::size_t end, int threads, const AddTo& add_to) {
   constexpr std::size_t kChunk = 8192;
@@ -161,7 +164,7 @@ void add_parts(Part& total, std::size_t begin, std::size_t end, int threads, con
   });
 }
 
-/// The split between bins that the surface area heuristic takes to be cheapest.
+/// The split between bins with the lowest cost by the surface area heuristic.
 /// @param scale see BvhBox::half_area()
 inline BvhSplit cheapest_split(const Uninitialized<BvhItem>& items, const BvhRange& range, const BvhBins& bins,
                                float scale, int threads) {
@@ -186,7 +189,7 @@ inline BvhSplit cheapest_split(const Uninitialized<BvhItem>& items, const BvhRan
     sweep = BvhBox();
     count = 0;
     for (int b = 1; b < bins.size; ++b) {
-      if (all[a][b - 1].n == 0) continue;  // a split here puts the same items on either side as the one before
+      if (all[a][b - 1].n == 0) continue;  // the split before this one is the same
       sweep.extend(all[a][b - 1].box);
       count += all[a][b - 1].n;
       if (right_cost[b] < 0.0f) break;
@@ -197,13 +200,14 @@ inline BvhSplit cheapest_split(const Uninitialized<BvhItem>& items, const BvhRan
   return best;
 }
 
-/// Split a range: its items are reordered.
+/// Splits a range in two and reorders its items accordingly.
 /// @param threads the result does not depend on it
-/// @return the two sides; the left one is empty when a leaf is better
+/// @return the left and the right part; the left one is empty if a leaf is better than a split
 inline std::pair<BvhRange, BvhRange> split_bvh(Uninitialized<BvhItem>& items, const BvhRange& range, int depth,
                                                int threads = 1) {
-  constexpr std::size_t kMinLeaf = 4, kMaxLeaf = 8;  // fewer are not split, more always are
-  constexpr float kNodeCost = 1.0f;                  // of a step down, in triangle tests
+  constexpr std::size_t kMinLeaf = 4,
+                        kMaxLeaf = 8;  // ranges up to kMinLeaf are never split, those above kMaxLeaf always
+  constexpr float kNodeCost = 1.0f;    // cost of visiting a node, in triangle tests
   BvhRange left, right;
   left.begin = left.end = range.begin;
   if (range.size() <= kMinLeaf) return {left, right};
@@ -226,7 +230,7 @@ inline std::pair<BvhRange, BvhRange> split_bvh(Uninitialized<BvhItem>& items, co
       }
     }
   } else {
-    // All centers (nearly) coincide, or the tree is too deep: halve along the longest axis.
+    // All centers (nearly) coincide or the tree is too deep: halve the range along the longest axis.
     int axis = 0;
     (range.centers.max - range.centers.min).head<3>().maxCoeff(&axis);
     const auto at = [&](std::size_t i) { return items.begin() + static_cast<std::ptrdiff_t>(i); };
@@ -243,15 +247,15 @@ inline std::pair<BvhRange, BvhRange> split_bvh(Uninitialized<BvhItem>& items, co
   return {left, right};
 }
 
-/// A node that is still to be made of a range.
+/// A range that is still to be turned into a node.
 struct BvhTask {
   BvhRange range;
   std::uint32_t node;
   int depth;
 };
 
-/// Split a task's range and make its node: a leaf, or an inner one whose children's nodes are added behind the others.
-/// @param sides of the range, see split_bvh
+/// Fills the node of a task. If the range is split, two nodes for the children are appended to `nodes`.
+/// @param sides the parts of the range, see split_bvh
 /// @param then `void(const BvhTask&)`, called for the right child, then for the left one
 template <typename Then>
 void make_bvh_node(Uninitialized<BvhNode>& nodes, const BvhTask& task, const std::pair<BvhRange, BvhRange>& sides,
@@ -273,7 +277,7 @@ void make_bvh_node(Uninitialized<BvhNode>& nodes, const BvhTask& task, const std
   then(BvhTask{left, children, task.depth + 1});
 }
 
-/// A tree of its own of a range, whose root stands at `depth`.
+/// Builds a separate tree from a range; the depth of its root counts as `depth`.
 inline Uninitialized<BvhNode> grow_bvh(Uninitialized<BvhItem>& items, const BvhRange& range, int depth) {
   Uninitialized<BvhNode> nodes;
   nodes.reserve(range.size());
@@ -289,10 +293,11 @@ inline Uninitialized<BvhNode> grow_bvh(Uninitialized<BvhItem>& items, const BvhR
   return nodes;
 }
 
-/// The nodes of a tree over `items`, which are put into the order of the leaves. No items: no nodes.
+/// Builds the nodes of a tree over `items`, and puts the items into the order of the leaves. Without items there are no
+/// nodes.
 /// @param threads the result does not depend on it
 inline Uninitialized<BvhNode> build_bvh(Uninitialized<BvhItem>& items, int threads) {
-  // Ranges of at most so many grow trees of their own; those above are split level by level.
+  // Larger ranges are split level by level; each range of at most this size becomes a subtree, built by one thread.
   const std::size_t subtree = std::max<std::size_t>(8192, items.size() / 6);
   Uninitialized<BvhNode> nodes;
   if (items.empty()) return nodes;
@@ -306,19 +311,19 @@ inline Uninitialized<BvhNode> build_bvh(Uninitialized<BvhItem>& items, int threa
   add(whole);
   while (!level.empty()) {
     std::vector<std::pair<BvhRange, BvhRange>> sides(level.size());
-    const int each = threads / static_cast<int>(level.size());  // threads
+    const int each = threads / static_cast<int>(level.size());  // number of threads per range
     const auto split = [&](std::size_t i) { sides[i] = split_bvh(items, level[i].range, level[i].depth, each); };
     parallel_for(level.size(), threads, split, 1);
     const std::vector<BvhTask> split_tasks = std::exchange(level, {});
     for (std::size_t i = 0; i < sides.size(); ++i) make_bvh_node(nodes, split_tasks[i], sides[i], add);
   }
-  // The largest first, that all threads end at about the same time.
+  // The largest first, so that all threads finish at about the same time.
   std::stable_sort(roots.begin(), roots.end(),
                    [](const BvhTask& a, const BvhTask& b) { return a.range.size() > b.range.size(); });
   std::vector<Uninitialized<BvhNode>> subtrees(roots.size());
   const auto grow = [&](std::size_t r) { subtrees[r] = grow_bvh(items, roots[r].range, roots[r].depth); };
   parallel_for(roots.size(), threads, grow, 1);
-  std::vector<std::size_t> shifts;  // where a subtree's nodes go, but for its root, whose place is there
+  std::vector<std::size_t> shifts;  // added to the positions of a subtree's nodes; its root has a place already
   std::size_t size = nodes.size();
   for (const auto& tree : subtrees) {
     shifts.push_back(size - 1);

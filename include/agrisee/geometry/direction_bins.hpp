@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// @file
-/// Divides the directions around a centre into bins of nearly equal solid angle, to tell how much of a body has been
-/// seen.
+/// Divides the directions around a point into bins of nearly equal solid angle, to measure from how many sides a body
+/// has been seen.
 #pragma once
 
 #include <agrisee/core/types.hpp>
@@ -11,19 +11,17 @@
 
 namespace agrisee {
 
-/// 6 x 6 bins on each face of a cube, spaced by equal angles.
+/// Bins of directions: 6 x 6 on each face of a cube, at equal angular steps.
 struct DirectionBins {
-  /// Bins along an edge of the cube.
-  static constexpr int kSide = 6;
-  /// Bins in all.
-  static constexpr int kCount = 6 * kSide * kSide;
+  static constexpr int kSide = 6;                   ///< bins along an edge of the cube
+  static constexpr int kCount = 6 * kSide * kSide;  ///< bins in total
 
-  /// Bin of a direction (need not be unit length; not zero).
+  /// The bin of a direction of any length but zero.
   static int bin(const Eigen::Vector3d& d) {
     Eigen::Index axis;
     const double largest = d.cwiseAbs().maxCoeff(&axis);
     const int face = static_cast<int>(axis) * 2 + (d[axis] < 0.0 ? 1 : 0);
-    const auto cell = [&](double x) {  // borders at tan(-30), tan(-15) ... tan(30) degrees of the face
+    const auto cell = [&](double x) {  // borders at -30, -15, 0, 15 and 30 degrees
       constexpr double kTan15 = 0.26794919243112270647, kTan30 = 0.57735026918962576451;
       const double a = std::abs(x), steps = (a >= kTan15 * largest) + (a >= kTan30 * largest);
       return static_cast<int>(x >= 0.0 ? 3.0 + steps : 2.0 - steps);
@@ -31,17 +29,17 @@ struct DirectionBins {
     return (face * kSide + cell(d[(axis + 1) % 3])) * kSide + cell(d[(axis + 2) % 3]);
   }
 
-  /// Central direction (unit) of each bin.
+  /// The central direction (unit) of each bin.
   static const std::array<Eigen::Vector3d, kCount>& directions() {
     static const std::array<Eigen::Vector3d, kCount> table = [] {
       std::array<Eigen::Vector3d, kCount> t;
-      for (int b = 0; b < kCount; ++b) t[static_cast<std::size_t>(b)] = at(b, 0.5, 0.5);
+      for (int b = 0; b < kCount; ++b) at(t, b) = direction(b, 0.5, 0.5);
       return t;
     }();
     return table;
   }
 
-  /// Solid angle of each bin as a share of the sphere; they sum to 1.
+  /// The solid angle of each bin as a share of the sphere; the shares sum to 1.
   static const std::array<double, kCount>& shares() {
     static const std::array<double, kCount> table = [] {
       std::array<double, kCount> t{};
@@ -52,8 +50,9 @@ struct DirectionBins {
           for (int j = 0; j < kFine; ++j) {
             const double a0 = double(i) / kFine, a1 = double(i + 1) / kFine;
             const double b0 = double(j) / kFine, b1 = double(j + 1) / kFine;
-            const Eigen::Vector3d p = at(b, a0, b0), q = at(b, a1, b0), r = at(b, a1, b1), s = at(b, a0, b1);
-            t[static_cast<std::size_t>(b)] += 0.5 * ((q - p).cross(r - p).norm() + (r - p).cross(s - p).norm());
+            const Eigen::Vector3d p = direction(b, a0, b0), q = direction(b, a1, b0), r = direction(b, a1, b1),
+                                  s = direction(b, a0, b1);
+            at(t, b) += 0.5 * ((q - p).cross(r - p).norm() + (r - p).cross(s - p).norm());
           }
       for (double x : t) sum += x;
       for (double& x : t) x /= sum;
@@ -63,7 +62,8 @@ struct DirectionBins {
   }
 
  private:
-  static Eigen::Vector3d at(int b, double fu, double fv) {
+  /// The direction (unit) at the fractions fu, fv in [0, 1] of bin b along the two axes of its face.
+  static Eigen::Vector3d direction(int b, double fu, double fv) {
     const int face = b / (kSide * kSide), u = (b / kSide) % kSide, v = b % kSide;
     const int axis = face / 2;
     Eigen::Vector3d d;

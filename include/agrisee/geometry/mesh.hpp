@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// @file
-/// Triangle meshes.
+/// Triangle meshes: moving, joining, area and volume.
 #pragma once
 
 #include <agrisee/core/pose.hpp>
@@ -9,27 +9,27 @@
 
 namespace agrisee {
 
-/// Indexed triangles; counter-clockwise seen from outside.
+/// A triangle mesh. The vertices of a triangle are counter-clockwise as seen from outside.
 struct Mesh {
-  std::vector<Eigen::Vector3f> vertices;                ///< metres
+  std::vector<Eigen::Vector3f> vertices;                ///< m
   std::vector<std::array<std::uint32_t, 3>> triangles;  ///< indices into `vertices`
 };
 
-/// The mesh scaled about its own origin, then moved by `pose`.
+/// A copy of the mesh, scaled about the origin of its frame, then moved by `pose`.
 inline Mesh transformed(const Mesh& mesh, const Pose& pose, double scale = 1.0) {
   Mesh out = mesh;
   for (Eigen::Vector3f& v : out.vertices) v = (pose * (scale * v.cast<double>())).cast<float>();
   return out;
 }
 
-/// Append `other` to `mesh`.
+/// Appends the mesh `other` to `mesh`.
 inline void append(Mesh& mesh, const Mesh& other) {
   const auto base = static_cast<std::uint32_t>(mesh.vertices.size());
   mesh.vertices.insert(mesh.vertices.end(), other.vertices.begin(), other.vertices.end());
   for (const auto& t : other.triangles) mesh.triangles.push_back({t[0] + base, t[1] + base, t[2] + base});
 }
 
-/// Total area (m2).
+/// Total area of the triangles (m2).
 inline double area(const Mesh& mesh) {
   double sum = 0.0;
   for (const auto& t : mesh.triangles) {
@@ -39,7 +39,7 @@ inline double area(const Mesh& mesh) {
   return sum;
 }
 
-/// Enclosed volume (m3) of a closed mesh, by the divergence theorem.
+/// Volume (m3) enclosed by a closed mesh, by the divergence theorem.
 inline double volume(const Mesh& mesh) {
   double sum = 0.0;
   for (const auto& t : mesh.triangles)

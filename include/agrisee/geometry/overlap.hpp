@@ -1,40 +1,40 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// @file
-/// Whether a solid of the arm overlaps a space to keep out of or another such solid: capsules for a first answer,
-/// flat-ended cylinders of any direction for the exact one. Metres, one frame for both.
+/// Tests whether solids of an arm overlap forbidden spaces or each other: capsules for a quick conservative test,
+/// flat-ended cylinders of any orientation for the exact one. Metres; all solids in one frame.
 ///
-/// Solids that only touch do not overlap: all tests allow kTouch of penetration, so that a sensor may stand exactly at
-/// the border of a space. Where a coordinate is not finite the answer is that they overlap.
+/// Solids that only touch do not overlap. All tests allow a penetration of kTouch, so a sensor may stand exactly at the
+/// border of a forbidden space. If a coordinate is not finite, the tests report an overlap.
 #pragma once
 
 #include <agrisee/geometry/primitives.hpp>
 
 namespace agrisee {
 
-/// Penetration (m) that still counts as touching.
+/// Largest penetration (m) that still counts as touching.
 constexpr double kTouch = 1e-6;
 
-/// A flat-ended solid cylinder (m) whose axis points anywhere.
+/// A flat-ended solid cylinder (m) of any orientation.
 struct OrientedCylinder {
   Eigen::Vector3d center = Eigen::Vector3d::Zero();  ///< m
-  Eigen::Vector3d axis = Eigen::Vector3d::UnitZ();   ///< unit
+  Eigen::Vector3d axis = Eigen::Vector3d::UnitZ();   ///< direction of the axis, unit
   double radius = 0.0;                               ///< m
-  double height = 0.0;                               ///< full height, half of it on either side of the centre
+  double height = 0.0;                               ///< full height (m), half of it on either side of the center
 };
 
-/// A capsule that encloses a cylinder: on the same axis, its segment half a radius short of either end, so that it is
-/// 12 % wider and stands out 0.62 radii at the ends.
+/// A capsule that encloses a cylinder. It has the same axis; its segment ends half a radius before the cylinder's ends,
+/// so that it is 12 % wider than the cylinder and 0.62 radii longer at each end.
 inline Capsule enclosing_capsule(const OrientedCylinder& c) {
   const double inset = std::min(0.5 * c.radius, 0.5 * c.height);
   const Eigen::Vector3d half = (0.5 * c.height - inset) * c.axis;
   return {c.center - half, c.center + half, std::hypot(c.radius, inset)};
 }
 
-/// The point of a convex solid that is nearest to p; p itself where it lies inside.
+/// The point of a box nearest to p (m); p itself if it lies inside.
 inline Eigen::Vector3d nearest_point(const Box& box, const Eigen::Vector3d& p) {
   return p.cwiseMax(box.center - 0.5 * box.size).cwiseMin(box.center + 0.5 * box.size);
 }
-/// The point of a cylinder that is nearest to p (m).
+/// The point of a cylinder nearest to p (m); p itself if it lies inside.
 inline Eigen::Vector3d nearest_point(const OrientedCylinder& c, const Eigen::Vector3d& p) {
   const Eigen::Vector3d d = p - c.center;
   const double along = d.dot(c.axis);
@@ -43,27 +43,28 @@ inline Eigen::Vector3d nearest_point(const OrientedCylinder& c, const Eigen::Vec
   if (rho > c.radius) across *= c.radius / rho;
   return c.center + std::clamp(along, -0.5 * c.height, 0.5 * c.height) * c.axis + across;
 }
-/// The point of a cylinder that is nearest to p (m).
+/// The point of a cylinder nearest to p (m); p itself if it lies inside.
 inline Eigen::Vector3d nearest_point(const Cylinder& c, const Eigen::Vector3d& p) {
   return nearest_point(OrientedCylinder{c.center, Eigen::Vector3d::UnitZ(), c.radius, c.height}, p);
 }
 
-/// The support function: the largest v . x over the points x of a convex solid.
+/// Support function: the largest v . x over the points x of a box.
 inline double support(const Box& box, const Eigen::Vector3d& v) {
   return v.dot(box.center) + 0.5 * v.cwiseAbs().dot(box.size);
 }
-/// How far a cylinder reaches along v (m times the length of v).
+/// Support function of a cylinder: the largest v . x over its points x.
 inline double support(const Cylinder& c, const Eigen::Vector3d& v) {
   return v.dot(c.center) + c.radius * std::hypot(v.x(), v.y()) + 0.5 * c.height * std::abs(v.z());
 }
 
-/// How far a cylinder reaches along v (m times the length of v).
+/// Support function of a cylinder: the largest v . x over its points x.
 inline double support(const OrientedCylinder& c, const Eigen::Vector3d& v) {
   const double along = v.dot(c.axis);
   return v.dot(c.center) + 0.5 * c.height * std::abs(along) + c.radius * (v - along * c.axis).norm();
 }
 
-/// Whether a capsule overlaps a Box, Cylinder or KeepOut. About 5 ns where its middle is far, 30 to 200 ns else.
+/// True if a capsule overlaps a Box, Cylinder or KeepOut. Takes about 5 ns if its middle is far away, otherwise 30 to
+/// 200 ns.
 template <typename Solid>
 bool overlap(const Capsule& capsule, const Solid& solid) {
   const double reach = capsule.radius - kTouch;
@@ -74,7 +75,7 @@ bool overlap(const Capsule& capsule, const Solid& solid) {
   return !(distance(solid, capsule.a, capsule.b) >= reach);
 }
 
-/// Whether two capsules overlap.
+/// True if two capsules overlap.
 inline bool overlap(const Capsule& a, const Capsule& b) {
   const double reach = a.radius + b.radius - kTouch;
   const double halves = 0.5 * ((a.b - a.a).norm() + (b.b - b.a).norm());
@@ -82,12 +83,13 @@ inline bool overlap(const Capsule& a, const Capsule& b) {
   return !(segment_distance(a.a, a.b, b.a, b.b) >= reach);
 }
 
-/// Whether a cylinder of any direction overlaps a Box, an upright Cylinder or another cylinder of any direction.
+/// True if a cylinder of any orientation overlaps a Box, an upright Cylinder or another cylinder of any orientation.
 ///
-/// Alternating projections between the two convex solids (Bregman, 1965), over-relaxed so that they end inside a common
-/// part rather than creep along its border. They end by proof: a point that lies in both, or a plane across the line
-/// between two nearest points that has each solid on its own side. One or two rounds of 20 ns as a rule; about one case
-/// in a thousand, solids that graze each other, is still open after 60 rounds and counts as an overlap.
+/// The algorithm projects a point alternately onto the two convex solids (Bregman, 1965), with over-relaxation so that
+/// it moves into their intersection rather than slowly along its border. It stops with a proof: either a point that
+/// lies in both, or a plane that separates them, perpendicular to the line between two nearest points. Usually one or
+/// two rounds of 20 ns suffice. About one case in a thousand, in which the solids graze each other, is still undecided
+/// after 60 rounds and counts as an overlap.
 template <typename Solid>
 bool overlap(OrientedCylinder body, const Solid& solid) {
   constexpr int kRounds = 60;
@@ -105,7 +107,7 @@ bool overlap(OrientedCylinder body, const Solid& solid) {
   }
   return true;
 }
-/// Whether a cylinder reaches into a space to keep out of.
+/// True if a cylinder overlaps a forbidden space.
 inline bool overlap(const OrientedCylinder& body, const KeepOut& space) {
   return std::visit([&](const auto& shape) { return overlap(body, shape); }, space.shape);
 }

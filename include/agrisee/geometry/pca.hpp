@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// @file
-/// Principal axes of small sets of points: the basis of normals, curvatures and frontier frames.
+/// Principal axes of small sets of points. Normals, curvatures and the local frames of frontiers are computed from
+/// them.
 #pragma once
 
 #include <agrisee/core/traits.hpp>
@@ -12,8 +13,8 @@
 
 namespace agrisee {
 
-/// Surface variation lambda0 / (lambda0 + lambda1 + lambda2) (Pauly et al., 2002) of variances along principal axes,
-/// ascending; 0 where all are.
+/// Surface variation l0 / (l0 + l1 + l2) of Pauly, Gross & Kobbelt, "Efficient Simplification of Point-Sampled
+/// Surfaces", 2002, for the variances l0 <= l1 <= l2 along the principal axes; 0 if all are 0.
 template <typename S>
 S surface_variation(const Vector3<S>& variance) {
   const S sum = variance.sum();
@@ -24,24 +25,24 @@ S surface_variation(const Vector3<S>& variance) {
 template <typename S>
 struct PrincipalAxes {
   Vector3<S> mean = Vector3<S>::Zero();      ///< m
-  Vector3<S> variance = Vector3<S>::Zero();  ///< along the axes (divided by n), ascending, never negative
-  Matrix3<S> axes = Matrix3<S>::Identity();  ///< columns, unit, by ascending variance; signs are arbitrary
-  /// Surface variation; 0 where all points coincide.
+  Vector3<S> variance = Vector3<S>::Zero();  ///< along the axes (m2, divided by n), ascending, never negative
+  Matrix3<S> axes = Matrix3<S>::Identity();  ///< unit columns in the order of `variance`; their signs are arbitrary
+  /// Surface variation; 0 if all points coincide.
   S curvature() const { return surface_variation<S>(variance); }
 };
 
-/// Eigenvalues (ascending, clamped at 0) and axes of a covariance matrix.
+/// Principal axes from a mean (m) and a covariance matrix (m2).
 template <typename S>
 PrincipalAxes<S> principal_axes(const Vector3<S>& mean, const Matrix3<S>& covariance) {
   PrincipalAxes<S> out;
   out.mean = mean;
-  // Computed in double with the entries scaled to one: the closed form loses half of the digits.
+  // In double and scaled to entries of about 1, since the closed form loses half of the digits.
   const Eigen::Matrix3d c = covariance.template cast<double>();
   const double scale = c.cwiseAbs().maxCoeff();
   if (!(scale > 0.0)) return out;
   Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver;
   solver.computeDirect(c / scale);
-  // Where two eigenvalues nearly coincide the closed form's axes are poor: iterate instead.
+  // If two eigenvalues nearly coincide, the axes of the closed form are inaccurate: iterate instead.
   const Eigen::Vector3d w = solver.eigenvalues();
   if (w[1] - w[0] < 1e-4 || w[2] - w[1] < 1e-4) solver.compute(c / scale);
   out.variance = (solver.eigenvalues() * scale).cwiseMax(0.0).template cast<S>();
@@ -49,12 +50,16 @@ PrincipalAxes<S> principal_axes(const Vector3<S>& mean, const Matrix3<S>& covari
   return out;
 }
 
-/// The axis of least variance of a covariance matrix (unit, its sign arbitrary), in a quarter of the time of all axes.
-/// The least eigenvalue is found by Newton's method from below, its axis is the greatest column of the adjugate of what
-/// is left of the matrix; where eigenvalues nearly coincide with the least, by iteration.
-/// @param covariance in double; symmetric, no eigenvalue less than 0
-/// @param variance receives the eigenvalues, ascending, never negative, the greater two to half of their digits where
-/// they coincide; zero, as the axis, where the matrix is zero, so small that 1 / it overflows, or not finite
+/// The axis of least variance of a covariance matrix, in a quarter of the time that all axes take. Newton's method from
+/// below finds the least eigenvalue l; the axis is the longest column of the adjugate of (covariance - l I). If another
+/// eigenvalue is nearly equal to l, an iterative solver is used instead.
+/// @param covariance symmetric, without negative eigenvalues
+/// @param variance receives the eigenvalues, ascending, never negative; if the larger two coincide, these are accurate
+/// to
+///   half of their digits only
+/// @return the axis, of unit length and arbitrary sign; both the axis and `variance` are zero if the matrix is zero,
+/// not
+///   finite, or so small that its inverse overflows
 inline Eigen::Vector3d least_axis(const Eigen::Matrix3d& covariance, Eigen::Vector3d& variance) {
   variance.setZero();
   const double scale = covariance.diagonal().maxCoeff();
@@ -62,7 +67,7 @@ inline Eigen::Vector3d least_axis(const Eigen::Matrix3d& covariance, Eigen::Vect
   const double up = 1.0 / scale;
   double xx = up * covariance(0, 0), yy = up * covariance(1, 1), zz = up * covariance(2, 2);
   const double xy = up * covariance(1, 0), xz = up * covariance(2, 0), yz = up * covariance(2, 1);
-  // The characteristic polynomial, x^3 - trace x^2 + minors x - determinant, grows up to its least root.
+  // The characteristic polynomial x^3 - trace x^2 + minors x - determinant increases up to its least root.
   const double trace = xx + yy + zz;
   const double minors = (xx * yy - xy * xy) + (xx * zz - xz * xz) + (yy * zz - yz * yz);
   const double determinant = xx * (yy * zz - yz * yz) - xy * (xy * zz - yz * xz) + xz * (xy * yz - yy * xz);
@@ -76,10 +81,11 @@ inline Eigen::Vector3d least_axis(const Eigen::Matrix3d& covariance, Eigen::Vect
     least += step;
     found = step < 1e-13;
   }
-  const double half = 0.5 * (trace - least), product = minors - 2.0 * half * least;  // of the other two
+  const double half = 0.5 * (trace - least),
+               product = minors - 2.0 * half * least;  // mean and product of the other two
   const double most = half + std::sqrt(std::max(half * half - product, 0.0));
   const double middle = most > 0.0 ? std::min(product / most, most) : 0.0;
-  // Rounding turns the axis by some epsilon / ((middle - least)^2 (most - least)).
+  // Rounding turns the axis by about epsilon / ((middle - least)^2 (most - least)).
   constexpr double kNear = 1e-7;
   if (!found || !(middle > least) || !((middle - least) * (middle - least) * (most - least) > kNear)) {
     const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(up * covariance);
@@ -88,23 +94,23 @@ inline Eigen::Vector3d least_axis(const Eigen::Matrix3d& covariance, Eigen::Vect
   }
   variance = scale * Eigen::Vector3d(least, middle, most);
   xx -= least, yy -= least, zz -= least;
-  const double a = yy * zz - yz * yz, b = xx * zz - xz * xz, c = xx * yy - xy * xy;  // of the adjugate
+  const double a = yy * zz - yz * yz, b = xx * zz - xz * xz, c = xx * yy - xy * xy;  // entries of the adjugate
   const double ab = xz * yz - xy * zz, ac = xy * yz - xz * yy, bc = xy * xz - xx * yz;
   if (a >= b && a >= c) return Eigen::Vector3d(a, ab, ac).normalized();
   return b >= c ? Eigen::Vector3d(ab, b, bc).normalized() : Eigen::Vector3d(ac, bc, c).normalized();
 }
 
-/// Mean and covariance (divided by n) of points as they come, in double. Sums are taken relative to an origin that
-/// should lie among the points, so that clouds far from zero lose nothing.
+/// Running mean and covariance (divided by n) of points that are added one by one, in double. Sums are taken relative
+/// to an origin that should lie among the points, so that no digits are lost for points far from zero.
 class Moments {
  public:
   Moments() { reset(Eigen::Vector3d::Zero()); }
-  /// Begin anew; sums are taken about `origin` (m), which spares them rounding.
+  /// Removes all points and sets the origin (m) of the sums.
   void reset(const Eigen::Vector3d& origin) {
     origin_ = origin;
     n_ = x_ = y_ = z_ = xx_ = xy_ = xz_ = yy_ = yz_ = zz_ = 0.0;
   }
-  /// Take in a point (m).
+  /// Adds a point (m).
   void add(const Eigen::Vector3d& p) {
     const double x = p.x() - origin_.x(), y = p.y() - origin_.y(), z = p.z() - origin_.z();
     n_ += 1.0;
@@ -113,9 +119,9 @@ class Moments {
   }
   /// Number of points.
   double count() const { return n_; }
-  /// The origin without points.
+  /// Mean (m); the origin if there are no points.
   Eigen::Vector3d mean() const { return n_ > 0.0 ? Eigen::Vector3d(origin_ + offset()) : origin_; }
-  /// Zero without points.
+  /// Covariance (m2); zero if there are no points.
   Eigen::Matrix3d covariance() const {
     if (n_ == 0.0) return Eigen::Matrix3d::Zero();
     const double x = x_ / n_, y = y_ / n_, z = z_ / n_;
@@ -134,7 +140,8 @@ class Moments {
   double n_, x_, y_, z_, xx_, xy_, xz_, yy_, yz_, zz_;
 };
 
-/// Principal axes of the points `indices` of a cloud (any range of integers). No points: zero mean and variance.
+/// Principal axes of the points `indices` (any range of integers) of a cloud. Mean and variance are zero if there are
+/// no points.
 template <typename C, typename Range>
 PrincipalAxes<scalar_t<C>> principal_axes(const C& cloud, const Range& indices) {
   using S = scalar_t<C>;

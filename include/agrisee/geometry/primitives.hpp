@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// @file
-/// The solids of collision checks: boxes and upright cylinders to keep out of, capsules for the arm's links. Metres.
-/// Distances are to solids, so they are 0 inside; how two solids overlap is in geometry/overlap.hpp.
+/// The solids of collision checks, and distances to them: boxes and upright cylinders for forbidden spaces, capsules
+/// for the links of an arm. Metres. The distance to a solid is 0 inside it. Overlap of two solids is in
+/// geometry/overlap.hpp.
 #pragma once
 
 #include <agrisee/core/error.hpp>
@@ -18,22 +19,22 @@ namespace agrisee {
 /// An axis-aligned solid box (m).
 struct Box {
   Eigen::Vector3d center = Eigen::Vector3d::Zero();  ///< m
-  Eigen::Vector3d size = Eigen::Vector3d::Zero();    ///< full edge lengths
+  Eigen::Vector3d size = Eigen::Vector3d::Zero();    ///< full edge lengths (m)
 };
 
-/// A solid cylinder (m) whose axis is parallel to world's z.
+/// A solid cylinder (m) with its axis parallel to the z axis of world.
 struct Cylinder {
   Eigen::Vector3d center = Eigen::Vector3d::Zero();  ///< m
   double radius = 0.0;                               ///< m
-  double height = 0.0;                               ///< full height, half of it on either side of the centre
+  double height = 0.0;                               ///< full height (m), half of it on either side of the center
 };
 
-/// A space that neither arm nor sensor may enter; it does not hide anything from the sensor.
+/// A space that neither the arm nor the sensor may enter. It does not block the sensor's view.
 struct KeepOut {
-  std::string name;                   ///< as messages call it
-  std::variant<Box, Cylinder> shape;  ///< world
+  std::string name;                   ///< used in messages
+  std::variant<Box, Cylinder> shape;  ///< in world
 
-  /// @throws ParameterError naming the space and its size, when it has none or is not finite
+  /// @throws ParameterError with the name of the space if a size is not positive or a number not finite
   void check() const {
     const auto require = [&](bool ok, const char* what, double value) {
       check_parameter(ok, ("keep_out '" + name + "': " + what).c_str(), "positive and finite", value);
@@ -52,28 +53,28 @@ struct KeepOut {
 /// All points within `radius` (m) of the segment from a to b.
 struct Capsule {
   Eigen::Vector3d a = Eigen::Vector3d::Zero();  ///< one end of its axis (m)
-  Eigen::Vector3d b = Eigen::Vector3d::Zero();  ///< the other (m)
+  Eigen::Vector3d b = Eigen::Vector3d::Zero();  ///< the other end (m)
   double radius = 0.0;                          ///< m
 };
 
-/// Distance (m) from a point to a solid, 0 inside.
+/// Distance (m) from a point to a box; 0 inside.
 inline double distance(const Box& box, const Eigen::Vector3d& p) {
   return ((p - box.center).cwiseAbs() - 0.5 * box.size).cwiseMax(0.0).norm();
 }
-/// Distance (m) of a point to a cylinder; 0 inside.
+/// Distance (m) from a point to a cylinder; 0 inside.
 inline double distance(const Cylinder& c, const Eigen::Vector3d& p) {
   const Eigen::Vector3d d = p - c.center;
   return std::hypot(std::max(std::hypot(d.x(), d.y()) - c.radius, 0.0),
                     std::max(std::abs(d.z()) - 0.5 * c.height, 0.0));
 }
-/// Distance (m) of a point to a space to keep out of; 0 inside.
+/// Distance (m) from a point to a forbidden space; 0 inside.
 inline double distance(const KeepOut& k, const Eigen::Vector3d& p) {
   return std::visit([&](const auto& shape) { return distance(shape, p); }, k.shape);
 }
 
-/// Distance (m) from a box to the segment from a to b, 0 where they touch. Exact: half the derivative of the squared
-/// distance along the segment rises and is linear between the (at most six) places where the segment crosses the planes
-/// of the box's faces, so the minimum follows from the two places about its zero.
+/// Distance (m) from a box to the segment from a to b; 0 if they intersect. Exact: the derivative of the squared
+/// distance along the segment increases, and it is linear between the at most six points where the segment crosses the
+/// planes of the box's faces. The minimum is interpolated between the two of these points on either side of the zero.
 inline double distance(const Box& box, const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
   const Eigen::Vector3d p = a - box.center, d = b - a, h = 0.5 * box.size;
   const auto slope = [&](double t) {
@@ -102,13 +103,14 @@ inline double distance(const Box& box, const Eigen::Vector3d& a, const Eigen::Ve
   return distance(box, Eigen::Vector3d(a + (lo + (hi - lo) * at_lo / (at_lo - at_hi)) * d));
 }
 
-/// Distance (m) from an upright cylinder to the segment from a to b, 0 where they touch; exact to about 1e-12 m. The
-/// squared distance is convex along the segment: Newton's method on its derivative, kept inside a shrinking bracket.
+/// Distance (m) from an upright cylinder to the segment from a to b; 0 if they intersect. Exact to about 1e-12 m. The
+/// squared distance is convex along the segment; Newton's method finds the zero of its derivative, kept inside a
+/// shrinking bracket.
 inline double distance(const Cylinder& c, const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
   const Eigen::Vector3d p = a - c.center, d = b - a;
   const double half = 0.5 * c.height, across_sq = d.x() * d.x() + d.y() * d.y();
   double curvature = 0.0;
-  const auto slope = [&](double t) {  // half the first derivative; half the second goes to `curvature`
+  const auto slope = [&](double t) {  // half the first derivative; sets `curvature` to half the second
     const double x = p.x() + t * d.x(), y = p.y() + t * d.y(), z = p.z() + t * d.z();
     const double rho = std::sqrt(x * x + y * y), out = rho - c.radius, over = z - std::clamp(z, -half, half);
     double sum = d.z() * over;
@@ -122,7 +124,7 @@ inline double distance(const Cylinder& c, const Eigen::Vector3d& a, const Eigen:
   };
   double t = 0.0, at = slope(0.0);
   if (at >= 0.0) return distance(c, a);
-  const double newton_from_a = -at / curvature;  // the slope is not zero, hence neither is its own
+  const double newton_from_a = -at / curvature;  // the slope is not zero here, so the curvature is not either
   if (slope(1.0) <= 0.0) return distance(c, b);
   double lo = 0.0, hi = 1.0;
   t = newton_from_a < 1.0 ? newton_from_a : 0.5;
@@ -138,12 +140,12 @@ inline double distance(const Cylinder& c, const Eigen::Vector3d& a, const Eigen:
   }
   return distance(c, Eigen::Vector3d(a + t * d));
 }
-/// Distance (m) of the segment from a to b to a space to keep out of; 0 where it enters.
+/// Distance (m) from a forbidden space to the segment from a to b; 0 if they intersect.
 inline double distance(const KeepOut& k, const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
   return std::visit([&](const auto& shape) { return distance(shape, a, b); }, k.shape);
 }
 
-/// Distance (m) between the segments p1 q1 and p2 q2 (Ericson, Real-Time Collision Detection, 5.1.9).
+/// Distance (m) between the segments from p1 to q1 and from p2 to q2 (Ericson, Real-Time Collision Detection, 5.1.9).
 inline double segment_distance(const Eigen::Vector3d& p1, const Eigen::Vector3d& q1, const Eigen::Vector3d& p2,
                                const Eigen::Vector3d& q2) {
   const auto clamp01 = [](double x) { return std::clamp(x, 0.0, 1.0); };

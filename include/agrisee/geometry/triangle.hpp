@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// @file
-/// One triangle: what a ray does to it and which of its points is nearest. Metres; computed in double from corners in
-/// single precision, so that the corners' differences and products carry no rounding worth speaking of.
+/// A single triangle: intersection with a ray, and the nearest point. Metres. Corners have single precision,
+/// computations double precision, so that rounding in the differences and products of corners is negligible.
 #pragma once
 
 #include <agrisee/core/types.hpp>
@@ -10,39 +10,41 @@
 
 namespace agrisee {
 
-/// Corners (m), counter-clockwise seen from outside.
+/// The corners (m), counter-clockwise as seen from outside.
 using Triangle = std::array<Eigen::Vector3f, 3>;
 
-/// Normal of a triangle, twice its area long (m2), by the right-hand rule.
+/// Normal of a triangle by the right-hand rule; its length is twice the area (m2).
 inline Eigen::Vector3d area_normal(const Triangle& t) {
   const Eigen::Vector3d a = t[0].cast<double>();
   return (t[1].cast<double>() - a).cross(t[2].cast<double>() - a);
 }
 
-/// Where a ray meets the plane of a triangle.
+/// Where a ray hits a triangle.
 struct TriangleHit {
-  double t;  ///< distance in units of the ray's direction
-  double u;  ///< barycentric coordinates: the point is (1 - u - v) a + u b + v c
-  double v;  ///< the other of them
+  double t;  ///< distance along the ray, in units of the length of its direction
+  double u;  ///< barycentric coordinate: the point is (1 - u - v) a + u b + v c for the corners a, b, c
+  double v;  ///< barycentric coordinate, see u
 };
 
-/// A triangle as seen from a point: what all rays from one origin share.
+/// A triangle prepared for rays from one origin.
 ///
-/// A ray hits when the signed volumes that its direction spans with the three edges agree in sign (Plücker coordinates;
-/// e.g. Shevtsov et al., "Ray-triangle intersection algorithm for modern CPU architectures", 2007). Two triangles that
-/// share an edge compute the same volume for it up to its sign, so no ray slips through between them (watertight, as in
-/// Woop et al., JCGT 2(1), 2013); borders belong to the triangle. Both sides are hit.
-/// Exact to 1e-6 of a triangle's size while that is above 1e-5 of its distance from the origin (a float's own limit is
-/// near).
+/// A ray hits the triangle if the signed volumes that its direction spans with the three edges have the same sign
+/// (Plücker coordinates; e.g. Shevtsov et al., "Ray-triangle intersection algorithm for modern CPU architectures",
+/// 2007). Two triangles that share an edge compute the same volume for it, up to the sign, so no ray passes between
+/// them (watertight, as in Woop et al., JCGT 2(1), 2013). Edges belong to the triangle, and rays hit it from either
+/// side.
+///
+/// Exact to 1e-6 of the triangle's size as long as this size is above 1e-5 of its distance from the origin; much
+/// smaller triangles cannot be represented in single precision.
 struct SeenTriangle {
-  Eigen::Vector3d bc;      ///< cross product of corners b and c, relative to the origin
-  Eigen::Vector3d ca;      ///< of c and a
-  Eigen::Vector3d ab;      ///< of a and b
-  Eigen::Vector3d normal;  ///< area_normal
-  double offset;           ///< of the plane: a . normal
+  Eigen::Vector3d bc;      ///< cross product of corners b and c, relative to the origin (m2)
+  Eigen::Vector3d ca;      ///< cross product of corners c and a (m2)
+  Eigen::Vector3d ab;      ///< cross product of corners a and b (m2)
+  Eigen::Vector3d normal;  ///< see area_normal (m2)
+  double offset;           ///< of the plane from the origin: a . normal (m3)
 
   SeenTriangle() = default;
-  /// As seen from `origin` (m).
+  /// Prepares a triangle for rays from `origin` (m).
   SeenTriangle(const Triangle& t, const Eigen::Vector3d& origin) {
     const Eigen::Vector3d a = t[0].cast<double>() - origin;
     const Eigen::Vector3d b = t[1].cast<double>() - origin;
@@ -54,19 +56,20 @@ struct SeenTriangle {
     offset = a.dot(normal);
   }
 
-  /// True when the line along `d` through the origin meets the triangle, in front or behind.
+  /// True if the line through the origin along `d` hits the triangle; hit.t is negative if it does so behind the
+  /// origin.
   bool meets(const Eigen::Vector3d& d, TriangleHit& hit) const {
     const double wa = bc.dot(d), wb = ca.dot(d), wc = ab.dot(d);
     const bool inside = (wa >= 0.0 && wb >= 0.0 && wc >= 0.0) || (wa <= 0.0 && wb <= 0.0 && wc <= 0.0);
     if (!inside) return false;
     const double sum = wa + wb + wc, slope = normal.dot(d);
-    if (sum == 0.0 || slope == 0.0) return false;  // edge on
+    if (sum == 0.0 || slope == 0.0) return false;  // the line lies in the plane of the triangle
     hit = {offset / slope, wb / sum, wc / sum};
     return true;
   }
 };
 
-/// The point of a triangle that is nearest to p (Ericson, Real-Time Collision Detection, 5.1.5).
+/// The point of a triangle nearest to p (m) (Ericson, Real-Time Collision Detection, 5.1.5).
 inline Eigen::Vector3d nearest_point(const Triangle& t, const Eigen::Vector3d& p) {
   const Eigen::Vector3d a = t[0].cast<double>(), b = t[1].cast<double>(), c = t[2].cast<double>();
   const Eigen::Vector3d ab = b - a, ac = c - a, ap = p - a, bp = p - b, cp = p - c;

@@ -1,44 +1,22 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// @file
-/// Reach as our UR3 model answers it: inverse kinematics, joint limits, keep-out and self-collision.
+/// Answers a planner's view requests for our UR3 model: inverse kinematics, joint limits, keep-out spaces and
+/// self-collision.
 #pragma once
 
-#include <agrisee/arm/reachability.hpp>
+#include <agrisee/arm/mount.hpp>
 #include <agrisee/plan/planner.hpp>
 #include <agrisee/workcell.hpp>
 
 namespace agrisee::plan {
 
-/// The arm's mounting in a workcell.
-inline arm::Mount mount_of(const Workcell& workcell) {
-  arm::Mount mount;
-  mount.world_T_base = workcell.world_T_base;
-  mount.tool0_T_optical = workcell.tool0_T_optical;
-  mount.keep_out = workcell.keep_out;
-  return mount;
-}
+/// How the arm of a workcell is mounted, how it holds its sensor, and the spaces that neither may enter. Joint limits
+/// and the sensor's housing keep their defaults.
+arm::Mount mount_of(const Workcell& workcell);
 
-/// Reach of the UR3 of a workcell; distances nearer than the sensor's range are not offered.
-/// @throws ParameterError when the workcell's mounting is not sound
-inline Reach reach_of(const Workcell& workcell) {
-  const arm::Mount mount = mount_of(workcell);
-  mount.check();
-  const double nearest = workcell.sensor.range_min, farthest = workcell.sensor.range_max;
-  return [mount, nearest, farthest](const ViewRequest& request, const Joints& current) -> std::optional<ReachableView> {
-    arm::ReachParameters parameters;
-    parameters.distance_min = std::max(request.distance_min, nearest);
-    parameters.distance_max = std::min(request.distance_max, farthest);
-    if (parameters.distance_min > parameters.distance_max) return std::nullopt;
-    parameters.distance = std::clamp(request.distance, parameters.distance_min, parameters.distance_max);
-    const auto reached = arm::reach(mount, current, request.target, request.direction, parameters);
-    if (!reached) return std::nullopt;
-    ReachableView view;
-    view.world_T_optical = reached->world_T_optical;
-    view.target = request.target;
-    view.joints = reached->joints;
-    view.move_time = reached->move_time;
-    return view;
-  };
-}
+/// The reach of a workcell's UR3. Distances outside the sensor's range are never offered. See arm::reach for which of
+/// several solutions is chosen, and for the cost.
+/// @throws ParameterError when the workcell's mount is not valid
+Reach reach_of(const Workcell& workcell);
 
 }  // namespace agrisee::plan

@@ -1,107 +1,71 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// @file
-/// Parameters of picking and of the evidence of free space, apart from what uses them. Metres, radians.
+/// Parameters of the default planner (gain_planner.hpp) and of what it expects to see (expected_surface.hpp). They
+/// stand apart so that programs that only read parameters compile fast. Metres, seconds, radians.
 #pragma once
 
-#include <agrisee/core/error.hpp>
+#include <agrisee/core/parameter_range.hpp>
 #include <agrisee/core/types.hpp>
-
-#include <cmath>
 
 namespace agrisee::plan {
 
-/// Parameters of the free-space tests.
-struct FreeSpaceParameters {
-  double margin = 0.006;   ///< a sight line must end this much behind a place to have gone through it (m), and three
-                           ///< standard deviations of the cells' depths (SurfaceImage::noise) where these are more
-  double min_fill = 0.85;  ///< cells without return are evidence when surfaces return at least this share of pixels
-  double max_incidence = deg(50);  ///< bodies are tested where a surface would be seen at less than this (rad)
-  int min_refuting = 2;  ///< a surfel goes when this many views looked through it and no more than half saw it
-  double max_contradiction = 0.3;  ///< a view is discarded when it contradicts more than this share of what others saw
+/// Parameters of ExpectedSurface.
+struct ExpectedSurfaceParameters {
+  double max_incidence = deg(75);  ///< surface seen at a smaller angle of incidence is expected to be measured (rad)
+  int samples = 320;               ///< number of samples of a body's surface
+  double cover_radius = 0.005;     ///< a sample is covered if a point is at most this far from it (m)
+  double voxel = 0.015;            ///< edge of the voxels of unknown space (m)
+  double neighborhood = 0.06;      ///< unknown space counts if it is at most this far from a body's surface (m)
+  double unknown_weight = 0.08;  ///< fruit surface expected behind the face of an unknown voxel, as a share of the face
+  double missed_factor = 0.35;   ///< a sample's area is multiplied by this for every view that should have shown it but
+                                 ///< did not
 
-  /// @throws ParameterError
-  void check() const {
-    check_parameter(margin > 0, "free_space.margin", "positive", margin);
-    check_parameter(min_fill >= 0, "free_space.min_fill", ">= 0", min_fill);
-    check_parameter(max_incidence > 0 && max_incidence < kPi / 2, "free_space.max_incidence", "in (0, pi/2)",
-                    max_incidence);
-    check_parameter(min_refuting >= 1, "free_space.min_refuting", ">= 1", min_refuting);
-    check_parameter(max_contradiction > 0 && max_contradiction <= 1, "free_space.max_contradiction", "in (0, 1]",
-                    max_contradiction);
-  }
-  /// f(name, field) for every field.
+  /// @throws FieldError for the first field that is out of its range
+  void check() const { check_fields(*this); }
+
+  /// f(name, field, range) for every field.
   template <typename P, typename F>
   static void fields(P& p, F&& f) {
-    f("margin", p.margin);
-    f("min_fill", p.min_fill);
-    f("max_incidence", p.max_incidence);
-    f("min_refuting", p.min_refuting);
-    f("max_contradiction", p.max_contradiction);
+    f("max_incidence", p.max_incidence, Range::above(0.0).below({kPi / 2, "pi/2"}));
+    f("samples", p.samples, Range::between(1, 100000));
+    f("cover_radius", p.cover_radius, Range::positive());
+    f("voxel", p.voxel, Range::positive());
+    f("neighborhood", p.neighborhood, Range::not_negative());
+    f("unknown_weight", p.unknown_weight, Range::not_negative());
+    f("missed_factor", p.missed_factor, Range::between(0.0, 1.0));
   }
 };
 
-/// Parameters of plan_picking and of the UR3's answer to it.
-struct PickingParameters {
-  bool enabled = true;             ///< plan the picking at the end of a scan
-  double stand_off = 0.12;         ///< from the body's surface to the tool at the pre-grasp pose (m)
-  double contact = 0.0;            ///< the approach ends this far before the surface (m); negative: inside the body
-  double gripper_radius = 0.02;    ///< of the capsule that the gripper sweeps, margin included (m)
-  double tool_length = 0.0;        ///< the gripping point lies this far ahead of the optical frame along its z (m)
-  double pedicel_angle = deg(40);  ///< no approach from within this angle about the growth axis (rad)
-  int directions = 300;            ///< spread over the sphere
-  int rolls = 12;                  ///< about the direction, evenly spaced
-  int steps = 4;                   ///< along the straight approach
-  double max_joint_step = 1.0;     ///< from one of them to the next (rad); more is another posture, not a movement
-  double depth_tie = 0.02;         ///< fruit whose depths differ by less are picked by the arm's shortest moves (m)
-  double front_weight = 1.0;       ///< preference for approaches from the robot's side
-  double across_weight = 1.0;      ///< for approaches across the growth axis, which leave the pedicel free
-  double seen_weight = 1.0;        ///< for sides that were observed
-  double away_weight = 1.0;        ///< for sides where no neighbour is
+/// Parameters of GainPlanner.
+struct GainPlannerParameters {
+  int candidates = 4000;  ///< number of views that are compared, in directions all over the sphere; about a tenth of
+                          ///< them can be reached
+  double spread = 0.6;    ///< how far from the middle of the bodies the views aim, as a share of the way to the border
+  double distance = kViewDistance;  ///< distance of the first view from its target (m)
+  double distance_min = 0.27;       ///< shortest distance of a view from its target (m)
+  double distance_max = 0.55;       ///< longest distance of a view from its target (m)
+  double dwell = 1.5;               ///< time that a view takes besides the move (s): settling, exposure, computing
+  int lookahead = 6;         ///< number of views planned ahead, so that the nearest of them is taken first; 1: only one
+  double patience = 0.5;     ///< the nearest is taken first only if it scores at least this share of the best
+  double min_gain = 0.0015;  ///< the scan ends when the best view promises less than this share of the known surface
+  ExpectedSurfaceParameters expected;  ///< what a view is expected to show
 
-  /// The paper plans no picking.
-  static PickingParameters paper() {
-    PickingParameters p;
-    p.enabled = false;
-    return p;
-  }
-  /// @throws ParameterError naming the field that is out of range
-  void check() const {
-    const auto finite = [](double x, double least) { return x >= least && std::isfinite(x); };
-    check_parameter(finite(stand_off, 0.0), "picking.stand_off", ">= 0", stand_off);
-    check_parameter(std::isfinite(contact) && contact <= stand_off, "picking.contact", "at most picking.stand_off",
-                    contact);
-    check_parameter(finite(gripper_radius, 0.0), "picking.gripper_radius", ">= 0", gripper_radius);
-    check_parameter(finite(tool_length, 0.0), "picking.tool_length", ">= 0", tool_length);
-    check_parameter(pedicel_angle >= 0 && pedicel_angle <= 0.5 * kPi, "picking.pedicel_angle", "in [0, pi/2]",
-                    pedicel_angle);
-    check_parameter(directions >= 6, "picking.directions", ">= 6", directions);
-    check_parameter(rolls >= 1, "picking.rolls", ">= 1", rolls);
-    check_parameter(steps >= 1, "picking.steps", ">= 1", steps);
-    check_parameter(max_joint_step > 0, "picking.max_joint_step", "positive", max_joint_step);
-    check_parameter(finite(depth_tie, 0.0), "picking.depth_tie", ">= 0", depth_tie);
-    check_parameter(std::isfinite(front_weight), "picking.front_weight", "finite", front_weight);
-    check_parameter(std::isfinite(across_weight), "picking.across_weight", "finite", across_weight);
-    check_parameter(std::isfinite(seen_weight), "picking.seen_weight", "finite", seen_weight);
-    check_parameter(std::isfinite(away_weight), "picking.away_weight", "finite", away_weight);
-  }
-  /// f(name, field) for every field.
+  /// @throws FieldError for the first field that is out of its range
+  void check() const { check_fields(*this); }
+
+  /// f(name, field, range) for every field; without a range where there is none.
   template <typename P, typename F>
   static void fields(P& p, F&& f) {
-    f("enabled", p.enabled);
-    f("stand_off", p.stand_off);
-    f("contact", p.contact);
-    f("gripper_radius", p.gripper_radius);
-    f("tool_length", p.tool_length);
-    f("pedicel_angle", p.pedicel_angle);
-    f("directions", p.directions);
-    f("rolls", p.rolls);
-    f("steps", p.steps);
-    f("max_joint_step", p.max_joint_step);
-    f("depth_tie", p.depth_tie);
-    f("front_weight", p.front_weight);
-    f("across_weight", p.across_weight);
-    f("seen_weight", p.seen_weight);
-    f("away_weight", p.away_weight);
+    f("candidates", p.candidates, Range::between(1, 1000000));
+    f("spread", p.spread, Range::between(0.0, 1.0));
+    f("distance", p.distance, Range::at_least({p.distance_min, "distance_min"}));
+    f("distance_min", p.distance_min, Range::positive());
+    f("distance_max", p.distance_max, Range::at_least({p.distance, "distance"}));
+    f("dwell", p.dwell, Range::positive());
+    f("lookahead", p.lookahead, Range::between(1, 10));
+    f("patience", p.patience, Range::between(0.0, 1.0));
+    f("min_gain", p.min_gain, Range::not_negative());
+    f("expected", p.expected);
   }
 };
 

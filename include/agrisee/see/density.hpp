@@ -1,27 +1,30 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// @file
-/// The merged cloud with its volumetric density and the classes core, frontier and outlier (paper, eq. 1; SEE++).
-/// World.
+/// The merged cloud, its volumetric density and the class of each point: core, frontier or outlier ([1], eq. 1; SEE++).
+/// World frame, metres.
 ///
-/// - density of a point: points within r of it (<= r), itself included
-/// - core: density >= k. Frontier: not core, and both a core point and another point that is not core within r.
-/// Outlier: the
-///   rest. ("Outlier" in SEE's rule for frontiers is read as "not core", so that the classes depend on no order.)
+/// - The density of a point is the number of points at most r away, itself included.
+/// - A core point has a density of at least k.
+/// - A frontier point is not core, but has both a core point and another point that is not core within r.
+/// - All other points are outliers.
 ///
-/// A new view recounts only around its new points, and reclassifies only points near those and near points that turned
-/// core; the result equals a classification from scratch. Cost O(pairs within r that involve a new point).
+/// SEE's rule for frontiers says "outlier" where this says "not core": so the classes do not depend on an order.
+///
+/// After a new view, points are counted again only around its new points, and classified again only near those and
+/// near points that became core. The result equals a classification from scratch. Cost: O(pairs within r that involve
+/// a new point).
 #pragma once
 
-#include <agrisee/core/hash_grid.hpp>
 #include <agrisee/core/parallel.hpp>
 #include <agrisee/core/sums.hpp>
-#include <agrisee/see/params.hpp>
+#include <agrisee/neighbors/hash_grid.hpp>
+#include <agrisee/see/parameters.hpp>
 
 #include <array>
 
 namespace agrisee::see {
 
-/// What a point is by its density.
+/// Class of a point.
 enum class PointClass : std::uint8_t { outlier, frontier, core };
 
 /// Density and class of every point of a cloud.
@@ -30,28 +33,31 @@ struct Classification {
   std::vector<PointClass> classes;  ///< outlier for points that are not finite
 };
 
-/// A growing cloud of minimum separation that knows the density and the class of its points.
+/// A cloud that grows view by view, with the density and the class of every point. Points that are nearer to an older
+/// one than the minimum separation are dropped.
 template <typename S = float>
 class DensityMap {
  public:
-  /// @throws ParameterError as Parameters::check()
-  explicit DensityMap(const Parameters& params) : DensityMap(params, params.min_separation()) {}
+  /// A map with the minimum separation Parameters::min_separation().
+  /// @throws FieldError if a parameter is out of its range
+  explicit DensityMap(const Parameters& parameters) : DensityMap(parameters, parameters.min_separation()) {}
 
-  /// With another minimum separation (m); 0 merges nothing.
-  DensityMap(const Parameters& params, double separation)
-      : k_((params.check(), params.k())),
-        radius_(static_cast<S>(params.radius)),
+  /// A map with another minimum separation (m); 0: every point is kept.
+  /// @throws FieldError if a parameter is out of its range; ParameterError for a negative separation
+  DensityMap(const Parameters& parameters, double separation)
+      : k_((parameters.check(), parameters.k())),
+        radius_(static_cast<S>(parameters.radius)),
         separation_(static_cast<S>(separation)),
-        inverse_(double(kReach) / (1.00001 * params.radius)),
-        grid_(static_cast<S>(separation > 0.0 ? 2.0 * separation : params.radius)) {
+        inverse_(double(kReach) / (1.00001 * parameters.radius)),
+        grid_(static_cast<S>(separation > 0.0 ? 2.0 * separation : parameters.radius)) {
     check_parameter(std::isfinite(separation) && separation >= 0.0, "separation", "zero or more and finite",
                     separation);
   }
 
-  /// Merge a view (any cloud, world). A point is kept if no kept point is nearer than the minimum separation, so the
-  /// first wins; points that are not finite are dropped. Kept points are appended in order.
-  /// @param cloud points (m) to be merged
-  /// @param view number of the view, remembered with the points
+  /// Add the points of a view. A point is kept if no point kept earlier is nearer than the minimum separation. Points
+  /// that are not finite are dropped. Kept points are appended in order.
+  /// @param cloud points of the view, any cloud type (m, world)
+  /// @param view number of the view; it is stored with the points
   /// @param threads the result does not depend on it
   /// @return indices of the kept points in `cloud`, ascending
   template <typename C>
@@ -67,8 +73,10 @@ class DensityMap {
     return kept;
   }
 
-  /// The map of the points `kept` alone, as if no other had been inserted (for filters that run between views). Their
-  /// separation is not tested again.
+  /// Remove all points but `kept`: densities and classes are then those of these points alone. For filters that run
+  /// between views.
+  /// @param kept indices of cloud(), ascending
+  /// @param threads the result does not depend on it
   /// @throws InputError when an index is out of range
   void keep(const Indices& kept, int threads = 1) {
     for (Index i : kept)
@@ -83,18 +91,18 @@ class DensityMap {
   std::size_t size() const { return cloud_.size(); }
   /// The merged points and, for each, the view that saw it first.
   const PointCloud<S>& cloud() const { return cloud_; }
-  /// Neighbours within the radius, per point.
+  /// Density of every point: number of points within the radius, itself included.
   const std::vector<int>& counts() const { return result_.counts; }
-  /// What each point is.
+  /// Class of every point.
   const std::vector<PointClass>& classes() const { return result_.classes; }
-  /// Counts and classes.
+  /// Density and class of every point.
   const Classification& classification() const { return result_; }
-  /// What point i is.
+  /// Class of point i.
   PointClass class_of(Index i) const { return result_.classes[static_cast<std::size_t>(i)]; }
-  /// A search over the merged points for radii about the minimum separation; indices are those of cloud().
+  /// A neighbor search over the points, for radii of about the minimum separation. Indices are those of cloud().
   const HashGrid<S>& grid() const { return grid_; }
 
-  /// Indices of the points of a class, ascending. O(n).
+  /// Indices of the points of a class, ascending. Cost: O(n).
   Indices of_class(PointClass wanted) const {
     Indices out;
     for (std::size_t i = 0; i < size(); ++i)
@@ -103,18 +111,18 @@ class DensityMap {
   }
 
  private:
-  static constexpr std::int32_t kReach = 3;  // cells a radius; a little larger than that, so that none farther counts
+  static constexpr std::int32_t kReach = 3;  // cells per radius; cells are slightly larger than radius / kReach
 
-  /// The points of a cell as a structure of arrays, for counting many at once.
+  /// The points of one cell as a structure of arrays, so that many can be counted at once.
   struct Block {
     CellIndex cell;
     std::array<std::vector<S>, 3> xyz;
     Indices ids;
-    Vector3<S> min, max;      // of its points
-    Indices near;             // blocks with cells within r, itself included
-    std::size_t counted = 0;  // points known before this update
-    std::size_t cores = 0;    // core points
-    bool changed = false;     // has a new point or one that turned core
+    Vector3<S> min, max;      // bounding box of its points
+    Indices near;             // blocks whose cells may hold points within r, itself included
+    std::size_t counted = 0;  // number of points that the last update has counted
+    std::size_t cores = 0;    // number of core points
+    bool changed = false;     // holds a new point or one that became core
 
     std::size_t size() const { return ids.size(); }
     bool fresh() const { return counted < ids.size(); }
@@ -133,8 +141,7 @@ class DensityMap {
     cloud_.views.push_back(view);
     result_.counts.push_back(0);
     result_.classes.push_back(PointClass::outlier);
-    CellIndex cell;
-    for (int a = 0; a < 3; ++a) cell[a] = CellTable::coordinate(double(p[a]), inverse_);
+    const CellIndex cell = CellTable::cell(p, inverse_);
     Index b = table_.find(cell);
     if (b < 0) b = add_block(cell, p);
     Block& block = blocks_[static_cast<std::size_t>(b)];
@@ -154,7 +161,7 @@ class DensityMap {
     for (d.z() = -kReach; d.z() <= kReach; ++d.z())
       for (d.y() = -kReach; d.y() <= kReach; ++d.y())
         for (d.x() = -kReach; d.x() <= kReach; ++d.x()) {
-          const CellIndex gap = (d.cwiseAbs().array() - 1).cwiseMax(0).matrix();  // cells between
+          const CellIndex gap = (d.cwiseAbs().array() - 1).cwiseMax(0).matrix();  // number of cells between the two
           if (gap.squaredNorm() >= kReach * kReach) continue;
           const CellIndex other = cell + d;
           if (other.cwiseAbs().maxCoeff() > CellTable::kLimit) continue;
@@ -169,7 +176,7 @@ class DensityMap {
 
   bool is_core(Index i) const { return static_cast<std::size_t>(result_.counts[static_cast<std::size_t>(i)]) >= k_; }
 
-  /// Points of b from number `begin` on that are within r of p.
+  /// Number of points of b, from the one at `begin` on, that are within r of p.
   int count_within(const Block& b, std::size_t begin, const Vector3<S>& p) const {
     const S r_sq = radius_ * radius_;
     const S slack = S(16) * std::numeric_limits<S>::epsilon();
@@ -189,7 +196,7 @@ class DensityMap {
     return in;
   }
 
-  /// Count and classify what the points appended since the last update change.
+  /// Bring counts and classes up to date with the points that were appended since the last update.
   void update(int threads) {
     parallel_for(
         blocks_.size(), threads, [&](std::size_t b) { recount(blocks_[b]); }, 8);
@@ -251,7 +258,7 @@ class DensityMap {
 
   std::size_t k_;
   S radius_, separation_;
-  double inverse_;  // cells a metre
+  double inverse_;  // cells per metre
   HashGrid<S> grid_;
   PointCloud<S> cloud_;
   Classification result_;
@@ -259,12 +266,15 @@ class DensityMap {
   std::vector<Block> blocks_;
 };
 
-/// Density and classes of a ready cloud, nothing merged.
-/// @throws ParameterError as Parameters::check()
+/// Density and class of every point of a ready cloud, in which no points are merged.
+/// @param cloud any cloud (m)
+/// @param parameters radius and rho are used
+/// @param threads the result does not depend on it
+/// @throws FieldError if a parameter is out of its range
 template <typename C>
-Classification classify(const C& cloud, const Parameters& params, int threads = 1) {
+Classification classify(const C& cloud, const Parameters& parameters, int threads = 1) {
   using S = scalar_t<C>;
-  DensityMap<S> map(params, 0.0);
+  DensityMap<S> map(parameters, 0.0);
   const Indices kept = map.insert(cloud, 0, threads);
   if (kept.size() == agrisee::size(cloud)) return map.classification();
   Classification out;

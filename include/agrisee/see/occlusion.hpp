@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// @file
-/// Is a frontier visible from a view, and if not, from which side is it freest? (SEE++, view optimisation). World,
-/// metres.
+/// Whether a frontier is visible from a view and, if not, from which side it is farthest from all occluders (SEE++,
+/// view optimisation). World frame, metres.
 #pragma once
 
 #include <agrisee/geometry/aabb.hpp>
@@ -12,37 +12,36 @@
 
 namespace agrisee::see {
 
-/// True when the sight line from the point p to a sensor is free.
+/// True if the line of sight from the point p to a sensor is free.
 ///
-/// Balls of radius upsilon are tested every upsilon along the line, to the sensor or up to psi, whichever is nearer.
-/// Those before the first empty one belong to the surface of p itself; every later one must be empty too. A line along
-/// which no ball is empty is blocked. Where `bounds` is given, the part of the line outside it (plus upsilon) is known
-/// to be free. Cost: at most psi / upsilon ball queries.
-/// @param search a neighbour search with `count(q, r, cap)`, of scalar S
-/// @param p the point (m)
-/// @param sensor position of the sensor (m)
-/// @param params see their struct
-/// @param bounds box about the cloud; nothing beyond it occludes
+/// Balls of radius upsilon are tested every upsilon along the line, up to the sensor or to the distance psi, whichever
+/// is nearer. Balls before the first empty one hold the surface of p itself. Every later one must be empty, too. If no
+/// ball is empty, the line is blocked. Cost: at most psi / upsilon queries for the points in a ball.
+/// @param search a neighbor search with `count(q, r, cap)`, of scalar S
+/// @param p the point (m, world)
+/// @param sensor position of the sensor (m, world)
+/// @param parameters psi and upsilon are used
+/// @param bounds box about the cloud; what is farther than upsilon outside it is known to be free
 template <typename S, typename Search>
-bool is_visible(const Search& search, const Eigen::Vector3d& p, const Eigen::Vector3d& sensor, const Parameters& params,
-                const Aabb& bounds) {
+bool is_visible(const Search& search, const Eigen::Vector3d& p, const Eigen::Vector3d& sensor,
+                const Parameters& parameters, const Aabb& bounds) {
   const Eigen::Vector3d line = sensor - p;
   const double range = line.norm();
   if (!(range > 0.0) || !std::isfinite(range)) return false;
   const Eigen::Vector3d u = line / range;
-  const double length = std::min(params.psi, range);
+  const double length = std::min(parameters.psi, range);
   bool left_surface = false;
-  for (int m = 1; m * params.upsilon <= length; ++m) {
-    const Eigen::Vector3d at = p + (m * params.upsilon) * u;
-    if (bounds.distance(at) > params.upsilon) return true;  // p lies within: the line does not come back
-    const bool occupied = search.count(Vector3<S>(at.cast<S>()), static_cast<S>(params.upsilon), 1) > 0;
+  for (int m = 1; m * parameters.upsilon <= length; ++m) {
+    const Eigen::Vector3d at = p + (m * parameters.upsilon) * u;
+    if (bounds.distance(at) > parameters.upsilon) return true;  // p is inside, so the line does not enter again
+    const bool occupied = search.count(Vector3<S>(at.cast<S>()), static_cast<S>(parameters.upsilon), 1) > 0;
     if (occupied && left_surface) return false;
     left_surface = left_surface || !occupied;
   }
-  return left_surface || length < params.upsilon;
+  return left_surface || length < parameters.upsilon;
 }
 
-/// Unit directions from p to the points that can occlude it: those farther than upsilon and within psi.
+/// Unit directions from p to the points that can occlude it: those farther away than upsilon and at most psi away (m).
 template <typename C>
 std::vector<Eigen::Vector3f> occluder_directions(const C& cloud, const Eigen::Vector3d& p, double upsilon, double psi) {
   std::vector<Eigen::Vector3f> out;
@@ -55,14 +54,15 @@ std::vector<Eigen::Vector3f> occluder_directions(const C& cloud, const Eigen::Ve
   return out;
 }
 
-/// A direction and its angle (rad) to the nearest occluder, pi where there is none.
+/// A direction and its clearance: the angle to the nearest occluder.
 struct FreeDirection {
   Eigen::Vector3d direction = Eigen::Vector3d::UnitZ();  ///< unit
-  double clearance = kPi;                                ///< angle to the nearest occluder (rad)
+  double clearance = kPi;                                ///< angle to the nearest occluder (rad); pi if there is none
 };
 
 namespace detail {
 
+/// Angle (rad) between two unit vectors; exact for small angles, too.
 inline double angle_between(const Eigen::Vector3f& a, const Eigen::Vector3f& b) {
   return 2.0 * std::atan2(double((a - b).norm()), double((a + b).norm()));
 }
@@ -76,7 +76,7 @@ class FreeSearch {
   FreeDirection run(const std::vector<Eigen::Vector3f>& occluders) {
     best_.clearance = -1.0;
     const Eigen::Vector3f x = any_orthogonal<float>(axis_), y = axis_.cross(x);
-    std::vector<Patch> roots;  // an octahedron with its tip on the axis; its far half where that is allowed
+    std::vector<Patch> roots;  // the faces of an octahedron with a tip on the axis
     const std::array<Eigen::Vector3f, 4> ring{x, y, Eigen::Vector3f(-x), Eigen::Vector3f(-y)};
     for (std::size_t i = 0; i < 4; ++i)
       for (const float tip : {1.0f, -1.0f}) add(roots, {tip * axis_, ring[i], ring[(i + 1) % 4]}, occluders);
@@ -88,37 +88,37 @@ class FreeSearch {
   using Triangle = std::array<Eigen::Vector3f, 3>;
   struct Patch {
     Triangle corners;
-    std::vector<Eigen::Vector3f> occluders;  // those that may be nearest somewhere in it
-    double bound;                            // no direction in it has a larger clearance
-    double extent;                           // from its centre to its corners (rad)
+    std::vector<Eigen::Vector3f> occluders;  // those that may be the nearest one for some direction in it
+    double bound;                            // no direction in it has a larger clearance (rad)
+    double extent;                           // largest angle from its center to a corner (rad)
   };
 
-  /// Measure a triangle at its centre and keep it if it may hold something better.
+  /// Measure the clearance at a triangle's center, and append the triangle if it may hold a better direction.
   void add(std::vector<Patch>& patches, const Triangle& t, const std::vector<Eigen::Vector3f>& candidates) {
-    const Eigen::Vector3f centre = (t[0] + t[1] + t[2]).normalized();
+    const Eigen::Vector3f center = (t[0] + t[1] + t[2]).normalized();
     double extent = 0.0;
-    for (const Eigen::Vector3f& c : t) extent = std::max(extent, angle_between(centre, c));
-    const double off_axis = angle_between(centre, axis_);
+    for (const Eigen::Vector3f& c : t) extent = std::max(extent, angle_between(center, c));
+    const double off_axis = angle_between(center, axis_);
     if (off_axis > max_angle_ + extent) return;
     float nearest = -1.0f;
-    Eigen::Vector3f occluder = -centre;
+    Eigen::Vector3f occluder = -center;
     for (const Eigen::Vector3f& o : candidates) {
-      const float c = o.dot(centre);
+      const float c = o.dot(center);
       if (c > nearest) {
         nearest = c;
         occluder = o;
       }
     }
-    const double clearance = candidates.empty() ? kPi : angle_between(centre, occluder);
-    // The centre itself, also when it is outside by no more than the tolerance: the patch it stands for is not.
-    if (clearance > best_.clearance && off_axis <= max_angle_ + tolerance_) best_ = {centre.cast<double>(), clearance};
-    // Clearance changes by no more than the angle moved.
+    const double clearance = candidates.empty() ? kPi : angle_between(center, occluder);
+    // A center that is outside the cone by no more than the tolerance counts, too: part of its triangle is inside.
+    if (clearance > best_.clearance && off_axis <= max_angle_ + tolerance_) best_ = {center.cast<double>(), clearance};
+    // A direction that is turned by some angle changes its clearance by no more than that angle.
     if (extent <= tolerance_ || clearance + extent <= best_.clearance + tolerance_) return;
     Patch patch{t, {}, clearance + extent, extent};
-    const double far = clearance + 2.0 * extent + 1e-4;  // farther ones are nearest nowhere in the patch
+    const double far = clearance + 2.0 * extent + 1e-4;  // occluders farther away are nowhere the nearest
     const float cosine = far >= kPi ? -2.0f : static_cast<float>(std::cos(far));
     for (const Eigen::Vector3f& o : candidates)
-      if (o.dot(centre) >= cosine) patch.occluders.push_back(o);
+      if (o.dot(center) >= cosine) patch.occluders.push_back(o);
     patches.push_back(std::move(patch));
   }
 
@@ -144,16 +144,18 @@ class FreeSearch {
 
 }  // namespace detail
 
-/// The direction within `max_angle` of `axis` whose smallest angle to all occluders is largest (SEE++, view
+/// The direction within `max_angle` of `axis` whose angle to the nearest occluder is largest (SEE++, view
 /// optimisation).
 ///
-/// SEE++ solves a quadratic programme, which has one optimum only where the occluders leave half of the sphere free.
-/// Here a branch and bound over spherical triangles finds the global one to `tolerance`, in any case: the clearance
-/// found is at most `tolerance` below the best, and the direction at most `tolerance` outside the cone.
-/// @param occluders unit directions; none = the axis itself with a clearance of pi
-/// @param axis unit; @param max_angle (rad) in (0, pi]; @param tolerance (rad), >= 1e-4
-/// Cost: about 20 passes over the occluders.
-/// @throws InputError when axis or angles are out of range
+/// SEE++ solves a quadratic program. That has a single optimum only if the occluders leave half of the sphere free.
+/// Here a branch and bound over spherical triangles always finds the global optimum to within `tolerance`: the
+/// clearance is at most `tolerance` below the best, and the direction at most `tolerance` outside the cone. Cost: about
+/// 20 passes over the occluders.
+/// @param occluders unit directions; if there are none, the result is the axis with a clearance of pi
+/// @param axis of the cone, a unit vector
+/// @param max_angle half angle of the cone (rad), in (0, pi]
+/// @param tolerance of the result (rad), in [1e-4, 1)
+/// @throws InputError if axis or angles are out of range
 inline FreeDirection freest_direction(const std::vector<Eigen::Vector3f>& occluders, const Eigen::Vector3d& axis,
                                       double max_angle, double tolerance = deg(0.5)) {
   check_input(std::abs(axis.norm() - 1.0) < 1e-3, "freest_direction: the axis is not a unit vector");
@@ -163,20 +165,21 @@ inline FreeDirection freest_direction(const std::vector<Eigen::Vector3f>& occlud
   return detail::FreeSearch(axis, max_angle, tolerance).run(occluders);
 }
 
-/// The proposal for a frontier: along its normal where that sight is free, else from the freest side within
-/// `max_incidence` of the normal (which may still be blocked).
-/// @param cloud any cloud (m, world); @param search a search over it with `count(q, r, cap)`
+/// The view proposed for a frontier: along its normal if that line of sight is free, else from the side within
+/// `max_incidence` of the normal that is farthest from all occluders. Even that may be blocked.
+/// @param cloud any cloud (m, world)
+/// @param search a search over it with `count(q, r, cap)`
 /// @param f the frontier
-/// @param params see their struct
+/// @param parameters view_distance, psi, upsilon and max_incidence are used
 /// @param bounds a box that holds the cloud
 template <typename C, typename Search>
-ViewProposal propose_visible(const C& cloud, const Search& search, const Frontier& f, const Parameters& params,
+ViewProposal propose_visible(const C& cloud, const Search& search, const Frontier& f, const Parameters& parameters,
                              const Aabb& bounds) {
-  ViewProposal v = propose(f, params.view_distance);
-  if (is_visible<scalar_t<C>>(search, f.point, v.position, params, bounds)) return v;
-  const auto occluders = occluder_directions(cloud, f.point, params.upsilon, params.psi);
-  const FreeDirection free = freest_direction(occluders, f.normal, params.max_incidence);
-  return view_of(f.point, f.index, free.direction.normalized(), params.view_distance);
+  ViewProposal v = propose(f, parameters.view_distance);
+  if (is_visible<scalar_t<C>>(search, f.point, v.position, parameters, bounds)) return v;
+  const auto occluders = occluder_directions(cloud, f.point, parameters.upsilon, parameters.psi);
+  const FreeDirection free = freest_direction(occluders, f.normal, parameters.max_incidence);
+  return view_of(f.point, f.index, free.direction.normalized(), parameters.view_distance);
 }
 
 }  // namespace agrisee::see

@@ -1,21 +1,21 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// @file
-/// SEE++'s controller (Border & Gammell, IJRR 2024; paper, AgriSEE): observe, propose, look again or give up. World
-/// frame, m.
+/// The controller of SEE++ (Border & Gammell, IJRR 2024; [1], AgriSEE): merge a view, propose views for the frontiers,
+/// choose one of them; look at a frontier again or give it up. World frame, metres.
 ///
 /// ```
-/// Planner planner(Parameters::paper());
-/// planner.observe(points, sensor_position);                       // a first view, chosen by the caller
-/// while (auto view = planner.next_view(sensor_position, reachable))
-///   planner.observe(points_from(*view), sensor_position = ...);   // wherever the sensor really went
-/// planner.stop_reason();                                          // why there is none
+/// Explorer explorer(Parameters::paper());
+/// explorer.observe(points, sensor_position);                       // a first view, chosen by the caller
+/// while (auto view = explorer.next_view(sensor_position, reachable))
+///   explorer.observe(points_from(*view), sensor_position = ...);   // wherever the sensor really went
+/// explorer.stop_reason();                                          // why there is no further view
 /// ```
 /// It knows nothing of the robot: `reachable` says which proposals can be reached. It ends on every input, at the
-/// latest with the view budget. A step costs one frame for each new frontier, and tau^2 sight lines.
+/// latest after `max_views` views. Cost per step: one frame for each new frontier, and tau^2 lines of sight.
 #pragma once
 
-#include <agrisee/core/grid.hpp>
-#include <agrisee/result.hpp>
+#include <agrisee/core/stop_reason.hpp>
+#include <agrisee/neighbors/grid.hpp>
 #include <agrisee/see/density.hpp>
 #include <agrisee/see/selector.hpp>
 
@@ -23,21 +23,26 @@
 
 namespace agrisee::see {
 
-/// Plans view by view.
-class Planner {
+/// Chooses the next view, again and again, until nothing is left to see.
+class Explorer {
  public:
-  /// @param params see their struct  @param threads results do not depend on it
-  /// @throws ParameterError as Parameters::check()
-  explicit Planner(const Parameters& params, int threads = 1)
-      : params_(params), threads_(threads), map_(params), near_(static_cast<float>(2.0 * params.upsilon)) {}
+  /// @param parameters of SEE++
+  /// @param threads the results do not depend on it
+  /// @throws FieldError if a parameter is out of its range
+  explicit Explorer(const Parameters& parameters, int threads = 1)
+      : parameters_(parameters),
+        threads_(threads),
+        map_(parameters),
+        near_(static_cast<float>(2.0 * parameters.upsilon)) {}
 
-  /// Merge what a view saw (any cloud, world; none is allowed) and judge the view last taken by it.
-  /// @param cloud points of the view (m, world)  @param sensor position of the sensor (m)
-  /// @return indices of the points that were kept
-  /// @throws InputError when `sensor` is not finite
+  /// Merge the points of a view, and decide what becomes of the frontier that the view was taken for.
+  /// @param cloud points of the view, any cloud type (m, world); may be empty
+  /// @param sensor position of the sensor (m, world)
+  /// @return indices of the points that were kept, ascending
+  /// @throws InputError if `sensor` is not finite
   template <typename C>
   Indices observe(const C& cloud, const Eigen::Vector3d& sensor) {
-    check_input(sensor.allFinite(), "see::Planner::observe: the sensor's position is not finite");
+    check_input(sensor.allFinite(), "see::Explorer::observe: the sensor's position is not finite");
     const std::size_t before = map_.size();
     const Indices kept = map_.insert(cloud, views_taken(), threads_);
     sensors_.push_back(sensor);
@@ -49,8 +54,8 @@ class Planner {
     return kept;
   }
 
-  /// Forget all points but `kept` (ascending indices of cloud()), for filters that run between views.
-  /// @throws InputError when an index is out of range
+  /// Remove all points but `kept` (indices of cloud(), ascending). For filters that run between views.
+  /// @throws InputError if an index is out of range
   void keep(const Indices& kept) {
     const std::size_t before = map_.size();
     map_.keep(kept, threads_);
@@ -76,24 +81,25 @@ class Planner {
     renumber(target_);
     renumber(retry_);
     if (retry_ && candidates_.find(*retry_) == candidates_.end()) retry_.reset();
-    near_ = HashGrid<float>(static_cast<float>(2.0 * params_.upsilon));
+    near_ = HashGrid<float>(static_cast<float>(2.0 * parameters_.upsilon));
     bounds_ = Aabb();
     sum_.setZero();
     index_points(0);
   }
 
-  /// Views to try, best first; empty when there is none, see stop_reason(). At most max_updates + 1 of them: when none
-  /// of them can be reached, refuse() them and ask again.
+  /// Views to try, best first; empty if there are none, see stop_reason(). There are at most max_updates + 1 of them.
+  /// If none can be reached, refuse() them and call again.
   ///
-  /// A frontier that the last view was for and did not cover comes first. The rest are the updated frontiers' in the
-  /// order of rank(), those that see fewer than `min_gain` left out.
-  /// @param sensor present position of the sensor (m)
+  /// If the last view did not cover its frontier, a second view of that frontier comes first. The others are those of
+  /// the updated frontiers in the order of rank(). Views that see fewer than `min_gain` frontiers are left out.
+  /// @param sensor present position of the sensor (m, world)
+  /// @throws InputError if `sensor` is not finite
   std::vector<ViewProposal> next_views(const Eigen::Vector3d& sensor) {
-    check_input(sensor.allFinite(), "see::Planner::next_views: the sensor's position is not finite");
+    check_input(sensor.allFinite(), "see::Explorer::next_views: the sensor's position is not finite");
     propose_new();
     while (true) {
       std::vector<Index> open = nearest_open(sensor);
-      if (views_taken() >= params_.max_views || open.empty()) {
+      if (views_taken() >= parameters_.max_views || open.empty()) {
         stop_reason_ = why_stop();
         return {};
       }
@@ -103,11 +109,12 @@ class Planner {
     }
   }
 
-  /// The sensor goes for this proposal: the next observe() judges it.
+  /// This view is taken next: the next observe() gets its points.
   void take(const ViewProposal& view) { target_ = view.frontier; }
 
-  /// This proposal cannot be reached. It is turned step by step towards where its frontier was first seen from, then
-  /// dropped; a second look at a frontier is dropped at once, or replaced by the one from where it was first seen.
+  /// This view cannot be reached. It is turned towards where its frontier was first seen from, in max_pulls steps, one
+  /// per call, and then dropped. A second view of a frontier is not turned: it is replaced by the view from where the
+  /// frontier was first seen if `return_to_first_view` is set and that was not tried before, and dropped otherwise.
   void refuse(const ViewProposal& view) {
     if (target_ == view.frontier) target_.reset();
     const auto found = candidates_.find(view.frontier);
@@ -115,17 +122,20 @@ class Planner {
     Candidate& c = found->second;
     if (retry_ == view.frontier) {
       if (!look_from_first(c)) drop(c);
-    } else if (c.pulls < params_.max_pulls) {
-      const double share = double(++c.pulls) / double(params_.max_pulls + 1);
+    } else if (c.pulls < parameters_.max_pulls) {
+      const double share = double(++c.pulls) / double(parameters_.max_pulls + 1);
       c.view =
-          view_of(c.frame.point, view.frontier, between(c.side, first_side(c.frame), share), params_.view_distance);
+          view_of(c.frame.point, view.frontier, between(c.side, first_side(c.frame), share), parameters_.view_distance);
     } else {
       drop(c);
     }
   }
 
-  /// The best view that can be reached, taken; none when there is none, see stop_reason().
-  /// @param sensor its position (m)  @param reachable bool(const ViewProposal&), asked in order of preference
+  /// Take the best view that can be reached.
+  /// @param sensor present position of the sensor (m, world)
+  /// @param reachable bool(const ViewProposal&), called for the views in order of preference
+  /// @return empty if no view is left, see stop_reason()
+  /// @throws InputError if `sensor` is not finite
   template <typename Reachable>
   std::optional<ViewProposal> next_view(const Eigen::Vector3d& sensor, Reachable&& reachable) {
     while (true) {
@@ -141,15 +151,15 @@ class Planner {
     }
   }
 
-  /// Why next_views() last returned nothing; not_stopped before that.
+  /// Why next_views() last returned no view; not_stopped before that.
   StopReason stop_reason() const { return stop_reason_; }
-  /// Views observed so far.
+  /// Number of views observed so far.
   int views_taken() const { return static_cast<int>(sensors_.size()); }
-  /// The merged points, their views, densities and classes.
+  /// The merged points with their views, densities and classes.
   const DensityMap<float>& map() const { return map_; }
-  const Cloud& cloud() const { return map_.cloud(); }       ///< the points merged so far
-  const Parameters& parameters() const { return params_; }  ///< as given
-  /// Frontiers that have been given up: they count as outliers from then on. Ascending.
+  const Cloud& cloud() const { return map_.cloud(); }           ///< the points merged so far
+  const Parameters& parameters() const { return parameters_; }  ///< those it was made with
+  /// Indices of the points that were given up as frontiers, ascending. They count as outliers from then on.
   Indices given_up() const {
     Indices out;
     for (std::size_t i = 0; i < given_up_.size(); ++i)
@@ -162,13 +172,13 @@ class Planner {
   struct Candidate {
     Frontier frame;
     ViewProposal view;
-    Eigen::Vector3d side = Eigen::Vector3d::UnitZ();  // of the view before it was pulled
-    int shifts = 0, pulls = 0;
-    bool from_first = false;  // the view from where the point was first seen has been tried
+    Eigen::Vector3d side = Eigen::Vector3d::UnitZ();  // unit, from the point to the view before it was turned
+    int shifts = 0, pulls = 0;                        // how often the view was shifted and turned
+    bool from_first = false;                          // whether the view from where the point was first seen was tried
     State state = State::open;
   };
 
-  /// Bring bounds, mean and searches up to date with the points from `begin` on.
+  /// Update bounds, sum and searches with the points from index `begin` on.
   void index_points(std::size_t begin) {
     for (std::size_t i = begin; i < map_.size(); ++i) {
       const Eigen::Vector3d p = cloud().points[i].cast<double>();
@@ -180,7 +190,7 @@ class Planner {
   }
 
   void build_search() {
-    if (!search_) search_.emplace(cloud(), static_cast<float>(0.5 * params_.radius));
+    if (!search_) search_.emplace(cloud(), static_cast<float>(0.5 * parameters_.radius));
   }
 
   const Eigen::Vector3d& first_sensor(Index i) const {
@@ -191,10 +201,10 @@ class Planner {
     return d.norm() > 0.0 ? Eigen::Vector3d(d.normalized()) : f.normal;
   }
   std::optional<Frontier> frame(Index i) const {
-    return frontier_frame(cloud(), *search_, near_, i, first_sensor(i), params_);
+    return frontier_frame(cloud(), *search_, near_, i, first_sensor(i), parameters_);
   }
 
-  /// Frames and views for the frontiers that have none.
+  /// Frames and views for the frontiers that do not have any yet. Frontiers without a frame are given up.
   void propose_new() {
     Indices added;
     for (Index i : map_.of_class(PointClass::frontier))
@@ -212,28 +222,29 @@ class Planner {
       Candidate c;
       c.frame = *frames[j];
       c.side = c.frame.normal;
-      c.view = propose(c.frame, params_.view_distance);
+      c.view = propose(c.frame, parameters_.view_distance);
       candidates_.emplace(added[j], c);
     }
   }
 
   bool valid(const Frontier& f) const {
-    return !params_.outward_normals_only || points_outward(f, sum_ / static_cast<double>(map_.size()));
+    return !parameters_.outward_normals_only || points_outward(f, sum_ / static_cast<double>(map_.size()));
   }
 
-  /// The max_updates open frontiers whose views are nearest to the sensor, nearest first.
+  /// Open frontiers whose views are nearest to the sensor, nearest first, at most max_updates of them.
   std::vector<Index> nearest_open(const Eigen::Vector3d& sensor) const {
     std::vector<std::pair<double, Index>> open;
     for (const auto& [i, c] : candidates_)
       if (c.state == State::open && valid(c.frame)) open.emplace_back((c.view.position - sensor).norm(), i);
-    const auto n = static_cast<std::ptrdiff_t>(std::min(open.size(), static_cast<std::size_t>(params_.max_updates)));
+    const auto n =
+        static_cast<std::ptrdiff_t>(std::min(open.size(), static_cast<std::size_t>(parameters_.max_updates)));
     std::partial_sort(open.begin(), open.begin() + n, open.end());
     std::vector<Index> out;
     for (std::ptrdiff_t j = 0; j < n; ++j) out.push_back(open[static_cast<std::size_t>(j)].second);
     return out;
   }
 
-  /// Update the views of the frontiers `open` and return those worth taking, best first.
+  /// Update the views of the frontiers `open` and return those that see enough, best first.
   std::vector<ViewProposal> ranked(const std::vector<Index>& open, const Eigen::Vector3d& sensor) {
     build_search();
     std::vector<Candidate*> candidates;
@@ -246,26 +257,27 @@ class Planner {
       views.push_back(c->view);
       frontiers.push_back(c->frame);
     }
-    const VisibilityGraph graph = visibility_graph<float>(near_, views, frontiers, params_, bounds_, threads_);
-    const std::vector<std::size_t> order = rank(views, graph, sensor, params_.least_move);
+    const VisibilityGraph graph = visibility_graph<float>(near_, views, frontiers, parameters_, bounds_, threads_);
+    const std::vector<std::size_t> order = rank(views, graph, sensor, parameters_.least_move);
     std::vector<ViewProposal> out;
     if (retry_) out.push_back(candidates_.at(*retry_).view);
     for (std::size_t j : order)
-      if (views[j].frontier != retry_ && views[j].visible >= params_.min_gain) out.push_back(views[j]);
+      if (views[j].frontier != retry_ && views[j].visible >= parameters_.min_gain) out.push_back(views[j]);
     return out;
   }
 
-  /// The frame from the points as they are now, and the view that follows from it unless one was prescribed.
+  /// Compute a frontier's frame from the present points and, unless its view was turned or shifted, a new view.
   void refresh(Candidate& c) const {
     const std::optional<Frontier> now = frame(c.frame.index);
     if (!now) return;
     c.frame = *now;
     if (c.pulls > 0 || retry_ == c.frame.index) return;
-    c.view = propose_visible(cloud(), near_, c.frame, params_, bounds_);
+    c.view = propose_visible(cloud(), near_, c.frame, parameters_, bounds_);
     c.side = side_of(c.view, c.frame.point);
   }
 
-  /// What becomes of the frontier that the last view was for; the points from `first_new` on are what that view added.
+  /// Decide what becomes of the frontier that the last view was for: covered, looked at again or given up. The points
+  /// from index `first_new` on are those that the view added.
   void judge(std::size_t first_new) {
     retry_.reset();
     if (!target_) return;
@@ -278,15 +290,15 @@ class Planner {
     double n = 0.0;
     for (std::size_t i = first_new; i < map_.size(); ++i) {
       const Eigen::Vector3d p = cloud().points[i].cast<double>();
-      if ((p - c.frame.point).norm() > params_.radius) continue;
+      if ((p - c.frame.point).norm() > parameters_.radius) continue;
       added += p;
       n += 1.0;
     }
-    if (n > 0.0 && c.shifts < params_.max_shifts && !c.from_first &&
-        (c.frame.point - added / n).norm() >= params_.upsilon) {
+    if (n > 0.0 && c.shifts < parameters_.max_shifts && !c.from_first &&
+        (c.frame.point - added / n).norm() >= parameters_.upsilon) {
       ViewProposal last;
       last.position = sensors_.back();
-      c.view = shift_view(last, c.frame, added / n, std::ldexp(1.0, c.shifts++), params_.view_distance);
+      c.view = shift_view(last, c.frame, added / n, std::ldexp(1.0, c.shifts++), parameters_.view_distance);
       retry_ = t;
     } else if (!look_from_first(c)) {
       give_up(t);
@@ -294,9 +306,9 @@ class Planner {
   }
 
   bool look_from_first(Candidate& c) {
-    if (!params_.return_to_first_view || c.from_first) return false;
+    if (!parameters_.return_to_first_view || c.from_first) return false;
     c.from_first = true;
-    c.view = view_of(c.frame.point, c.frame.index, first_side(c.frame), params_.view_distance);
+    c.view = view_of(c.frame.point, c.frame.index, first_side(c.frame), parameters_.view_distance);
     retry_ = c.frame.index;
     return true;
   }
@@ -311,7 +323,7 @@ class Planner {
       given_up_[static_cast<std::size_t>(i)] = 1;
       candidates_.erase(i);
     };
-    near_.visit(cloud().points[static_cast<std::size_t>(t)], static_cast<float>(params_.give_up_radius),
+    near_.visit(cloud().points[static_cast<std::size_t>(t)], static_cast<float>(parameters_.give_up_radius),
                 [&](Index i, float) {
                   if (map_.class_of(i) == PointClass::frontier) set(i);
                 });
@@ -331,18 +343,18 @@ class Planner {
     return refused ? StopReason::no_reachable_view : low ? StopReason::low_gain : StopReason::no_frontier;
   }
 
-  Parameters params_;
+  Parameters parameters_;
   int threads_;
   DensityMap<float> map_;
-  HashGrid<float> near_;               // the same points in cells of 2 upsilon
-  std::optional<Grid<float>> search_;  // the same points, built when needed
-  Aabb bounds_;
+  HashGrid<float> near_;                             // search over the points, in cells of 2 upsilon
+  std::optional<Grid<float>> search_;                // search over the points, built when needed
+  Aabb bounds_;                                      // of all points
   Eigen::Vector3d sum_ = Eigen::Vector3d::Zero();    // of all points
   std::vector<Eigen::Vector3d> sensors_;             // position of each view
-  std::unordered_map<Index, Candidate> candidates_;  // by point; only ever visited in ways that depend on no order
-  std::vector<char> given_up_;
-  std::optional<Index> target_;  // the frontier that the sensor has gone to see
-  std::optional<Index> retry_;   // the frontier to look at again first
+  std::unordered_map<Index, Candidate> candidates_;  // by index of the point; the results do not depend on their order
+  std::vector<char> given_up_;                       // per point
+  std::optional<Index> target_;                      // the frontier that the present view was taken for
+  std::optional<Index> retry_;                       // the frontier that the next view should look at again
   StopReason stop_reason_ = StopReason::not_stopped;
 };
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// @file
-/// The order in which to try the proposed views (SEE++, next best view selection). Cost O(n log n) for n views.
+/// The order in which the proposed views are tried (SEE++, next best view selection). World frame, metres. Cost:
+/// O(n log n) for n views.
 #pragma once
 
 #include <agrisee/see/visibility_graph.hpp>
@@ -9,16 +10,17 @@
 
 namespace agrisee::see {
 
-/// Positions of the views, best first, and their `visible` and `score` filled in.
+/// Rank the views, best first.
 ///
-/// First the neighbours in the graph of the view nearest to the sensor: those that see its frontier, or whose frontier
-/// it sees, and itself. Then all others. Both by falling number of frontiers seen per metre moved; ties by position.
-/// View i is the one proposed for frontier i.
-/// @param views proposals
-/// @param graph which proposals see which frontiers
-/// @param sensor its present position (m)
-/// @param least_move moves shorter than this (m, > 0) count as this long
-/// @throws InputError when the graph has not one node a view
+/// The view nearest to the sensor comes first, together with those that see its frontier or whose frontier it sees. All
+/// others follow. Both groups are ordered by the number of frontiers seen per metre moved, largest first; views of
+/// equal score stay in the given order. View i is the one proposed for frontier i.
+/// @param views the proposals; receive their `visible` and `score`
+/// @param graph which views see which frontiers
+/// @param sensor present position of the sensor (m, world)
+/// @param least_move shorter moves count as this long (m), above 0
+/// @return positions in `views`
+/// @throws InputError if the graph does not have one node per view
 inline std::vector<std::size_t> rank(std::vector<ViewProposal>& views, const VisibilityGraph& graph,
                                      const Eigen::Vector3d& sensor, double least_move) {
   check_input(graph.sees.size() == views.size(), "rank: the graph has not as many nodes as there are views");

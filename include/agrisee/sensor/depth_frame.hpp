@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// @file
-/// An organised depth image.
+/// A depth image: what a depth camera measures in one shot.
 #pragma once
 
 #include <agrisee/sensor/intrinsics.hpp>
@@ -10,20 +10,20 @@ namespace agrisee::sensor {
 /// A depth image in the optical frame (z forward, x right, y down).
 struct DepthFrame {
   Intrinsics intrinsics;     ///< of the image
-  std::vector<float> depth;  ///< z (m) of each pixel, row by row; 0, negative or not finite = no return
+  std::vector<float> depth;  ///< z (m) of each pixel, row by row; 0, negative or not finite: no return
 
-  /// Depth z (m) of column u of row v.
+  /// Depth z (m) of the pixel in column u and row v.
   float at(int u, int v) const {
     return depth[static_cast<std::size_t>(v) * static_cast<std::size_t>(intrinsics.width) +
                  static_cast<std::size_t>(u)];
   }
-  /// True when a depth counts as a return.
+  /// Whether a depth (m) is that of a return.
   static bool valid(float z) { return z > 0.0f && std::isfinite(z); }
   /// The point (m, optical frame) of a pixel; meaningful where valid(at(u, v)).
   Eigen::Vector3f point(int u, int v) const { return (intrinsics.ray(u, v) * double(at(u, v))).cast<float>(); }
 };
 
-/// @throws InputError when the depth image is not as large as its intrinsics say, or these are not usable
+/// @throws InputError if the depth image is not as large as its intrinsics say, or these are not usable
 inline void check(const DepthFrame& frame) {
   const Intrinsics& k = frame.intrinsics;
   check_input(k.width > 0 && k.height > 0 && std::isfinite(k.fx) && std::isfinite(k.fy) && k.fx > 0 && k.fy > 0 &&

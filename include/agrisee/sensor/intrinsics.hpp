@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// @file
-/// The pinhole camera.
+/// The pinhole camera model.
 #pragma once
 
 #include <agrisee/core/error.hpp>
@@ -10,24 +10,29 @@
 
 namespace agrisee::sensor {
 
-/// A pinhole without distortion. Pixel (u, v) is column u of row v, its centre at integer coordinates.
+/// A pinhole camera without distortion. Pixel (u, v) is in column u and row v; integer coordinates are the middle of a
+/// pixel.
 struct Intrinsics {
-  int width = 0;    ///< pixels
-  int height = 0;   ///< pixels
-  double fx = 0.0;  ///< focal length along u, pixels
-  double fy = 0.0;  ///< along v
-  double cx = 0.0;  ///< principal point, pixels
-  double cy = 0.0;  ///< its row
+  int width = 0;    ///< of the image (pixels)
+  int height = 0;   ///< of the image (pixels)
+  double fx = 0.0;  ///< focal length along u (pixels)
+  double fy = 0.0;  ///< focal length along v (pixels)
+  double cx = 0.0;  ///< column of the principal point (pixels)
+  double cy = 0.0;  ///< row of the principal point (pixels)
 
   /// Number of pixels.
   std::size_t size() const { return static_cast<std::size_t>(width) * static_cast<std::size_t>(height); }
-  /// Point on the ray of a pixel at z = 1 in the optical frame (z forward, x right, y down).
+  /// The point at z = 1 on the ray of a pixel, in the optical frame (z forward, x right, y down).
   Eigen::Vector3d ray(double u, double v) const { return {(u - cx) / fx, (v - cy) / fy, 1.0}; }
-  /// Pixel coordinates of a point in the optical frame with z > 0.
+  /// Pixel coordinates (u, v) of a point p (optical frame) with z > 0.
   Eigen::Vector2d project(const Eigen::Vector3d& p) const { return {fx * p.x() / p.z() + cx, fy * p.y() / p.z() + cy}; }
 };
 
-/// Intrinsics from full opening angles (rad) over the whole image, the principal point in its middle.
+/// Intrinsics of an image whose principal point is in its middle.
+/// @param width of the image (pixels)
+/// @param height of the image (pixels)
+/// @param fov_x full opening angle over the width (rad)
+/// @param fov_y full opening angle over the height (rad)
 /// @throws ParameterError for sizes below one pixel or angles outside (0, pi)
 inline Intrinsics intrinsics_from_fov(int width, int height, double fov_x, double fov_y) {
   check_parameter(width >= 1, "sensor width", ">= 1", width);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// @file
-/// Unorganised points of one view as a depth image, so that sensors without an image take the same path.
+/// Turns the unorganised points of one view into a depth image, so that sensors that give no image can be used too.
 #pragma once
 
 #include <agrisee/core/cloud.hpp>
@@ -8,8 +8,10 @@
 
 namespace agrisee::sensor {
 
-/// Each point (m, optical frame: z forward, x right, y down) goes to the pixel that sees it; the nearest wins. Points
-/// behind the sensor, outside the image or not finite are left out.
+/// Each point becomes the depth of the pixel that sees it; if several do, the nearest wins. Points that are behind the
+/// sensor, outside the image or not finite are left out.
+/// @param points (m, optical frame: z forward, x right, y down), any cloud type
+/// @param intrinsics of the image
 /// @throws ParameterError for intrinsics without pixels
 template <typename C>
 DepthFrame frame_from_points(const C& points, const Intrinsics& intrinsics) {

@@ -1,31 +1,31 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// @file
-/// One cell of the experiment: a scene, a preset, a planner, a noise model and a trial, scanned and judged by
-/// everything that the tables show (paper, Experiments; what it lacks beside). World frame, metres, radians, seconds.
+/// The records of the experiment ([1], "Experiments"). A cell is one simulated scan: a scene, a preset, a planner, a
+/// noise model and a trial. Its record holds everything that the tables show. World frame, metres, radians, seconds.
 #pragma once
 
 #include <agrisee/result.hpp>
 #include <agrisee/study/metrics.hpp>
 
-#include <cstdint>
+#include <cstddef>
 #include <string>
 #include <vector>
 
 namespace agrisee::study {
 
-/// A name as that of a file: it names no other folder.
+/// A name turned into a file name: what could separate folders (`:`, `/`, `\`) becomes `-`.
 inline std::string file_name(std::string name) {
   for (char& c : name)
     if (c == ':' || c == '/' || c == '\\') c = '-';
   return name;
 }
 
-/// Which scan. The seed of noise and planner is the trial, so that `agrisee scan --seed TRIAL` repeats it.
+/// Which scan. The trial is the seed of noise and planner, so `agrisee scan --seed TRIAL` repeats it.
 struct Cell {
   std::string scene;               ///< name of the scene
   std::string preset = "default";  ///< `default` or `paper`
-  std::string planner = "gain";    ///< of the preset, or asked for
-  std::string noise = "none";      ///< model of the simulated sensor's noise, as in scan --noise
+  std::string planner = "gain";    ///< name of the planner, or `greedy` (greedy_planner.hpp)
+  std::string noise = "none";      ///< noise model of the simulated sensor, as for scan --noise
   int trial = 1;                   ///< from 1
 
   /// f(name, field) for every field.
@@ -37,18 +37,18 @@ struct Cell {
     f("noise", p.noise);
     f("trial", p.trial);
   }
-  /// Unlike that of any other cell, and fit for a file: scene, preset, planner, noise and trial.
+  /// A file name that no other cell has: scene, preset, planner, noise and trial.
   std::string name() const {
     return file_name(scene + "__" + preset + "__" + planner + "__" + noise + "__" + std::to_string(trial));
   }
 };
 
-/// What one of the paper's two stages makes of the clean cloud when it is alone.
+/// What one of the two segmentation stages of [1] makes of the filtered cloud when it runs alone.
 struct StageAlone {
-  int n_det = 0;                  ///< instances
-  double object_precision = 0.0;  ///< as in Metrics
-  double object_recall = 0.0;     ///< as in Metrics
-  double miou = 0.0;              ///< by surface
+  int n_det = 0;                  ///< number of instances found
+  double object_precision = 0.0;  ///< see Metrics
+  double object_recall = 0.0;     ///< see Metrics
+  double miou = 0.0;              ///< Metrics::miou_surface
 
   /// f(name, field) for every field.
   template <typename P, typename F>
@@ -60,14 +60,14 @@ struct StageAlone {
   }
 };
 
-/// A fruit as it was located, beside its FruitMetrics; fruit that no instance was matched to have no location.
+/// Where a true fruit was located. Kept beside its FruitMetrics; zero if no instance was matched to the fruit.
 struct LocatedFruit {
   int id = 0;                                                  ///< of the true fruit
-  bool hidden = false;                                         ///< made to be behind the others
-  std::string found_by;                                        ///< method; empty = not matched
-  Eigen::Vector3d centroid = Eigen::Vector3d::Zero();          ///< mean of its points, world (m)
-  Eigen::Vector3d centroid_cluster = Eigen::Vector3d::Zero();  ///< the same in the cluster frame {R} (m)
-  Eigen::Vector3d sigma = Eigen::Vector3d::Zero();             ///< standard deviation of its points per world axis (m)
+  bool hidden = false;                                         ///< generated to hang behind the others
+  std::string found_by;                                        ///< method that found the instance; empty = not matched
+  Eigen::Vector3d centroid = Eigen::Vector3d::Zero();          ///< mean of the instance's points (m, world)
+  Eigen::Vector3d centroid_cluster = Eigen::Vector3d::Zero();  ///< the same (m, cluster frame {R})
+  Eigen::Vector3d sigma = Eigen::Vector3d::Zero();             ///< standard deviation of the points per world axis (m)
 
   /// f(name, field) for every field.
   template <typename P, typename F>
@@ -81,31 +81,31 @@ struct LocatedFruit {
   }
 };
 
-/// A cell and its figures.
+/// A cell and what came of its scan.
 struct CellRecord {
   Cell cell;                          ///< what was run
-  std::string fingerprint;            ///< of scene, parameters and version: a record with another one is out of date
-  int total = 0;                      ///< fruit of the scene
-  int hidden = 0;                     ///< how many of them are made to be behind others
+  std::string fingerprint;            ///< of scene, parameters and version; a record with another one is outdated
+  int total = 0;                      ///< number of fruit in the scene
+  int hidden = 0;                     ///< how many of them are generated to hang behind others
   std::string stop_reason;            ///< see StopReason
-  int views = 0;                      ///< taken
-  std::size_t merged = 0;             ///< points of the merged cloud, before SOR
-  std::size_t filtered = 0;           ///< points after SOR
-  std::size_t residual = 0;           ///< of them left by region growing to DBSCAN
-  Timing seconds;                     ///< of computing; `capture` is the simulated sensor's, and not in `total`
-  double path = 0.0;                  ///< joint-space path from the start through all views (rad)
-  double shortest_path = 0.0;         ///< shortest open path from the start through the same joints (rad)
-  double believed_seen = 0.0;         ///< what the planner believes of `metrics.scanned`; 0 where it believes nothing
-  double believed_observable = 0.0;   ///< and of `metrics.observable`
+  int views = 0;                      ///< number of views taken
+  std::size_t merged = 0;             ///< points of the merged cloud, before outlier removal
+  std::size_t filtered = 0;           ///< points after outlier removal
+  std::size_t residual = 0;           ///< how many of these region growing leaves to DBSCAN
+  Timing seconds;                     ///< computing time per stage
+  double path = 0.0;                  ///< length of the joint path from the start through all views (rad)
+  double shortest_path = 0.0;         ///< the same of the shortest path, see shortest_joint_path() (rad)
+  double believed_seen = 0.0;         ///< the planner's own estimate of `metrics.scanned`; 0 if it has none
+  double believed_observable = 0.0;   ///< the same of `metrics.observable`
   Metrics metrics;                    ///< at the end of the scan
-  StageAlone growing;                 ///< region growing alone, on the clean cloud
-  StageAlone clustering;              ///< DBSCAN alone, on the clean cloud
-  std::vector<LocatedFruit> fruits;   ///< one a true fruit, in the order of `metrics.fruits`
-  std::vector<double> scanned_after;  ///< Metrics::scanned_obs, were the scan to end after each view
-  std::vector<double> recall_after;   ///< Metrics::recall_obs likewise
-  std::vector<int> true_after;        ///< Metrics::n_true likewise
+  StageAlone growing;                 ///< region growing alone, on the filtered cloud
+  StageAlone clustering;              ///< DBSCAN alone, on the filtered cloud
+  std::vector<LocatedFruit> fruits;   ///< one per true fruit, in the order of `metrics.fruits`
+  std::vector<double> scanned_after;  ///< Metrics::scanned_obs if the scan had ended after each view
+  std::vector<double> recall_after;   ///< Metrics::recall_obs after each view
+  std::vector<int> true_after;        ///< Metrics::n_true after each view
 
-  /// All but `cell`.
+  /// f(name, field) for every field except `cell`.
   template <typename P, typename F>
   static void fields(P& p, F&& f) {
     f("fingerprint", p.fingerprint);
@@ -132,19 +132,19 @@ struct CellRecord {
   }
 };
 
-/// What can be seen of a scene at all.
+/// What can be seen of a scene at all, see limit.hpp.
 struct SceneRecord {
-  std::string scene;               ///< name
-  std::string fingerprint;         ///< of scene and version
-  int total = 0;                   ///< fruit
-  int hidden = 0;                  ///< of them, made to be behind others
+  std::string scene;               ///< name of the scene
+  std::string fingerprint;         ///< of scene and version; a record with another one is outdated
+  int total = 0;                   ///< number of fruit
+  int hidden = 0;                  ///< how many of them are generated to hang behind others
   double observable = 0.0;         ///< share of the fruit's surface that the arm can observe
-  double observable_least = 0.0;   ///< the same of the fruit of which least can be observed
-  double hidden_share_most = 0.0;  ///< largest share of a hidden fruit's surface that is seen from straight in front
-  int views_90 = 0;                ///< views of the greedy planner that knows the truth, for 90 %; 0 = never
-  int views_95 = 0;                ///< for 95 %
-  int views_98 = 0;                ///< for 98 %
-  int views_99 = 0;                ///< for 99 %
+  double observable_least = 0.0;   ///< the same share of the fruit that can be observed least
+  double hidden_share_most = 0.0;  ///< largest share of a hidden fruit's surface that is seen from the front
+  int views_90 = 0;                ///< greedy views (greedy.hpp) that cover 90 % of what is observable; 0 = none do
+  int views_95 = 0;                ///< the same for 95 %
+  int views_98 = 0;                ///< the same for 98 %
+  int views_99 = 0;                ///< the same for 99 %
 
   /// f(name, field) for every field.
   template <typename P, typename F>

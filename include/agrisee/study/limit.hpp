@@ -1,141 +1,88 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// @file
-/// What can be seen at all: the fruit's surface that a sensor on the arm can observe from any posture outside keep-out,
-/// and how few views would do for somebody who knows the truth. World frame, metres, radians. Cost: about a second for
-/// seven fruit and 450 poses on one core, nearly all of it rays.
+/// What can be seen at all: the part of the fruit's surface that the sensor can observe from any posture that the arm
+/// can take outside keep-out spaces. World frame, metres, radians. Cost: about a second for seven fruit and 450 poses
+/// on one core, nearly all of it ray casting.
 #pragma once
 
-#include <agrisee/core/grid.hpp>
-#include <agrisee/plan/arm_reach.hpp>
+#include <agrisee/core/parameter_range.hpp>
+#include <agrisee/geometry/aabb.hpp>
+#include <agrisee/plan/planner.hpp>
 #include <agrisee/study/visibility.hpp>
+#include <agrisee/workcell.hpp>
 
-#include <algorithm>
-#include <cmath>
+#include <cstdint>
+#include <vector>
 
 namespace agrisee::study {
 
-/// How densely sensor poses are tried.
+/// Which sensor poses are tried.
 struct LimitParameters {
-  int candidates = 4000;        ///< views tried; their directions are spread evenly over the whole sphere
-  double distance_min = 0.28;   ///< nearest and
-  double distance_max = 0.55;   ///< farthest distance from sensor to target (m); every candidate prefers another
-  double cover_radius = 0.005;  ///< a sample counts as covered when one within this distance is seen (m)
+  int candidates = 4000;        ///< number of views tried; their directions are spread evenly over the whole sphere
+  double distance_min = 0.28;   ///< shortest distance from sensor to target (m)
+  double distance_max = 0.55;   ///< longest; every candidate prefers another distance between the two (m)
+  double cover_radius = 0.005;  ///< a sample counts as covered if a sample within this distance is seen (m)
 
-  /// The paper gives none; the defaults.
+  /// [1] gives no values; these are the defaults.
   static LimitParameters paper() { return {}; }
-  /// @throws ParameterError naming the field
-  void check() const {
-    check_parameter(candidates >= 1, "candidates", ">= 1", candidates);
-    check_parameter(std::isfinite(distance_min) && distance_min > 0.0, "distance_min", "positive and finite",
-                    distance_min);
-    check_parameter(std::isfinite(distance_max) && distance_max >= distance_min, "distance_max",
-                    "at least distance_min and finite", distance_max);
-    check_parameter(std::isfinite(cover_radius) && cover_radius > 0.0, "cover_radius", "positive and finite",
-                    cover_radius);
-  }
-  /// f(name, field) for every field.
+
+  /// @throws FieldError for the first field that is out of its range
+  void check() const { check_fields(*this); }
+
+  /// f(name, field, range) for every field.
   template <typename P, typename F>
   static void fields(P& p, F&& f) {
-    f("candidates", p.candidates);
-    f("distance_min", p.distance_min);
-    f("distance_max", p.distance_max);
-    f("cover_radius", p.cover_radius);
+    f("candidates", p.candidates, Range::at_least(1));
+    f("distance_min", p.distance_min, Range::positive());
+    f("distance_max", p.distance_max, Range::at_least({p.distance_min, "distance_min"}));
+    f("cover_radius", p.cover_radius, Range::positive());
   }
 };
 
-/// A set of samples, a bit each.
+/// A set of samples, one bit per sample.
 using Bits = std::vector<std::uint64_t>;
 
-/// What is seen from where.
+/// Which views see which samples.
 struct Observability {
-  std::vector<plan::ReachableView>
-      views;               ///< that see anything; empty = the arm can look at nothing from where it stands
-  std::vector<Bits> seen;  ///< the samples that each of them sees
-  Flags observable;        ///< one a sample: seen by any; empty when there are no views
+  std::vector<plan::ReachableView> views;  ///< views that see any sample; empty: the arm can see nothing from its place
+  std::vector<Bits> seen;                  ///< the samples that each of the views sees
+  Flags observable;                        ///< per sample: seen by any view; empty if there are no views
 
   /// Whether a view sees a sample.
   bool sees(std::size_t view, std::size_t sample) const { return (seen[view][sample / 64] >> (sample % 64)) & 1U; }
 };
 
-/// Views of a box that `reach` grants: directions on a Fibonacci sphere, targets in the box and preferred distances by
-/// a low-discrepancy sequence (Roberts' R4), so that nothing about the reach is assumed. Nothing is random; the order
-/// is fixed.
-/// @param reach    called from several threads at once when `threads` > 1
-/// @param current  joints that the arm comes from (rad)
-/// @param box      what to look at (m)
-/// @param params see their struct
-/// @param threads the result does not depend on it
-/// @throws InputError for an empty box; ParameterError for unusable parameters
-inline std::vector<plan::ReachableView> reachable_views(const plan::Reach& reach, const Joints& current,
-                                                        const Aabb& box, const LimitParameters& params = {},
-                                                        int threads = 1) {
-  params.check();
-  check_input(!box.empty() && box.min.allFinite() && box.max.allFinite(),
-              "reachable views: there is nothing to look at");
-  const auto n = static_cast<std::size_t>(params.candidates);
-  std::vector<std::optional<plan::ReachableView>> found(n);
-  const auto part = [](double x) { return x - std::floor(x); };
-  parallel_for(
-      n, threads,
-      [&](std::size_t i) {
-        const auto k = static_cast<double>(i);
-        const double z = 1.0 - (2.0 * k + 1.0) / params.candidates, azimuth = kTwoPi * part(k * 0.6180339887498949);
-        const double s = std::sqrt(std::max(0.0, 1.0 - z * z));
-        // Powers of 1 / 1.1673, the generalised golden ratio of four dimensions.
-        const Eigen::Vector3d where(part(k * 0.8566748838545029), part(k * 0.7338918566271260),
-                                    part(k * 0.6287067210378087));
-        plan::ViewRequest request;
-        request.target = box.center() + 0.6 * (where.array() - 0.5).matrix().cwiseProduct(box.size());
-        request.direction = {s * std::cos(azimuth), s * std::sin(azimuth), z};
-        request.distance_min = params.distance_min;
-        request.distance_max = params.distance_max;
-        request.distance =
-            params.distance_min + part(k * 0.5385972572236101) * (params.distance_max - params.distance_min);
-        found[i] = reach(request, current);
-      },
-      16);
-  std::vector<plan::ReachableView> views;
-  for (const auto& view : found)
-    if (view) views.push_back(*view);
-  return views;
-}
+/// Views of a box that `reach` grants.
+///
+/// Directions lie on a Fibonacci sphere; targets in the box and preferred distances follow a low-discrepancy sequence
+/// (Roberts' R4), so that nothing is assumed about the reach. Nothing is random, and the order is fixed.
+/// @param reach called from several threads at once if `threads` > 1
+/// @param current joints before the move (rad)
+/// @param box what to look at (m, world)
+/// @param parameters which poses are tried
+/// @param threads number of threads; the result does not depend on it
+/// @throws InputError for an empty box; ParameterError
+std::vector<plan::ReachableView> reachable_views(const plan::Reach& reach, const Joints& current, const Aabb& box,
+                                                 const LimitParameters& parameters = {}, int threads = 1);
 
-/// Which samples each of some views sees; views that see nothing are left out.
-inline Observability observe_from(const TracedScene& scene, const Samples& samples, const sensor::L515& sensor,
-                                  const std::vector<plan::ReachableView>& views, int threads = 1) {
-  Observability out;
-  std::vector<Bits> seen(views.size());
-  parallel_for(
-      views.size(), threads,
-      [&](std::size_t v) {
-        const Flags flags = visible_to(scene, samples, views[v].world_T_optical, sensor);
-        seen[v].assign((samples.size() + 63) / 64, 0);
-        for (std::size_t i = 0; i < flags.size(); ++i) seen[v][i / 64] |= std::uint64_t{flags[i]} << (i % 64);
-      },
-      1);
-  for (std::size_t v = 0; v < views.size(); ++v) {
-    if (std::all_of(seen[v].begin(), seen[v].end(), [](std::uint64_t word) { return word == 0; })) continue;
-    out.views.push_back(views[v]);
-    out.seen.push_back(std::move(seen[v]));
-  }
-  if (out.views.empty()) return out;
-  out.observable.assign(samples.size(), 0);
-  for (std::size_t v = 0; v < out.views.size(); ++v)
-    for (std::size_t i = 0; i < samples.size(); ++i) out.observable[i] |= static_cast<std::uint8_t>(out.sees(v, i));
-  return out;
-}
+/// Which samples each of some views sees. Views that see nothing are left out.
+/// @param scene what hides samples
+/// @param samples of the fruit's surface
+/// @param sensor the camera
+/// @param views where it looks from
+/// @param threads number of threads; the result does not depend on it
+Observability observe_from(const TracedScene& scene, const Samples& samples, const sensor::DepthCamera& sensor,
+                           const std::vector<plan::ReachableView>& views, int threads = 1);
 
-/// What the arm of a workcell can observe of the samples of a scene's fruit.
-/// @return without views, and with empty flags, when there are no samples or nothing is within reach
-/// @throws ParameterError for unusable parameters or an unsound mounting
-inline Observability observable(const TracedScene& scene, const Samples& samples, const Workcell& cell,
-                                const LimitParameters& params = {}, int threads = 1) {
-  params.check();
-  Aabb box;
-  for (const Eigen::Vector3f& p : samples.points) box.extend(p.cast<double>());
-  if (box.empty()) return {};
-  const plan::Reach reach = plan::reach_of(cell);
-  return observe_from(scene, samples, cell.sensor, reachable_views(reach, cell.start, box, params, threads), threads);
-}
+/// What the arm of a workcell can observe of the samples.
+/// @param scene what hides samples
+/// @param samples of the fruit's surface
+/// @param cell arm, camera and keep-out spaces
+/// @param parameters which poses are tried
+/// @param threads number of threads; the result does not depend on it
+/// @return without views, and with empty flags, if there are no samples or nothing is within reach
+/// @throws ParameterError, also if the arm's mount is not valid
+Observability observable(const TracedScene& scene, const Samples& samples, const Workcell& cell,
+                         const LimitParameters& parameters = {}, int threads = 1);
 
 }  // namespace agrisee::study

@@ -1,66 +1,23 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// @file
-/// One-to-one matching with the largest total score.
+/// The one-to-one matching with the largest total score. Used to match fruit to the instances of a result.
 #pragma once
 
-#include <agrisee/core/error.hpp>
-#include <agrisee/core/types.hpp>
+#include <Eigen/Core>
 
-#include <limits>
+#include <vector>
 
 namespace agrisee::study {
 
-/// The one-to-one matching of rows to columns whose scores add up to the most; pairs of score 0 or less are left
-/// unmatched.
+/// Match rows to columns one to one so that the sum of the matched scores is largest. Pairs with a score of 0 or less
+/// are not matched.
 ///
-/// Hungarian method with potentials by successive shortest paths (Kuhn 1955; Munkres 1957), O(n^2 m) with n = min(rows,
-/// columns). Among matchings of equal total the result is fixed, but not one in particular.
-/// @param score any finite matrix
+/// Hungarian method with potentials by successive shortest paths (Kuhn 1955; Munkres 1957). Cost: O(n^2 m) with n =
+/// min(rows, columns) and m = max(rows, columns). If several matchings have the same total, the same one is returned
+/// every time.
+/// @param score one row per fruit, one column per instance, for example; any size, finite
 /// @return for each row its column, or -1
-/// @throws InputError when a score is not finite
-inline std::vector<int> best_matching(const Eigen::MatrixXd& score) {
-  std::vector<int> match(static_cast<std::size_t>(score.rows()), -1);
-  if (score.size() == 0) return match;
-  check_input(score.allFinite(), "matching: a score is not finite");
-  if (score.rows() > score.cols()) {
-    const std::vector<int> flipped = best_matching(score.transpose());
-    for (std::size_t j = 0; j < flipped.size(); ++j)
-      if (flipped[j] >= 0) match[static_cast<std::size_t>(flipped[j])] = static_cast<int>(j);
-    return match;
-  }
-  const Eigen::Index n = score.rows(), m = score.cols();
-  // Minimise -max(score, 0): an unwanted pair costs as much as no pair. Row and column 0 are sentinels.
-  constexpr double kFar = std::numeric_limits<double>::infinity();
-  Eigen::VectorXd u = Eigen::VectorXd::Zero(n + 1), v = Eigen::VectorXd::Zero(m + 1), least(m + 1);
-  Eigen::VectorXi row_of = Eigen::VectorXi::Zero(m + 1), via(m + 1);
-  for (int i = 1; i <= n; ++i) {
-    row_of[0] = i;
-    int j0 = 0;
-    least.setConstant(kFar);
-    std::vector<char> done(static_cast<std::size_t>(m + 1), 0);
-    do {  // Dijkstra over columns until a free one is reached
-      done[static_cast<std::size_t>(j0)] = 1;
-      const int i0 = row_of[j0];
-      double step = kFar;
-      int next = 0;
-      for (int j = 1; j <= m; ++j) {
-        if (done[static_cast<std::size_t>(j)]) continue;
-        const double reduced = -std::max(score(i0 - 1, j - 1), 0.0) - u[i0] - v[j];
-        if (reduced < least[j]) least[j] = reduced, via[j] = j0;
-        if (least[j] < step) step = least[j], next = j;
-      }
-      for (int j = 0; j <= m; ++j)
-        if (done[static_cast<std::size_t>(j)])
-          u[row_of[j]] += step, v[j] -= step;
-        else
-          least[j] -= step;
-      j0 = next;
-    } while (row_of[j0] != 0);
-    for (; j0 != 0; j0 = via[j0]) row_of[j0] = row_of[via[j0]];
-  }
-  for (int j = 1; j <= m; ++j)
-    if (row_of[j] > 0 && score(row_of[j] - 1, j - 1) > 0.0) match[static_cast<std::size_t>(row_of[j] - 1)] = j - 1;
-  return match;
-}
+/// @throws InputError if a score is not finite
+std::vector<int> best_matching(const Eigen::MatrixXd& score);
 
 }  // namespace agrisee::study

@@ -1,75 +1,31 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// @file
-/// What the true centre, size and volume of a fruit are, given nothing but its mesh: the volume centroid and the
-/// ellipsoid with the same second moments. Cost: linear in the number of triangles. World frame, metres.
+/// Centre, size and volume of an object, computed from its mesh: the volume centroid and the ellipsoid with the same
+/// second moments. World frame, metres. The cost is linear in the number of triangles.
 #pragma once
 
 #include <agrisee/geometry/mesh.hpp>
-#include <agrisee/geometry/pca.hpp>
 
 namespace agrisee::study {
 
-/// Centre and ellipsoid of a mesh.
+/// Moments of a mesh.
 struct MeshMoments {
-  double volume = 0.0;                                 ///< m3; 0 for a mesh that does not close
-  double area = 0.0;                                   ///< m2
-  Eigen::Vector3d center = Eigen::Vector3d::Zero();    ///< volume centroid (m)
-  Eigen::Vector3d radii = Eigen::Vector3d::Zero();     ///< equivalent semi-axes (m), largest first
-  Eigen::Matrix3d axes = Eigen::Matrix3d::Identity();  ///< columns: directions of `radii`, right-handed
-  bool closed = false;                                 ///< the triangles' area vectors cancel
+  double volume = 0.0;                                 ///< enclosed volume (m3); 0 if the mesh is not closed
+  double area = 0.0;                                   ///< surface area (m2)
+  Eigen::Vector3d center = Eigen::Vector3d::Zero();    ///< centroid of the volume (m)
+  Eigen::Vector3d radii = Eigen::Vector3d::Zero();     ///< semi-axes of the equivalent ellipsoid (m), largest first
+  Eigen::Matrix3d axes = Eigen::Matrix3d::Identity();  ///< columns: unit directions of `radii`, right-handed
+  bool closed = false;                                 ///< whether the mesh is closed, see mesh_moments()
 };
 
-/// Moments of the solid that a mesh encloses, from the integrals over the tetrahedra between its triangles and a
-/// point (Tonon, "Explicit exact formulas for the 3-D tetrahedron inertia tensor", 2005). A solid ellipsoid with
-/// semi-axes r has variances r^2 / 5 along its axes, hence radii = sqrt(5 lambda). Meshes wound inside out count as if
-/// they were not.
+/// Computes the moments of the solid that a mesh encloses, as integrals over the tetrahedra between its triangles and
+/// one common point (Tonon, "Explicit exact formulas for the 3-D tetrahedron inertia tensor", 2005). A solid ellipsoid
+/// with the semi-axes r has the variances r^2 / 5 along its axes, so radii = sqrt(5 lambda) for the eigenvalues lambda
+/// of the covariance. A mesh whose triangles face inwards gives the same moments.
 ///
-/// A mesh that does not close (area vectors that do not cancel to 1 % of its area, or no volume) has no inside: centre
-/// and radii are then those of its surface, whose variances are about r^2 / 3.
-/// @throws InputError when a triangle names a vertex that does not exist or the mesh has no area or is not finite
-inline MeshMoments mesh_moments(const Mesh& mesh) {
-  Eigen::Vector3d origin = Eigen::Vector3d::Zero();
-  for (const Eigen::Vector3f& v : mesh.vertices) origin += v.cast<double>();
-  origin /= std::max<double>(1.0, static_cast<double>(mesh.vertices.size()));
-
-  double solid = 0.0, surface = 0.0;
-  Eigen::Vector3d areas = Eigen::Vector3d::Zero(), solid_first = areas, surface_first = areas;
-  Eigen::Matrix3d solid_second = Eigen::Matrix3d::Zero(), surface_second = solid_second;
-  for (const auto& t : mesh.triangles) {
-    for (const std::uint32_t i : t) check_input(i < mesh.vertices.size(), "mesh: a triangle names a missing vertex");
-    const Eigen::Vector3d a = mesh.vertices[t[0]].cast<double>() - origin;
-    const Eigen::Vector3d b = mesh.vertices[t[1]].cast<double>() - origin;
-    const Eigen::Vector3d c = mesh.vertices[t[2]].cast<double>() - origin;
-    const Eigen::Vector3d normal = 0.5 * (b - a).cross(c - a), sum = a + b + c;
-    const Eigen::Matrix3d squares = a * a.transpose() + b * b.transpose() + c * c.transpose() + sum * sum.transpose();
-    const double v = a.dot(normal) / 3.0, s = normal.norm();
-    areas += normal;
-    solid += v;
-    solid_first += v / 4.0 * sum;
-    solid_second += v / 20.0 * squares;
-    surface += s;
-    surface_first += s / 3.0 * sum;
-    surface_second += s / 12.0 * squares;
-  }
-  check_input(std::isfinite(surface) && surface > 0.0, "mesh: it has no area or is not finite");
-
-  MeshMoments out;
-  out.area = surface;
-  // A ball has the largest volume for its area; what is not even a millionth of it is flat.
-  const double ball = std::pow(surface, 1.5) / (6.0 * std::sqrt(kPi));
-  out.closed = areas.norm() < 0.01 * surface && std::abs(solid) > 1e-6 * ball;
-  if (out.closed) out.volume = std::abs(solid);
-  const double mass = out.closed ? solid : surface;
-  const Eigen::Vector3d mean = (out.closed ? solid_first : surface_first) / mass;
-  const Eigen::Matrix3d second = (out.closed ? solid_second : surface_second) / mass;
-  const auto pca = principal_axes<double>(mean, Eigen::Matrix3d(second - mean * mean.transpose()));
-  out.center = origin + mean;
-  for (int i = 0; i < 3; ++i) {
-    out.radii[i] = std::sqrt((out.closed ? 5.0 : 3.0) * pca.variance[2 - i]);
-    out.axes.col(i) = pca.axes.col(2 - i);
-  }
-  if (out.axes.determinant() < 0.0) out.axes.col(2) = -out.axes.col(2);
-  return out;
-}
+/// A mesh is not closed if its area vectors add up to more than 1 % of its area, or if it encloses no volume. Centre
+/// and radii then describe its surface, whose variances are about r^2 / 3.
+/// @throws InputError if a triangle refers to a missing vertex, or if the area is zero or not finite
+MeshMoments mesh_moments(const Mesh& mesh);
 
 }  // namespace agrisee::study

@@ -1,10 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// @file
-/// What the paper reports: the figures of its three result tables, and those that its text gives for all of them.
-/// Percentages as printed there (0..100), metres and seconds unless named otherwise.
-///
-/// F. Canadas-Aranega, R. Border, J. C. Moreno, J. L. Blanco-Claraco: Active perception for robotic harvesting: 3D
-/// reconstruction and localisation of tomatoes hidden within clusters in a Mediterranean greenhouse.
+/// The results that [1] reports: the figures of its three result tables, and those in its text. Percentages as printed
+/// (0..100); metres and seconds unless stated otherwise.
 #pragma once
 
 #include <array>
@@ -12,13 +9,13 @@
 
 namespace agrisee::study {
 
-/// A row of the paper's table "Analysis of AgriSEE scanning and SOR filtering".
+/// A row of the table "Analysis of AgriSEE scanning and SOR filtering".
 struct PaperScanning {
-  int total;         ///< fruit
+  int total;         ///< number of fruit
   int hidden;        ///< how many of them are hidden
-  int views;         ///< taken
+  int views;         ///< number of views taken
   int merged;        ///< points before SOR
-  int filtered;      ///< and after
+  int filtered;      ///< points after SOR
   double seconds;    ///< computation time
   double scanned;    ///< scanned percentage (%)
   double precision;  ///< %
@@ -26,21 +23,21 @@ struct PaperScanning {
   double f1;         ///< %
 };
 
-/// A row of the paper's table "RG and DBSCAN Evaluation".
+/// A row of the table "RG and DBSCAN Evaluation".
 struct PaperSegmentation {
-  int total;                ///< fruit
+  int total;                ///< number of fruit
   int hidden;               ///< how many of them are hidden
-  int n_real;               ///< "real tomatoes"; the first row says 6 where it has 5
-  int n_det;                ///< detected
+  int n_real;               ///< "real tomatoes"; the first row says 6 for a truss of 5
+  int n_det;                ///< number of fruit detected
   int counting_error;       ///< CE
   double object_precision;  ///< P_obj (%)
   double object_recall;     ///< R_obj (%)
   double miou;              ///< %
 };
 
-/// A row of the paper's table of tomato centres, which shows the truss of kPaperLocalizationTotal fruit.
+/// A row of the table of tomato centers, which shows the truss of kPaperLocalizationTotal fruit.
 struct PaperLocalization {
-  int fruit;                            ///< from 1
+  int fruit;                            ///< number of the fruit, from 1
   std::array<double, 3> cluster;        ///< centroid in the cluster frame (m)
   std::array<double, 3> cluster_sigma;  ///< standard deviation of its points (m)
   std::array<double, 3> world;          ///< centroid in world (m)
@@ -48,7 +45,7 @@ struct PaperLocalization {
   double rmse;                          ///< repeatability over three trials (mm)
 };
 
-/// The scanning table.
+/// The table "Analysis of AgriSEE scanning and SOR filtering".
 constexpr std::array<PaperScanning, 11> kPaperScanning{{{5, 1, 5, 12460, 7850, 40.1, 86.2, 95.1, 84.8, 89.7},
                                                         {6, 2, 7, 12610, 7620, 46.8, 82.8, 93.8, 81.2, 87.0},
                                                         {6, 3, 9, 12330, 7380, 51.3, 74.4, 91.6, 72.5, 80.9},
@@ -61,7 +58,7 @@ constexpr std::array<PaperScanning, 11> kPaperScanning{{{5, 1, 5, 12460, 7850, 4
                                                         {9, 2, 14, 17480, 11950, 82.3, 71.4, 95.3, 69.9, 80.6},
                                                         {9, 4, 14, 17220, 11510, 84.7, 56.7, 93.0, 55.1, 69.2}}};
 
-/// The segmentation table.
+/// The table "RG and DBSCAN Evaluation".
 constexpr std::array<PaperSegmentation, 11> kPaperSegmentation{{{5, 1, 6, 6, 0, 100.0, 100.0, 88.4},
                                                                 {6, 2, 6, 5, 1, 100.0, 83.3, 85.1},
                                                                 {6, 3, 6, 4, 2, 100.0, 66.7, 79.2},
@@ -74,11 +71,12 @@ constexpr std::array<PaperSegmentation, 11> kPaperSegmentation{{{5, 1, 6, 6, 0, 
                                                                 {9, 2, 9, 9, 0, 100.0, 100.0, 85.9},
                                                                 {9, 4, 9, 7, 2, 100.0, 77.8, 77.6}}};
 
-/// The truss that the localisation table shows, and that the text's example of the residual seems to be.
+/// Number of fruit of the truss in the localization table. The text's example of the residual seems to be the same
+/// truss.
 constexpr int kPaperLocalizationTotal = 7;
-constexpr int kPaperLocalizationHidden = 1;  ///< of these fruit, behind the others
+constexpr int kPaperLocalizationHidden = 1;  ///< how many of these are hidden
 
-/// The localisation table.
+/// The table of tomato centers.
 constexpr std::array<PaperLocalization, 7> kPaperLocalization{
     {{1, {0.065, 0.044, 0.044}, {0.006, 0.007, 0.008}, {0.060, 0.519, 0.154}, {0.007, 0.009, 0.010}, 3.6},
      {2, {-0.032, 0.039, 0.043}, {0.009, 0.011, 0.012}, {-0.023, 0.521, 0.154}, {0.011, 0.013, 0.014}, 4.1},
@@ -88,7 +86,7 @@ constexpr std::array<PaperLocalization, 7> kPaperLocalization{
      {6, {-0.037, 0.053, 0.226}, {0.010, 0.012, 0.013}, {-0.035, 0.573, 0.331}, {0.011, 0.014, 0.015}, 4.3},
      {7, {0.032, 0.002, 0.085}, {0.018, 0.022, 0.024}, {0.030, 0.536, 0.087}, {0.020, 0.025, 0.026}, 5.6}}};
 
-/// Figures that the paper gives in its text and in the average rows of its tables.
+/// Figures in the text and in the average rows of the tables.
 struct PaperText {
   double abstract_recall = 82.8;       ///< abstract: average recall (%)
   double abstract_miou = 80.7;         ///< abstract and section on segmentation: mIoU (%)
@@ -96,30 +94,30 @@ struct PaperText {
   double text_object_recall = 82.8;    ///< section on segmentation: average R_obj (%)
   double table_object_recall = 82.7;   ///< average row of the segmentation table (%)
   double table_miou = 81.5;            ///< average row of the segmentation table (%)
-  double conclusion_precision = 91.6;  ///< conclusion: precision consistently above (%)
+  double conclusion_precision = 91.6;  ///< conclusion: precision is consistently above this (%)
   int residual_cloud = 8325;           ///< text: points of the filtered cloud of a truss of seven
-  int residual_grown = 2632;           ///< text: of them in the seven clusters of region growing
-  int residual_per_instance = 439;     ///< text: points an instance, "approximately"
+  int residual_grown = 2632;           ///< text: how many of these are in the seven clusters of region growing
+  int residual_per_instance = 439;     ///< text: points per instance, "approximately"
 };
-/// What it says.
+/// The one instance of PaperText.
 constexpr PaperText kPaperText{};
 
-/// The row of a table for a truss of `total` fruit of which `hidden` are hidden; null where the paper has none.
+/// The row of a table for a truss of `total` fruit of which `hidden` are hidden; null if there is none.
 template <typename Row, std::size_t N>
 constexpr const Row* find_paper_row(const std::array<Row, N>& table, int total, int hidden) {
   for (std::size_t i = 0; i < N; ++i)
     if (table[i].total == total && table[i].hidden == hidden) return &table[i];
   return nullptr;
 }
-/// The scanning table's row; null where the paper has none.
+/// The row of kPaperScanning for a truss; null if there is none.
 constexpr const PaperScanning* paper_scanning(int total, int hidden) {
   return find_paper_row(kPaperScanning, total, hidden);
 }
-/// The segmentation table's row; null where the paper has none.
+/// The row of kPaperSegmentation for a truss; null if there is none.
 constexpr const PaperSegmentation* paper_segmentation(int total, int hidden) {
   return find_paper_row(kPaperSegmentation, total, hidden);
 }
-/// The localisation table's row of a fruit; null where the paper has none.
+/// The row of kPaperLocalization for fruit number `fruit` of a truss; null if there is none.
 constexpr const PaperLocalization* paper_localization(int total, int hidden, int fruit) {
   if (total != kPaperLocalizationTotal || hidden != kPaperLocalizationHidden) return nullptr;
   if (fruit < 1 || fruit > static_cast<int>(kPaperLocalization.size())) return nullptr;

@@ -1,120 +1,80 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// @file
-/// Procedural tomato trusses with their ground truth and a workcell to scan them in. World frame (z up, the robot at
-/// the origin looks along +y), metres. Cost: usually below half a second.
+/// Generates tomato trusses with their ground truth, and a workcell to scan them in. World frame: z points up, and the
+/// robot stands at the origin and looks along +y. Metres. A truss usually takes less than half a second.
 #pragma once
 
-#include <agrisee/study/truss_parts.hpp>
-#include <agrisee/study/visibility.hpp>
+#include <agrisee/core/parameter_range.hpp>
+#include <agrisee/geometry/aabb.hpp>
+#include <agrisee/study/ground_truth.hpp>
+#include <agrisee/study/scene.hpp>
 #include <agrisee/workcell.hpp>
+
+#include <cstdint>
 
 namespace agrisee::study {
 
-/// A truss, ready to be scanned.
-struct Truss {
-  Workcell workcell;  ///< robot, sensor, scan volume and keep-out; unnamed
-  Scene scene;        ///< fruit with ids 1.. , then stem, then leaflets
-  GroundTruth truth;  ///< of every fruit, in the order of ids
+/// Describes the truss to generate.
+struct TrussParameters {
+  int total = 7;                                  ///< number of fruit, 1 to 12
+  int hidden = 1;                                 ///< how many of them hang behind the others, 0 to total / 2
+  std::uint64_t seed = 1;                         ///< equal parameters with equal seeds give equal trusses
+  double radius_min = 0.028;                      ///< smallest semi-axis of a fruit (m)
+  double radius_max = 0.042;                      ///< largest semi-axis of a fruit, its lobes included (m)
+  double elongation = 1.0;                        ///< then scales all polar semi-axes; 1.5 gives plum tomatoes
+  int leaflets = 0;                               ///< number of leaflets, 0 to 6
+  Eigen::Vector3d center = {0.015, 0.545, 0.21};  ///< middle of the truss (m, world)
+
+  /// The defaults, which are in the style of the trusses of [1].
+  static TrussParameters paper() { return {}; }
+
+  /// @throws ParameterError for the first field that is out of its range
+  void check() const {
+    check_fields(*this);
+    check_parameter(center.allFinite(), "center", "finite", center.x());
+  }
+
+  /// f(name, field, range) for every field; without a range where there is none.
+  template <typename P, typename F>
+  static void fields(P& p, F&& f) {
+    f("total", p.total, Range::between(1, 12));
+    f("hidden", p.hidden, Range::between(0, {static_cast<double>(p.total / 2), "half of total"}));
+    f("seed", p.seed);
+    f("radius_min", p.radius_min, Range::at_least(0.005));
+    f("radius_max", p.radius_max, Range::between({p.radius_min, "radius_min"}, 0.06));
+    f("elongation", p.elongation, Range::between(0.5, 2.0));
+    f("leaflets", p.leaflets, Range::between(0, 6));
+    f("center", p.center);
+  }
 };
 
-/// What makes a fruit hidden or not, as a share of its surface seen from straight in front (any incidence).
+/// A truss, ready to be scanned.
+struct Truss {
+  Workcell workcell;  ///< robot, sensor, scan volume and keep-out; its name is empty
+  Scene scene;        ///< the fruit with the ids 1, 2, ..., then the stem, then the leaflets
+  GroundTruth truth;  ///< of every fruit, in ascending order of ids
+};
+
+/// A hidden fruit shows less than this share of its surface to frontal_eye(), at any angle of incidence.
 constexpr double kHiddenBelow = 0.15;
-constexpr double kVisibleAbove = 0.27;  ///< what is not hidden shows at least this share
+/// Every other fruit shows at least this share of its surface to frontal_eye().
+constexpr double kVisibleAbove = 0.27;
 
-/// The sensor position from which fruit count as hidden or not: 0.38 m straight in front of the middle of the truss,
-/// reachable or not (m, world).
-inline Eigen::Vector3d frontal_eye(const Eigen::Vector3d& truss_center) {
-  return truss_center - kFrontalDistance * Eigen::Vector3d::UnitY();
-}
+/// The camera position that decides which fruit are hidden: 0.38 m straight in front of the middle of the truss,
+/// whether or not the arm can reach it (m, world).
+/// @param truss_center middle of the truss (m, world)
+Eigen::Vector3d frontal_eye(const Eigen::Vector3d& truss_center);
 
-/// The place in which a truss is scanned: robot at the origin; a scan volume around the objects, at least 0.34 x 0.32 x
-/// 0.44 m about the truss's usual place; keep-out for platform, plant and a cylinder that keeps the sensor 0.25 m off
-/// the truss.
-/// @param truss box around the fruit (m)  @param center middle of the truss (m)
-inline Workcell truss_workcell(const Aabb& truss, const Eigen::Vector3d& center) {
-  Workcell cell;
-  const Eigen::Vector3d usual(0.015, 0.545, 0.21), shift = center - usual;
-  cell.scan_volume.extend(Eigen::Vector3d(-0.17, 0.40, -0.02) + shift);
-  cell.scan_volume.extend(Eigen::Vector3d(0.17, 0.72, 0.42) + shift);
-  cell.scan_volume.extend(truss.min - Eigen::Vector3d::Constant(0.01));
-  cell.scan_volume.extend(truss.max + Eigen::Vector3d::Constant(0.01));
-  double reach = 0.0;  // of the fruit from the axis of the cylinder, on the robot's side
-  for (const double x : {truss.min.x(), truss.max.x()}) reach = std::max(reach, std::abs(x - center.x()));
-  reach = std::max(reach, center.y() - truss.min.y());
-  const double radius = std::max(0.35, 0.25 + reach);
-  const double height = std::max(0.9, truss.size().z() + 0.5);
-  cell.keep_out.push_back({"platform", Box{{0.0, -0.1, -0.06}, {0.7, 0.7, 0.1}}});
-  cell.keep_out.push_back(
-      {"plant", Box{Eigen::Vector3d(0.0, 0.85, 0.3) + Eigen::Vector3d(0.0, shift.y(), 0.0), {1.2, 0.5, 1.6}}});
-  cell.keep_out.push_back({"cluster", Cylinder{center, radius, height}});
-  return cell;
-}
+/// The workcell in which a truss is scanned. The robot stands at the origin. The scan volume encloses the fruit, and at
+/// least a box of 0.34 x 0.32 x 0.44 m around the middle of the truss. The keep-out consists of the platform, the
+/// plant, and a cylinder that keeps the sensor 0.25 m away from the truss.
+/// @param truss box around the fruit (m, world)
+/// @param center middle of the truss (m, world)
+Workcell truss_workcell(const Aabb& truss, const Eigen::Vector3d& center);
 
-namespace detail {
-
-/// Meshes and truth of a layout.
-inline Truss build(const TrussLayout& layout, const Eigen::Vector3d& center, int leaflets, Rng& rng) {
-  Truss truss;
-  Aabb box;
-  for (std::size_t i = 0; i < layout.fruits.size(); ++i) {
-    const PlacedFruit& fruit = layout.fruits[i];
-    const Mesh mesh = transformed(fruit_mesh(fruit.shape), fruit.world_T_body);
-    for (const Eigen::Vector3f& v : mesh.vertices) box.extend(v.cast<double>());
-    truss.scene.objects.push_back({static_cast<int>(i) + 1, ObjectClass::fruit, mesh});
-  }
-  truss.scene.objects.push_back({0, ObjectClass::stem, stem_mesh(layout, rng)});
-  const double size = layout.rachis_radius / 0.07;
-  for (int i = 0; i < leaflets; ++i)
-    truss.scene.objects.push_back({0, ObjectClass::leaf, leaflet_mesh(layout, size, rng)});
-  truss.workcell = truss_workcell(box, center);
-  truss.truth = ground_truth(truss.scene);
-  const TracedScene traced(truss.scene);
-  SampleParameters params;
-  params.area = std::min(params.area, 0.001 * area(truss.scene.objects.front().mesh));
-  const Samples samples = fruit_samples(truss.scene, params);
-  const Flags seen = visible_from(traced, samples, layout.eye);
-  for (std::size_t i = 0; i < layout.fruits.size(); ++i) {
-    TrueFruit& fruit = truss.truth.fruits[i];
-    fruit.growth_axis = layout.fruits[i].world_T_body.linear().col(2);
-    fruit.hidden = layout.fruits[i].hidden;
-    fruit.visible_share = share(samples, seen, fruit.id);
-  }
-  return truss;
-}
-
-/// How far a truss is from what was asked for; 0 = it is as asked.
-inline double shortfall(const Truss& truss) {
-  double worst = 0.0;
-  for (const TrueFruit& f : truss.truth.fruits)
-    worst = std::max(worst, *f.hidden ? *f.visible_share - (kHiddenBelow - 0.01) : kVisibleAbove - *f.visible_share);
-  return worst;
-}
-
-/// Draw layouts until one is as asked, each less varied than the one before.
-template <typename Draw>
-Truss draw_until_good(const TrussParameters& params, Draw&& draw_layout) {
-  constexpr int kAttempts = 60;
-  for (int attempt = 0; attempt < kAttempts; ++attempt) {
-    Rng rng(params.seed, 0x7255, static_cast<std::uint64_t>(attempt));
-    const double spread = std::max(0.0, 1.0 - attempt / (0.7 * kAttempts));
-    const TrussLayout layout = draw_layout(spread, rng);
-    if (layout.deepest() > 6e-4) continue;
-    Truss truss = build(layout, params.center, params.leaflets, rng);
-    if (shortfall(truss) <= 0.0) return truss;
-  }
-  throw ParameterError("total, hidden, leaflets: no truss of " + std::to_string(params.total) + " fruit with " +
-                       std::to_string(params.hidden) + " hidden and " + std::to_string(params.leaflets) +
-                       " leaflets was found with seed " + std::to_string(params.seed));
-}
-
-}  // namespace detail
-
-/// A truss from a seed: `hidden` of its fruit show less than 15 % of their surface from frontal_eye(), the others at
-/// least 27 %; no two interpenetrate by more than 1 mm. Ids run from top to bottom, the hidden ones last.
-/// @throws ParameterError for parameters out of range, or that no truss could be found for
-inline Truss make_truss(const TrussParameters& params) {
-  params.check();
-  return detail::draw_until_good(params, [&](double spread, Rng& rng) { return herringbone(params, spread, rng); });
-}
+/// Generates a truss. `hidden` of its fruit are hidden from frontal_eye(), see kHiddenBelow and kVisibleAbove. No two
+/// fruit interpenetrate by more than 1 mm. The ids ascend from top to bottom; the hidden fruit have the last ones.
+/// @throws ParameterError if a parameter is out of range, or if no such truss was found
+Truss make_truss(const TrussParameters& parameters);
 
 }  // namespace agrisee::study

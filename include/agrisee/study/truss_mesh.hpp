@@ -1,179 +1,65 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// @file
-/// The shapes that a procedural truss is made of: lobed oblate fruit, tubes (rachis, pedicels), sepals and leaflets.
-/// Fruit and tubes are watertight, sepals and leaflets are sheets. Metres; every mesh is counter-clockwise from
-/// outside. Cost: linear in the number of triangles.
+/// Meshes for the parts of a generated truss: fruit, tubes (rachis and pedicels), calyces and leaflets. Fruit and tubes
+/// are closed; calyces and leaflets are open sheets. Metres. Triangles are counter-clockwise as seen from outside. The
+/// cost is linear in the number of triangles.
 #pragma once
 
 #include <agrisee/geometry/mesh.hpp>
 
 #include <algorithm>
-#include <cmath>
+#include <vector>
 
 namespace agrisee::study {
 
-/// A tomato as a star-shaped body about its own origin: an oblate spheroid whose axis z is the growth axis (the calyx
-/// is at +z), with mild lobes around it and a dimple at the calyx.
+/// The shape of a tomato, star-shaped about its own origin: an oblate spheroid with mild lobes around it and a dimple
+/// at the calyx. The z axis of the body frame is the growth axis, and the calyx lies at +z.
 struct FruitShape {
   double equatorial = 0.036;      ///< semi-axis across the growth axis (m)
-  double polar = 0.033;           ///< semi-axis along it (m)
+  double polar = 0.033;           ///< semi-axis along the growth axis (m)
   int lobes = 5;                  ///< number of lobes around the axis
-  double lobe_amplitude = 0.015;  ///< relative height of the lobes
-  double lobe_phase = 0.0;        ///< rad
-  double dimple_depth = 0.12;     ///< relative depth of the dimple at the calyx
-  double dimple_width = 0.35;     ///< half width of the dimple (rad at the centre)
+  double lobe_amplitude = 0.015;  ///< height of the lobes, relative to the radius
+  double lobe_phase = 0.0;        ///< turn of the lobes about the axis (rad)
+  double dimple_depth = 0.12;     ///< depth of the dimple at the calyx, relative to the radius
+  double dimple_width = 0.35;     ///< half width of the dimple, as an angle at the origin (rad)
 
-  /// Distance (m) of the surface from the origin in the unit direction `d` of the body frame.
-  double radius(const Eigen::Vector3d& d) const {
-    const double u = d.z(), s_sq = std::max(0.0, 1.0 - u * u);
-    const double spheroid = 1.0 / std::sqrt(s_sq / (equatorial * equatorial) + u * u / (polar * polar));
-    // The lobes fade out towards both poles and are stronger at the shoulders (z > 0).
-    const double lobe =
-        lobe_amplitude * s_sq * (0.7 + 0.3 * u) * std::cos(lobes * std::atan2(d.y(), d.x()) + lobe_phase);
-    const double dimple = dimple_depth * std::exp(-2.0 * (1.0 - u) / (dimple_width * dimple_width));
-    return spheroid * (1.0 + lobe) * (1.0 - dimple);
-  }
-  /// An upper bound of `radius` over all directions (m).
+  /// Distance (m) from the origin to the surface in the direction of the unit vector `d` (body frame).
+  double radius(const Eigen::Vector3d& d) const;
+  /// An upper bound of radius() over all directions (m).
   double max_radius() const { return std::max(equatorial, polar) * (1.0 + lobe_amplitude); }
 };
 
-/// A closed mesh of a fruit in its body frame: 2 slices (stacks - 1) triangles, 2,976 of them by default.
+/// Makes the closed mesh of a fruit in its body frame. It has 2 slices (stacks - 1) triangles, 2,976 by default.
 /// @param shape of the fruit
-/// @param slices meridians, >= 3  @param stacks parallels plus one, >= 2
+/// @param slices number of meridians, 3 or more
+/// @param stacks number of bands between the poles, 2 or more
 /// @throws ParameterError for fewer slices or stacks
-inline Mesh fruit_mesh(const FruitShape& shape, int slices = 48, int stacks = 32) {
-  check_parameter(slices >= 3, "slices", ">= 3", slices);
-  check_parameter(stacks >= 2, "stacks", ">= 2", stacks);
-  Mesh mesh;
-  const auto add = [&](const Eigen::Vector3d& d) { mesh.vertices.push_back((shape.radius(d) * d).cast<float>()); };
-  add(Eigen::Vector3d::UnitZ());
-  for (int i = 1; i < stacks; ++i) {
-    const double theta = kPi * i / stacks;
-    for (int j = 0; j < slices; ++j) {
-      const double phi = kTwoPi * (j + 0.5 * (i % 2)) / slices;
-      add({std::sin(theta) * std::cos(phi), std::sin(theta) * std::sin(phi), std::cos(theta)});
-    }
-  }
-  add(-Eigen::Vector3d::UnitZ());
-  const auto at = [&](int i, int j) {
-    return static_cast<std::uint32_t>(1 + (i - 1) * slices + (j + slices) % slices);
-  };
-  const auto last = static_cast<std::uint32_t>(mesh.vertices.size() - 1);
-  for (int j = 0; j < slices; ++j) mesh.triangles.push_back({0, at(1, j), at(1, j + 1)});
-  for (int i = 1; i + 1 < stacks; ++i)
-    for (int j = 0; j < slices; ++j) {  // odd rings are turned by half a slice
-      if (i % 2) {
-        mesh.triangles.push_back({at(i, j), at(i + 1, j), at(i + 1, j + 1)});
-        mesh.triangles.push_back({at(i, j), at(i + 1, j + 1), at(i, j + 1)});
-      } else {
-        mesh.triangles.push_back({at(i, j), at(i + 1, j), at(i, j + 1)});
-        mesh.triangles.push_back({at(i, j + 1), at(i + 1, j), at(i + 1, j + 1)});
-      }
-    }
-  for (int j = 0; j < slices; ++j) mesh.triangles.push_back({at(stacks - 1, j), last, at(stacks - 1, j + 1)});
-  return mesh;
-}
+Mesh fruit_mesh(const FruitShape& shape, int slices = 48, int stacks = 32);
 
-/// A closed tube with flat ends around a polyline, its radius growing linearly from `radius_begin` to `radius_end` (m).
-/// The cross-section is carried along without twist. Repeated points of the polyline are dropped.
-/// @param path at least two different points (m)  @param sides corners of the cross-section, >= 3
-/// @param radius_begin at the first point (m)
-/// @param radius_end at the last (m)
-/// @throws InputError when fewer than two different points are left
-inline Mesh tube_mesh(const std::vector<Eigen::Vector3d>& path, double radius_begin, double radius_end,
-                      int sides = 10) {
-  check_parameter(sides >= 3, "sides", ">= 3", sides);
-  std::vector<Eigen::Vector3d> p;
-  for (const Eigen::Vector3d& q : path)
-    if (p.empty() || (q - p.back()).norm() > 1e-9) p.push_back(q);
-  check_input(p.size() >= 2, "tube: the path needs two different points");
-  Mesh mesh;
-  const std::size_t n = p.size();
-  Eigen::Vector3d x = Eigen::Vector3d::Zero();
-  for (std::size_t i = 0; i < n; ++i) {
-    const Eigen::Vector3d t = (p[std::min(i + 1, n - 1)] - p[i == 0 ? 0 : i - 1]).normalized();
-    if (i == 0 || (x - x.dot(t) * t).norm() < 1e-6) x = any_orthogonal(t);
-    x = (x - x.dot(t) * t).normalized();
-    const Eigen::Vector3d y = t.cross(x);
-    const double r = radius_begin + (radius_end - radius_begin) * static_cast<double>(i) / static_cast<double>(n - 1);
-    for (int j = 0; j < sides; ++j) {
-      const double a = kTwoPi * j / sides;
-      mesh.vertices.push_back((p[i] + r * (std::cos(a) * x + std::sin(a) * y)).cast<float>());
-    }
-  }
-  const auto at = [&](std::size_t i, int j) {
-    return static_cast<std::uint32_t>(i * static_cast<std::size_t>(sides) + static_cast<std::size_t>(j % sides));
-  };
-  for (std::size_t i = 0; i + 1 < n; ++i)
-    for (int j = 0; j < sides; ++j) {
-      mesh.triangles.push_back({at(i, j), at(i, j + 1), at(i + 1, j + 1)});
-      mesh.triangles.push_back({at(i, j), at(i + 1, j + 1), at(i + 1, j)});
-    }
-  const auto begin = static_cast<std::uint32_t>(mesh.vertices.size());
-  mesh.vertices.push_back(p.front().cast<float>());
-  mesh.vertices.push_back(p.back().cast<float>());
-  for (int j = 0; j < sides; ++j) {
-    mesh.triangles.push_back({begin, at(0, j + 1), at(0, j)});
-    mesh.triangles.push_back({begin + 1, at(n - 1, j), at(n - 1, j + 1)});
-  }
-  return mesh;
-}
+/// Makes a closed tube with flat ends around a polyline. Its radius changes linearly, point by point, from
+/// `radius_begin` to `radius_end`. The cross-section follows the polyline without twist. Repeated points of the
+/// polyline are dropped.
+/// @param path polyline with at least two different points (m)
+/// @param radius_begin radius at the first point (m)
+/// @param radius_end radius at the last point (m)
+/// @param sides number of corners of the cross-section, 3 or more
+/// @throws ParameterError for fewer sides, InputError if the path has fewer than two different points
+Mesh tube_mesh(const std::vector<Eigen::Vector3d>& path, double radius_begin, double radius_end, int sides = 10);
 
-/// The calyx: a star of pointed sepals in the fruit's body frame, lying over its shoulders and curling up at the tips.
-/// @param shape the fruit  @param sepals their number  @param length of a sepal along the surface (m)
-/// @param lift height of the tips above the surface (m)  @param phase turn of the star about the growth axis (rad)
-inline Mesh calyx_mesh(const FruitShape& shape, int sepals, double length, double lift, double phase) {
-  Mesh mesh;
-  constexpr int kRows = 5;
-  const double reach = length / shape.equatorial;  // angle at the centre
-  for (int k = 0; k < sepals; ++k) {
-    const double middle = phase + kTwoPi * k / sepals;
-    const auto base = static_cast<std::uint32_t>(mesh.vertices.size());
-    for (int i = 0; i <= kRows; ++i) {
-      const double t = static_cast<double>(i) / kRows;
-      const double theta = 0.05 + reach * t;
-      const double half_width = 0.11 * length * (1.0 - t) * (1.0 + 1.5 * t) / shape.equatorial;  // angle across
-      for (const double side : {-1.0, 1.0}) {
-        const double phi = middle + side * std::min(0.9 * kPi / sepals, half_width / std::sin(theta));
-        const Eigen::Vector3d d(std::sin(theta) * std::cos(phi), std::sin(theta) * std::sin(phi), std::cos(theta));
-        mesh.vertices.push_back(((shape.radius(d) + 0.0008 + lift * t * t) * d).cast<float>());
-      }
-    }
-    for (std::uint32_t i = 0; i < kRows; ++i) {
-      const std::uint32_t a = base + 2 * i;
-      mesh.triangles.push_back({a, a + 2, a + 1});
-      if (i + 1 < kRows) mesh.triangles.push_back({a + 1, a + 2, a + 3});
-    }
-  }
-  return mesh;
-}
+/// Makes a calyx in the body frame of its fruit: a star of pointed sepals that lie on the fruit's shoulders and curl up
+/// at their tips.
+/// @param shape of the fruit
+/// @param sepals number of sepals
+/// @param length of a sepal along the surface (m)
+/// @param lift height of the tips above the surface (m)
+/// @param phase turn of the star about the growth axis (rad)
+Mesh calyx_mesh(const FruitShape& shape, int sepals, double length, double lift, double phase);
 
-/// A leaflet: a pointed, toothed, folded and drooping sheet that starts at the origin and extends along x, its upper
-/// side towards +z.
-/// @param length, width whole size (m)  @param fold angle of either half above the plane (rad)  @param droop how far
-/// the tip hangs below the stalk's tangent (m)
-inline Mesh leaf_mesh(double length, double width, double fold, double droop) {
-  constexpr int kRows = 24, kAcross = 3;  // rows along the midrib, strips on either side of it
-  Mesh mesh;
-  for (int i = 0; i <= kRows; ++i) {
-    const double t = static_cast<double>(i) / kRows;
-    const double outline = std::pow(std::sin(kPi * std::pow(t, 0.75)), 0.8);
-    const double half = 0.5 * width * (outline * (i % 3 == 2 ? 0.86 : 1.0) + 0.02);  // every third row cuts a tooth
-    for (int j = -kAcross; j <= kAcross; ++j) {
-      const double across = half * j / kAcross;
-      mesh.vertices.push_back(
-          Eigen::Vector3d(length * t, across * std::cos(fold), std::abs(across) * std::sin(fold) - droop * t * t)
-              .cast<float>());
-    }
-  }
-  constexpr std::uint32_t kColumns = 2 * kAcross + 1;
-  for (std::uint32_t i = 0; i < kRows; ++i)
-    for (std::uint32_t j = 0; j + 1 < kColumns; ++j) {
-      const std::uint32_t a = i * kColumns + j, b = a + kColumns;
-      mesh.triangles.push_back({a, b, b + 1});
-      mesh.triangles.push_back({a, b + 1, a + 1});
-    }
-  return mesh;
-}
+/// Makes a leaflet: a pointed, toothed, folded and drooping sheet. It starts at the origin and extends along x; its
+/// upper side faces +z.
+/// @param length, width overall size (m)
+/// @param fold angle of each half above the xy plane (rad)
+/// @param droop how far the tip hangs below the xy plane (m)
+Mesh leaf_mesh(double length, double width, double fold, double droop);
 
 }  // namespace agrisee::study

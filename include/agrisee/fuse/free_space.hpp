@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// @file
+/// What the sight lines of past views say about space: a place that the camera looked through holds no surface.
+///
+/// Each cell of a view's image keeps the measured depth. A sight line that ends well behind a place went through it. In
+/// a view in which nearly every pixel on a surface returns, a sight line without return went through, too. Metres,
+/// world. Cost: one projection a view.
+#pragma once
+
+#include <agrisee/fuse/parameters.hpp>
+#include <agrisee/sensor/surface_image.hpp>
+
+#include <algorithm>
+#include <cstddef>
+#include <vector>
+
+namespace agrisee {
+struct Ellipsoid;
+}
+
+namespace agrisee::fuse {
+
+/// What one view says of a place.
+enum class Sight {
+  unknown,  ///< outside the image, or hidden behind something
+  surface,  ///< the sight line ends there
+  through   ///< the sight line goes on behind it
+};
+
+/// What `view` says of the point p (m, world).
+inline Sight sight(const sensor::SurfaceImage& view, const Eigen::Vector3d& p, const FreeSpaceParameters& parameters) {
+  double z = 0.0;
+  const std::ptrdiff_t c = view.cell(p, &z);
+  if (c < 0) return Sight::unknown;
+  const double measured = double(view.depth[static_cast<std::size_t>(c)]);
+  const double margin = std::max(parameters.margin, 3.0 * view.noise);
+  if (!(measured > 0.0)) return view.fill >= parameters.min_fill ? Sight::through : Sight::unknown;
+  if (measured > z + margin) return Sight::through;
+  return measured > z - margin ? Sight::surface : Sight::unknown;
+}
+
+/// True when all sight lines of `view` around the point p (m, world) went through it: the 3 x 3 cells about p. At a
+/// surface's border, where a cell sees both sides, nothing is refuted. Defined in `agrisee::agrisee`.
+bool refutes(const sensor::SurfaceImage& view, const Eigen::Vector3d& p, const FreeSpaceParameters& parameters);
+
+/// Share (0..1) of a body's surface that more views looked through than saw. Only views count that see a place of the
+/// surface at less than `max_incidence`. Defined in `agrisee::agrisee`.
+double seen_through(const std::vector<sensor::SurfaceImage>& views, const Ellipsoid& body,
+                    const FreeSpaceParameters& parameters = {});
+
+}  // namespace agrisee::fuse

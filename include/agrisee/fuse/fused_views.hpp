@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// @file
+/// Fuses the surfaces of a scan's views into one, and discards views that contradict the rest.
+///
+/// A view whose frame does not belong to its pose puts surface where other views looked through, and looks through
+/// surface that other views saw (fuse/contradiction.hpp). Of views that contradict one another, the larger group that
+/// agrees is kept; so a wrong first view is found out, too. World frame, metres. Defined in `agrisee::agrisee`.
+#pragma once
+
+#include <agrisee/fuse/contradiction.hpp>
+#include <agrisee/fuse/parameters.hpp>
+#include <agrisee/fuse/surfels.hpp>
+#include <agrisee/fuse/views.hpp>
+#include <agrisee/geometry/aabb.hpp>
+
+#include <map>
+
+namespace agrisee::fuse {
+
+/// The fused surface of a scan, and what each of its views saw.
+class FusedViews : public Views {
+ public:
+  /// @param scan_volume what lies outside is left out (world)
+  /// @param parameters of surface, surfels, registration and free space
+  /// @param threads number of threads; the result does not depend on it
+  /// @throws ParameterError for those of surfels; for the others when they are first used
+  FusedViews(const Aabb& scan_volume, const FusionParameters& parameters, int threads);
+
+  Observation look(const sensor::DepthFrame& frame, const Pose& world_T_optical) const override;
+  Change take(Observation seen, const Pose& world_T_optical) override;
+  Change skip(const sensor::DepthFrame& frame, const Pose& world_T_optical) override;
+  void filter(Change&) override {}
+  Cloud cloud() const override;  ///< without the surfels that later sight lines went through
+  Cloud all() const override;
+  const std::vector<sensor::SurfaceImage>& images() const override { return images_; }
+  bool discarded(std::size_t view) const override { return views_[view].discarded; }
+  Eigen::Vector3d shift_to_reported(const Eigen::Vector3d& center) const override;
+
+ private:
+  struct Taken {
+    Pose reported;
+    std::size_t points_in;  // inside the scan volume
+    bool discarded;
+  };
+
+  std::size_t begin(const Pose& world_T_optical, std::size_t points_in, bool discarded);
+  bool agree(const Evidence& evidence) const;
+  bool contradicted(const sensor::SurfaceImage& image) const;
+  std::vector<std::size_t> views_that_agree(const sensor::SurfaceImage& image) const;
+  std::size_t views_in_map() const;
+  void start_again(const std::vector<std::size_t>& views, Change& change);
+  void add(sensor::SurfaceImage image, std::size_t id, std::vector<Eigen::Vector3f>& added);
+  void lay_on_map(sensor::SurfaceImage& image) const;
+
+  Aabb scan_volume_;
+  FusionParameters parameters_;
+  int threads_;
+  SurfelMap surfels_;
+  std::vector<Taken> views_;
+  std::vector<sensor::SurfaceImage> images_;              // what each view saw; of discarded ones only the pose
+  std::map<std::size_t, sensor::SurfaceImage> withheld_;  // what discarded views saw, by number
+};
+
+}  // namespace agrisee::fuse

@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// @file
+/// A simulated scene: meshes in world coordinates, each with its class and, if it is a fruit, its identity.
+#pragma once
+
+#include <agrisee/geometry/mesh.hpp>
+
+#include <vector>
+
+namespace agrisee::study {
+
+/// What an object is. Only the simulation and the evaluation read this; the pipeline never does.
+enum class ObjectClass { fruit, stem, leaf, other };
+
+/// One object of a scene.
+struct Object {
+  int id = 0;                            ///< positive and unique for a fruit, 0 for everything else
+  ObjectClass cls = ObjectClass::other;  ///< what it is
+  Mesh mesh;                             ///< its surface (m, world)
+};
+
+/// All objects that a sensor can see or that can occlude others.
+struct Scene {
+  std::vector<Object> objects;  ///< in any order
+};
+
+}  // namespace agrisee::study

@@ -1,0 +1,183 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <agrisee/cloud/icp.hpp>
+#include <agrisee/core/cancellation.hpp>
+#include <agrisee/fuse/fused_views.hpp>
+#include <agrisee/sensor/reconstruct_surface.hpp>
+
+#include <algorithm>
+#include <numeric>
+#include <utility>
+
+namespace agrisee::fuse {
+
+FusedViews::FusedViews(const Aabb& scan_volume, const FusionParameters& parameters, int threads)
+    : scan_volume_(scan_volume), parameters_(parameters), threads_(threads), surfels_(parameters.surfels) {}
+
+Observation FusedViews::look(const sensor::DepthFrame& frame, const Pose& world_T_optical) const {
+  Observation out;
+  out.surface = sensor::reconstruct_surface(frame, world_T_optical, scan_volume_, parameters_.surface, threads_);
+  if (!parameters_.register_views) return out;
+  if (contradicted(out.surface)) {
+    // A pose that is wrong by millimetres contradicts at borders and thin parts, until the view is registered.
+    sensor::SurfaceImage registered = out.surface;
+    lay_on_map(registered);
+    if (contradicted(registered)) {
+      out.consistent = false;
+      return out;
+    }
+    out.surface = std::move(registered);
+  }
+  lay_on_map(out.surface);
+  return out;
+}
+
+Change FusedViews::skip(const sensor::DepthFrame& frame, const Pose& world_T_optical) {
+  begin(world_T_optical, 0, true);
+  Change change;
+  change.points_in = count_inside(frame, world_T_optical, scan_volume_);
+  return change;
+}
+
+Change FusedViews::take(Observation seen, const Pose& world_T_optical) {
+  const detail::CancellationSwap to_the_end(nullptr);  // a map changed by half would be neither the old nor the new
+  const std::size_t id = begin(world_T_optical, seen.surface.points_in, false);
+  Change change;
+  change.points_in = seen.surface.points_in;
+  if (seen.consistent) {
+    add(std::move(seen.surface), id, change.added);
+    return change;
+  }
+  // Do more of the discarded views agree with this one than there are views in the map?
+  std::vector<std::size_t> group = views_that_agree(seen.surface);
+  withheld_.emplace(id, std::move(seen.surface));
+  group.push_back(id);
+  if (group.size() > views_in_map())
+    start_again(group, change);
+  else
+    views_[id].discarded = true;
+  return change;
+}
+
+Cloud FusedViews::all() const {
+  Cloud out = surfels_.cloud();
+  out.normals.clear();
+  return out;
+}
+
+Cloud FusedViews::cloud() const {
+  Cloud out;
+  for (const Surfel& s : surfels_.surfels()) {
+    int through = 0;
+    for (const auto& image : images_) through += refutes(image, s.position.cast<double>(), parameters_.free_space);
+    if (through >= parameters_.free_space.min_refuting && through >= s.seen_by) continue;
+    out.points.push_back(s.position);
+    out.normals.push_back(s.normal);
+    out.views.push_back(s.view);
+  }
+  return out;
+}
+
+Eigen::Vector3d FusedViews::shift_to_reported(const Eigen::Vector3d& center) const {
+  Eigen::Vector3d shift = Eigen::Vector3d::Zero();
+  std::size_t used = 0;
+  for (std::size_t v = 0; v < images_.size(); ++v) {
+    if (views_[v].discarded) continue;
+    const Pose reported_T_registered = views_[v].reported * images_[v].world_T_optical.inverse(Eigen::Isometry);
+    shift += reported_T_registered * center - center;
+    ++used;
+  }
+  return shift / static_cast<double>(std::max<std::size_t>(used, 1));
+}
+
+/// A new view, of which only the pose is known so far.
+/// @return its number
+std::size_t FusedViews::begin(const Pose& world_T_optical, std::size_t points_in, bool discarded) {
+  views_.push_back({world_T_optical, points_in, discarded});
+  images_.emplace_back();  // an image without cells is no evidence of anything
+  images_.back().world_T_optical = world_T_optical;
+  return images_.size() - 1;
+}
+
+/// True when two views share enough surface, and contradict each other in little of it.
+bool FusedViews::agree(const Evidence& evidence) const {
+  constexpr std::size_t kEnough = 50;
+  return evidence.count() >= kEnough && evidence.contradiction() <= parameters_.free_space.max_contradiction;
+}
+
+/// True when the views of the map looked through what the image shows, or the image looks through what they show.
+bool FusedViews::contradicted(const sensor::SurfaceImage& image) const {
+  Evidence all;
+  for (const auto& other : images_) all += compare(image, other, parameters_.free_space);
+  return all.contradiction() > parameters_.free_space.max_contradiction;
+}
+
+/// The discarded views that agree with an image, by number.
+std::vector<std::size_t> FusedViews::views_that_agree(const sensor::SurfaceImage& image) const {
+  std::vector<std::size_t> group;
+  for (const auto& [number, other] : withheld_)
+    if (agree(compare(other, image, parameters_.free_space))) group.push_back(number);
+  return group;
+}
+
+/// Number of earlier views that the map is made of.
+std::size_t FusedViews::views_in_map() const {
+  std::size_t count = 0;
+  for (std::size_t v = 0; v + 1 < views_.size(); ++v) count += !views_[v].discarded && views_[v].points_in > 0;
+  return count;
+}
+
+/// Make the map anew of some discarded views; all others are discarded.
+void FusedViews::start_again(const std::vector<std::size_t>& views, Change& change) {
+  const std::size_t before = surfels_.size();
+  surfels_ = SurfelMap(parameters_.surfels);
+  for (std::size_t v = 0; v < views_.size(); ++v) {
+    views_[v].discarded |= views_[v].points_in > 0;
+    images_[v] = {};
+    images_[v].world_T_optical = views_[v].reported;
+  }
+  for (const std::size_t v : views) {
+    views_[v].discarded = false;
+    lay_on_map(withheld_.at(v));
+    add(std::move(withheld_.at(v)), v, change.added);
+    withheld_.erase(v);
+  }
+  change.kept.emplace(change.added.size());
+  std::iota(change.kept->begin(), change.kept->end(), static_cast<Index>(before));
+}
+
+/// Add an image, registered already, to the map.
+void FusedViews::add(sensor::SurfaceImage image, std::size_t id, std::vector<Eigen::Vector3f>& added) {
+  for (std::size_t c = 0; c < image.points.size(); ++c)
+    if (surfels_.add(image.points[c], image.normals[c], image.sigma[c], static_cast<int>(id)))
+      added.push_back(image.points[c]);
+  // From now on only the depths are needed, as evidence of free space, and some points to compare later views with.
+  std::vector<Eigen::Vector3f> some;
+  const std::size_t step = compared_step(image);
+  for (std::size_t c = 0; c < image.points.size(); c += step) some.push_back(image.points[c]);
+  image.points = std::move(some);
+  image.normals = {};
+  image.sigma = {};
+  images_[id] = std::move(image);
+}
+
+/// Register an image to the map (ICP). It stays where it is when the registration is not accepted.
+void FusedViews::lay_on_map(sensor::SurfaceImage& image) const {
+  if (surfels_.size() == 0) return;
+  Cloud source;
+  const std::size_t step = std::max<std::size_t>(1, image.points.size() / 2500);
+  for (std::size_t c = 0; c < image.points.size(); c += step) {
+    source.points.push_back(image.points[c]);
+    source.normals.push_back(image.normals[c]);
+  }
+  const Cloud target = surfels_.cloud();
+  const IcpResult icp = register_cloud(source, source.normals, target, target.normals, parameters_.icp);
+  if (!icp.accepted) return;
+  const Eigen::Isometry3f correction = icp.target_T_source.cast<float>();
+  for (std::size_t c = 0; c < image.points.size(); ++c) {
+    image.points[c] = correction * image.points[c];
+    image.normals[c] = correction.linear() * image.normals[c];
+  }
+  image.world_T_optical = icp.target_T_source * image.world_T_optical;
+}
+
+}  // namespace agrisee::fuse

@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <agrisee/fuse/surfels.hpp>
+
+namespace agrisee::fuse {
+
+SurfelMap::SurfelMap(const SurfelParameters& parameters) : parameters_(parameters) {
+  parameters_.check();
+  inverse_cell_ = 1.0 / parameters_.separation;
+}
+
+/// The nearest surfel, across the surface, that a sample belongs to; -1 for none. Of equally near ones the oldest.
+Index SurfelMap::nearest_of_same_surface(const Eigen::Vector3f& p, const Eigen::Vector3f& n, float sigma,
+                                         const CellIndex& center) const {
+  const float separation = static_cast<float>(parameters_.separation);
+  const float cos_max = static_cast<float>(std::cos(parameters_.max_angle));
+  Index best = -1;
+  float best_sq = separation * separation;
+  CellIndex c;
+  for (c.z() = center.z() - 1; c.z() <= center.z() + 1; ++c.z())
+    for (c.y() = center.y() - 1; c.y() <= center.y() + 1; ++c.y())
+      for (c.x() = center.x() - 1; c.x() <= center.x() + 1; ++c.x())
+        for (Index i = table_.find(c); i >= 0; i = next_[static_cast<std::size_t>(i)]) {
+          const Surfel& s = surfels_[static_cast<std::size_t>(i)];
+          if (s.normal.dot(n) < cos_max) continue;
+          const Eigen::Vector3f d = p - s.position;
+          const float along = s.normal.dot(d);
+          const float across_sq = d.squaredNorm() - along * along;
+          const float off =
+              static_cast<float>(parameters_.agreement) + 3.0f * std::sqrt(sigma * sigma + 1.0f / s.weight);
+          if (std::abs(along) > off) continue;
+          if (across_sq < best_sq || (across_sq == best_sq && i < best)) {
+            best = i;
+            best_sq = across_sq;
+          }
+        }
+  return best;
+}
+
+bool SurfelMap::add(const Eigen::Vector3f& p, const Eigen::Vector3f& n, float sigma, int view) {
+  if (!is_finite(p) || !is_finite(n) || !(sigma > 0.0f) || !std::isfinite(sigma)) return false;
+  const float weight = 1.0f / (sigma * sigma);
+  const CellIndex center = CellTable::cell(p, inverse_cell_);
+  if (const Index best = nearest_of_same_surface(p, n, sigma, center); best >= 0) {
+    Surfel& s = surfels_[static_cast<std::size_t>(best)];
+    const float share = weight / (s.weight + weight);
+    s.position += s.normal * (s.normal.dot(p - s.position) * share);
+    s.normal = (s.normal * (1.0f - share) + n * share).normalized();
+    s.weight += weight;
+    ++s.samples;
+    if (s.last_view != view) ++s.seen_by;
+    s.last_view = view;
+    return false;
+  }
+  Surfel s;
+  s.position = p;
+  s.normal = n;
+  s.weight = weight;
+  s.view = s.last_view = view;
+  s.samples = s.seen_by = 1;
+  const auto id = static_cast<Index>(surfels_.size());
+  surfels_.push_back(s);
+  next_.push_back(table_.exchange(center, id));
+  return true;
+}
+
+Cloud SurfelMap::cloud() const {
+  Cloud out;
+  out.points.reserve(surfels_.size());
+  out.normals.reserve(surfels_.size());
+  out.views.reserve(surfels_.size());
+  for (const Surfel& s : surfels_) {
+    out.points.push_back(s.position);
+    out.normals.push_back(s.normal);
+    out.views.push_back(s.view);
+  }
+  return out;
+}
+
+}  // namespace agrisee::fuse

@@ -1,0 +1,330 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <agrisee/arm/limits.hpp>
+#include <agrisee/core/cancellation.hpp>
+#include <agrisee/pick/picking.hpp>
+#include <agrisee/plan/directions.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <tuple>
+
+namespace agrisee::pick {
+
+namespace {
+
+/// A fruit while its picking is being planned.
+struct Candidate {
+  std::size_t index = 0;  // in the caller's list
+  int id = 0;
+  OrientedEllipsoid body;
+  bool has_body = false;
+  double depth = 0.0;                       // distance from the robot along the front (m)
+  std::vector<KeepOut> keep_out;            // that apply to this fruit
+  std::vector<Eigen::Vector3d> directions;  // of approach, best first
+  std::vector<PickingReason> verdicts;      // one per direction; `not_tested` as long as other fruit may decide
+};
+
+/// @throws InputError when fruit or scene cannot be planned with, see plan_picking; ParameterError
+void check_scene(const std::vector<Fruit>& fruits, const PickingScene& scene) {
+  for (const KeepOut& space : scene.keep_out) space.check();
+  check_input(scene.robot.allFinite() && scene.joints.allFinite(),
+              "plan_picking: the robot's position or the joints are not finite");
+  check_input(scene.seen.empty() || scene.seen.size() == fruits.size(), "plan_picking: `seen` does not fit the fruit");
+}
+
+/// The fruit in an order that does not depend on the caller's, and the keep-out spaces that apply to each.
+std::vector<Candidate> sorted_candidates(const std::vector<Fruit>& fruits, const std::vector<KeepOut>& keep_out) {
+  std::vector<Candidate> all(fruits.size());
+  for (std::size_t i = 0; i < fruits.size(); ++i) {
+    Candidate& c = all[i];
+    c.index = i;
+    c.id = fruits[i].id;
+    c.body = occupied(fruits[i]);
+    c.has_body = fruits[i].body.has_value();
+    check_input(c.body.center.allFinite() && c.body.radii.allFinite() && c.body.axes.allFinite() &&
+                    c.body.radii.minCoeff() > 0.0 && fruits[i].orientation.allFinite(),
+                "plan_picking: a fruit is not finite or has no size");
+    for (const KeepOut& space : keep_out)
+      if (distance(space, c.body.center) > 0.0) c.keep_out.push_back(space);
+  }
+  std::sort(all.begin(), all.end(), [](const Candidate& a, const Candidate& b) {
+    const Eigen::Vector3d &p = a.body.center, &q = b.body.center;
+    return std::tuple(p.x(), p.y(), p.z(), a.id) < std::tuple(q.x(), q.y(), q.z(), b.id);
+  });
+  return all;
+}
+
+/// Depth (m) of each fruit: its distance from the robot along the horizontal direction from the robot to the mean of
+/// all fruit.
+void set_depths(std::vector<Candidate>& all, const Eigen::Vector3d& robot) {
+  Eigen::Vector3d front = Eigen::Vector3d::Zero();
+  for (const Candidate& c : all) front += c.body.center - robot;
+  front.z() = 0.0;
+  if (front.norm() > 1e-9) front.normalize();
+  for (Candidate& c : all) c.depth = front.dot(c.body.center - robot);
+}
+
+/// Another fruit, as seen from the one that is being planned.
+struct Neighbor {
+  Eigen::Vector3d direction;  // unit vector from center to center
+  double weight;              // 1 when they touch, less with distance
+};
+
+/// The neighbors of fruit `f`.
+std::vector<Neighbor> neighbors_of(const std::vector<Candidate>& all, std::size_t f) {
+  const OrientedEllipsoid& body = all[f].body;
+  std::vector<Neighbor> neighbors;
+  const double r = body.radii.mean();
+  for (std::size_t j = 0; j < all.size(); ++j) {
+    const Eigen::Vector3d d = all[j].body.center - body.center;
+    const double away = d.norm(), gap = std::max(away - r - all[j].body.radii.mean(), 0.0);
+    if (j != f && away > 1e-9) neighbors.push_back({d / away, std::exp(-gap / r)});
+  }
+  return neighbors;
+}
+
+/// `weight` times the share of the surface within 45 degrees about the unit vector `side` that was observed.
+double seen_score(const SeenDirections& seen, const Eigen::Vector3d& side, double weight) {
+  static const double cos_cap = std::cos(deg(45));
+  const auto& bins = DirectionBins::directions();
+  double cap = 0.0, covered = 0.0;
+  for (std::size_t b = 0; b < bins.size(); ++b) {
+    if (bins[b].dot(side) < cos_cap) continue;
+    cap += DirectionBins::shares()[b];
+    if (seen[b]) covered += DirectionBins::shares()[b];
+  }
+  return weight * covered / cap;
+}
+
+/// Directions of approach to fruit `f`, best first. A direction scores by how far it comes from the robot's side,
+/// across the growth axis, away from the neighbors and towards the observed surface; those near the pedicel are left
+/// out.
+std::vector<Eigen::Vector3d> ranked_directions(const std::vector<Candidate>& all, std::size_t f,
+                                               const Eigen::Vector3d& growth_axis, const SeenDirections* seen,
+                                               const Eigen::Vector3d& robot, const PickingParameters& parameters) {
+  const Eigen::Vector3d front = plan::level_direction(robot, all[f].body.center);
+  const std::vector<Neighbor> neighbors = neighbors_of(all, f);
+  const std::vector<Eigen::Vector3d> spread = plan::spread_directions(parameters.directions);
+  const double cos_pedicel = std::cos(parameters.pedicel_angle);
+  std::vector<std::pair<double, std::size_t>> scores;
+  for (std::size_t i = 0; i < spread.size(); ++i) {
+    const Eigen::Vector3d &d = spread[i], side = -d;
+    if (parameters.pedicel_angle > 0.0 && side.dot(growth_axis) > cos_pedicel) continue;
+    double score = parameters.front_weight * d.dot(front) - parameters.across_weight * std::pow(d.dot(growth_axis), 2);
+    for (const Neighbor& n : neighbors)
+      score -= parameters.away_weight * n.weight * std::pow(std::max(side.dot(n.direction), 0.0), 2);
+    if (seen) score += seen_score(*seen, side, parameters.seen_weight);
+    scores.emplace_back(-score, i);
+  }
+  std::sort(scores.begin(), scores.end());
+  std::vector<Eigen::Vector3d> out;
+  for (const auto& s : scores) out.push_back(spread[s.second]);
+  return out;
+}
+
+/// The request to approach a fruit along `direction`.
+ApproachRequest request_of(const Candidate& c, const Eigen::Vector3d& direction,
+                           const std::vector<OrientedEllipsoid>& others, const PickingParameters& parameters) {
+  const Eigen::Vector3d& center = c.body.center;
+  const double surface = surface_distance(c.body, direction);
+  return {direction, center - (surface + parameters.stand_off) * direction,
+          center - (surface + parameters.contact) * direction, c.keep_out, others};
+}
+
+/// The picking of all fruit in rounds.
+class PickingRounds {
+ public:
+  PickingRounds(std::vector<Candidate> all, const Joints& joints, const ReachApproach& reach,
+                const PickingParameters& parameters)
+      : all_(std::move(all)), joints_(joints), at_(joints), reach_(reach), parameters_(parameters), plan_(all_.size()) {
+    hanging_.resize(all_.size());
+    std::iota(hanging_.begin(), hanging_.end(), std::size_t{0});
+  }
+
+  /// Run all rounds. An entry per fruit, in the caller's order.
+  std::vector<Picking> plan() {
+    for (bool first = true;; first = false) {
+      std::vector<std::size_t> free = plan_round(first);
+      if (free.empty()) break;
+      hanging_.erase(
+          std::remove_if(hanging_.begin(), hanging_.end(),
+                         [&](std::size_t f) { return std::find(free.begin(), free.end(), f) != free.end(); }),
+          hanging_.end());
+      pick_in_order(std::move(free));
+    }
+    // Fruit that cannot be picked come last, front to back.
+    std::sort(hanging_.begin(), hanging_.end(), [&](std::size_t a, std::size_t b) {
+      return std::tuple(all_[a].depth, all_[a].id) < std::tuple(all_[b].depth, all_[b].id);
+    });
+    for (std::size_t f : hanging_) plan_[all_[f].index].order = ++order_;
+    return std::move(plan_);
+  }
+
+ private:
+  /// Plan the approach to each hanging fruit; returns those (indices in `all_`) whose approach is free.
+  std::vector<std::size_t> plan_round(bool first) {
+    std::vector<std::size_t> free;
+    for (std::size_t f : hanging_) {
+      Picking& out = plan_[all_[f].index];
+      if (!first && !may_have_changed(all_[f], out)) continue;
+      std::vector<OrientedEllipsoid> others = others_than(f);
+      if (!plan_approach(all_[f], others, out)) continue;
+      free.push_back(f);
+      out.after = blocking(f, out, others);
+    }
+    return free;
+  }
+
+  /// Whether a fruit that could not be picked may be free now: only the other fruit can have changed, by being picked.
+  static bool may_have_changed(const Candidate& c, const Picking& out) {
+    return out.reason == PickingReason::blocked_by_fruit || out.reason == PickingReason::arm_meets_fruit ||
+           std::any_of(c.verdicts.begin(), c.verdicts.end(),
+                       [](PickingReason r) { return r == PickingReason::not_tested; });
+  }
+
+  /// The hanging fruit but `f`.
+  std::vector<OrientedEllipsoid> others_than(std::size_t f) const {
+    std::vector<OrientedEllipsoid> others;
+    for (std::size_t j : hanging_)
+      if (j != f) others.push_back(all_[j].body);
+    return others;
+  }
+
+  /// Ids (ascending) of the picked fruit that would have been in the way of the approach to fruit `f`.
+  std::vector<int> blocking(std::size_t f, const Picking& out, std::vector<OrientedEllipsoid>& others) const {
+    std::vector<int> after;
+    for (std::size_t j : picked_) {
+      others.push_back(all_[j].body);
+      const ApproachAnswer with = try_direction(all_[f], out.direction, others);
+      if (!with.reached || with.reached->joints != out.joints) after.push_back(all_[j].id);
+      others.pop_back();
+    }
+    std::sort(after.begin(), after.end());
+    return after;
+  }
+
+  /// Whether a fruit can be approached along `direction` while `others` are hanging.
+  ApproachAnswer try_direction(const Candidate& c, const Eigen::Vector3d& direction,
+                               const std::vector<OrientedEllipsoid>& others) const {
+    const Capsule gripper = swept_gripper(c.body, direction, parameters_);
+    for (const KeepOut& space : c.keep_out)
+      if (overlap(gripper, space)) return {std::nullopt, PickingReason::blocked_by_keep_out};
+    for (const OrientedEllipsoid& other : others)
+      if (meets(gripper, other)) return {std::nullopt, PickingReason::blocked_by_fruit};
+    const ApproachRequest request = request_of(c, direction, others, parameters_);
+    if (reach_) return reach_(request, joints_);
+    return {ReachableApproach{look_along(request.start, direction), std::nullopt}, PickingReason::not_tested};
+  }
+
+  /// Write the best approach while `others` are hanging to `out`; false, with the reason, when there is none. Verdicts
+  /// that do not depend on other fruit are kept for later rounds.
+  bool plan_approach(Candidate& c, const std::vector<OrientedEllipsoid>& others, Picking& out) const {
+    std::size_t farthest = 0;
+    out.reason = PickingReason::no_body;
+    for (std::size_t i = 0; i < c.directions.size(); ++i) {
+      PickingReason reason = c.verdicts[i];
+      if (reason == PickingReason::not_tested) {
+        throw_if_cancelled();
+        const ApproachAnswer answer = try_direction(c, c.directions[i], others);
+        if (answer.reached) {
+          out.direction = c.directions[i];
+          out.world_T_pre_grasp = answer.reached->world_T_pre_grasp;
+          out.joints = answer.reached->joints;
+          out.reachable = static_cast<bool>(reach_);
+          out.reason = reach_ ? PickingReason::reachable : PickingReason::not_tested;
+          return true;
+        }
+        reason = std::max(answer.reason, PickingReason::blocked_by_keep_out);
+        if (reason != PickingReason::blocked_by_fruit && reason != PickingReason::arm_meets_fruit)
+          c.verdicts[i] = reason;
+      }
+      if (reason > out.reason) {
+        out.reason = reason;
+        farthest = i;
+      }
+    }
+    if (c.directions.empty()) return false;
+    const ApproachRequest request = request_of(c, c.directions[farthest], others, parameters_);
+    out.direction = request.direction;
+    out.world_T_pre_grasp = look_along(request.start, request.direction);
+    return false;
+  }
+
+  /// Number the fruit of a round: front to back; fruit of about the same depth by the arm's shortest move from the
+  /// pick before, then by id.
+  void pick_in_order(std::vector<std::size_t> free) {
+    while (!free.empty()) {
+      double nearest = all_[free[0]].depth;
+      for (std::size_t f : free) nearest = std::min(nearest, all_[f].depth);
+      const auto rank = [&](std::size_t f) {
+        const auto& joints = plan_[all_[f].index].joints;
+        const bool tied = all_[f].depth <= nearest + parameters_.depth_tie;
+        return std::tuple(tied ? 0 : 1, joints ? arm::joint_distance(at_, *joints) : 0.0, all_[f].id);
+      };
+      const auto next =
+          std::min_element(free.begin(), free.end(), [&](std::size_t a, std::size_t b) { return rank(a) < rank(b); });
+      Picking& out = plan_[all_[*next].index];
+      out.order = ++order_;
+      if (out.joints) at_ = *out.joints;
+      picked_.push_back(*next);
+      free.erase(next);
+    }
+  }
+
+  std::vector<Candidate> all_;
+  Joints joints_;  // before the first pick (rad); every approach starts from there
+  Joints at_;      // at the last pick (rad)
+  const ReachApproach& reach_;
+  const PickingParameters& parameters_;
+  std::vector<Picking> plan_;         // in the caller's order
+  std::vector<std::size_t> hanging_;  // indices in `all_` of the fruit that have not been picked
+  std::vector<std::size_t> picked_;   // and of those that have been
+  int order_ = 0;
+};
+
+}  // namespace
+
+std::vector<SeenDirections> seen_directions(const Cloud& cloud, const Labels& labels,
+                                            const std::vector<Fruit>& fruits) {
+  std::vector<SeenDirections> seen(fruits.size());
+  std::vector<std::ptrdiff_t> fruit_of;  // by label; -1 = none
+  for (std::size_t f = 0; f < fruits.size(); ++f) {
+    if (!fruits[f].body || fruits[f].id < 1) continue;
+    const auto id = static_cast<std::size_t>(fruits[f].id);
+    if (fruit_of.size() <= id) fruit_of.resize(id + 1, -1);
+    fruit_of[id] = static_cast<std::ptrdiff_t>(f);
+  }
+  for (std::size_t i = 0; i < labels.size() && i < cloud.size(); ++i) {
+    if (labels[i] < 1 || static_cast<std::size_t>(labels[i]) >= fruit_of.size()) continue;
+    const std::ptrdiff_t f = fruit_of[static_cast<std::size_t>(labels[i])];
+    if (f < 0) continue;
+    const Eigen::Vector3d d = cloud.points[i].cast<double>() - fruits[static_cast<std::size_t>(f)].body->center;
+    if (is_finite(d) && d.squaredNorm() > 0.0)
+      seen[static_cast<std::size_t>(f)].set(static_cast<std::size_t>(DirectionBins::bin(d)));
+  }
+  return seen;
+}
+
+OrientedEllipsoid occupied(const Fruit& fruit) {
+  if (fruit.body) return {fruit.body->center, fruit.body->radii, fruit.body->axes};
+  return {fruit.centroid, Eigen::Vector3d::Constant(std::max(fruit.sigma.norm(), 1e-3)), Eigen::Matrix3d::Identity()};
+}
+
+std::vector<Picking> plan_picking(const std::vector<Fruit>& fruits, const PickingScene& scene,
+                                  const ReachApproach& reach, const PickingParameters& parameters) {
+  parameters.check();
+  check_scene(fruits, scene);
+  std::vector<Candidate> all = sorted_candidates(fruits, scene.keep_out);
+  set_depths(all, scene.robot);
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    Candidate& c = all[i];
+    if (!c.has_body) continue;
+    const SeenDirections* seen = scene.seen.empty() ? nullptr : &scene.seen[c.index];
+    c.directions = ranked_directions(all, i, fruits[c.index].orientation.col(2), seen, scene.robot, parameters);
+    c.verdicts.assign(c.directions.size(), PickingReason::not_tested);
+  }
+  return PickingRounds(std::move(all), scene.joints, reach, parameters).plan();
+}
+
+}  // namespace agrisee::pick

@@ -1,0 +1,194 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <agrisee/core/cancellation.hpp>
+#include <agrisee/core/stopwatch.hpp>
+#include <agrisee/fuse/free_space.hpp>
+#include <agrisee/fuse/fused_views.hpp>
+#include <agrisee/fuse/merged_views.hpp>
+#include <agrisee/locate.hpp>
+#include <agrisee/pick/arm_approach.hpp>
+#include <agrisee/pick/picking.hpp>
+#include <agrisee/pipeline.hpp>
+#include <agrisee/plan/arm_reach.hpp>
+#include <agrisee/planners.hpp>
+#include <agrisee/process.hpp>
+
+#include <algorithm>
+#include <utility>
+
+namespace agrisee {
+namespace {
+
+/// The map of a scan: fused surfaces or merged raw points.
+std::unique_ptr<fuse::Views> make_map(const Workcell& workcell, const Parameters& parameters, int threads) {
+  if (parameters.fuse_surfaces)
+    return std::make_unique<fuse::FusedViews>(workcell.scan_volume, parameters.fusion(), threads);
+  const auto filter = parameters.filter_each_view ? std::optional(parameters.sor) : std::nullopt;
+  return std::make_unique<fuse::MergedViews>(workcell.scan_volume, parameters.see.min_separation(), filter, threads);
+}
+
+/// Whether any pixel of a frame returned.
+bool shows_something(const sensor::DepthFrame& frame) {
+  return std::any_of(frame.depth.begin(), frame.depth.end(), sensor::DepthFrame::valid);
+}
+
+}  // namespace
+
+Pipeline::Pipeline(const Workcell& workcell, const Parameters& parameters, PipelineOptions options)
+    : workcell_(workcell),
+      parameters_(parameters),
+      reach_(std::move(options.reach)),
+      approach_(std::move(options.approach)),
+      planner_(std::move(options.planner)),
+      threads_(options.threads) {
+  parameters_.check();
+  check_input(!workcell.scan_volume.empty() && workcell.scan_volume.size().allFinite(),
+              "the scan volume is empty or infinite");
+  check_input(is_rigid(workcell.world_T_base) && is_rigid(workcell.tool0_T_optical),
+              "a pose of the workcell is not rigid");
+  map_ = make_map(workcell_, parameters_, threads_);
+  if (!reach_ && !approach_) approach_ = pick::approach_of(workcell_, parameters_.picking);
+  if (!reach_) reach_ = plan::reach_of(workcell_);
+  if (!planner_) planner_ = make_planner(workcell_, parameters_, options.seed, threads_);
+}
+
+const View& Pipeline::observe(const sensor::DepthFrame& frame, const Pose& world_T_optical,
+                              const std::optional<Joints>& joints) {
+  const View view = begin_view(frame, world_T_optical, joints);
+  const bool frozen = repeats_last_frame(frame);
+
+  // Look: what the frame shows, registered to the map. Nothing changes until this is known.
+  fuse::Observation seen;
+  if (!frozen) seen = timed(seconds_.fuse, [&] { return map_->look(frame, world_T_optical); });
+  throw_if_cancelled();
+  const detail::CancellationSwap to_the_end(nullptr);
+
+  // Fuse: the view becomes part of the map.
+  fuse::Change change = timed(seconds_.fuse, [&] {
+    return frozen ? map_->skip(frame, world_T_optical) : map_->take(std::move(seen), world_T_optical);
+  });
+
+  // Clean, where that is done after every view.
+  timed(seconds_.filter, [&] { map_->filter(change); });
+  cloud_ = timed(seconds_.fuse, [&] { return map_->cloud(); });
+
+  // Record the view, and tell the planner.
+  record(view, change);
+  if (!frozen) remember(frame);
+  timed(seconds_.plan, [&] { planner_->observe(progress(change)); });
+  return views_.back();
+}
+
+std::optional<plan::ReachableView> Pipeline::next_view(const Joints& current) {
+  check_input(current.allFinite(), "next_view: the joints are not finite");
+  if (static_cast<int>(views_.size()) >= parameters_.max_views) {
+    stop_reason_ = StopReason::max_views;
+    return std::nullopt;
+  }
+  if (refusals_ >= kMostRefusals) {
+    stop_reason_ = StopReason::no_reachable_view;
+    return std::nullopt;
+  }
+  auto next = timed(seconds_.plan, [&] { return planner_->next(progress({}), current, reach_); });
+  stop_reason_ = next ? StopReason::not_stopped : planner_->stop_reason();
+  return next;
+}
+
+void Pipeline::refused() {
+  planner_->refused();
+  ++refusals_;
+}
+
+ScanResult Pipeline::result() const {
+  CloudOrigin origin;
+  for (const View& v : views_) origin.sensors.push_back(v.world_T_optical.translation());
+  origin.cluster_origin = cluster_origin(workcell_.scan_volume, workcell_.world_T_base.translation());
+  SeenThrough seen_through;
+  if (!map_->images().empty())
+    seen_through = [this](const Ellipsoid& body) {
+      return fuse::seen_through(map_->images(), body, parameters_.free_space);
+    };
+  ScanResult out = process(cloud_, parameters_, origin, seen_through, threads_);
+  out.raw = raw();
+  center_on_reported_poses(out);
+  const double located = out.seconds.locate;
+  if (parameters_.picking.enabled) timed(out.seconds.locate, [&] { plan_picking(out); });
+  out.views = views_;
+  out.stop_reason = stop_reason_;
+  out.completeness = completeness();
+  out.seconds.plan = seconds_.plan;
+  out.seconds.fuse = seconds_.fuse;
+  out.seconds.filter += seconds_.filter;
+  out.seconds.total += seconds_.plan + seconds_.fuse + seconds_.filter + (out.seconds.locate - located);
+  return out;
+}
+
+/// What is known of a view before its frame is looked at.
+View Pipeline::begin_view(const sensor::DepthFrame& frame, const Pose& world_T_optical,
+                          const std::optional<Joints>& joints) const {
+  check(frame);
+  check_input(is_rigid(world_T_optical), "observe: the pose of the camera is not a rigid transform");
+  View view;
+  view.world_T_optical = world_T_optical;
+  // The observed point: as far ahead along the optical axis as the middle of the scan volume.
+  const Eigen::Vector3d to_middle = workcell_.scan_volume.center() - world_T_optical.translation();
+  const double ahead = std::max(to_middle.dot(world_T_optical.linear().col(2)), 0.0);
+  view.target = world_T_optical * Eigen::Vector3d(0.0, 0.0, ahead);
+  view.joints = joints;
+  view.plan_seconds = seconds_.plan - planned_before_;
+  return view;
+}
+
+/// Add a view to the record. Planning time counts for the next view from here on.
+void Pipeline::record(View view, const fuse::Change& change) {
+  view.points_in = change.points_in;
+  view.points_new = change.added.size();
+  views_.push_back(std::move(view));
+  for (std::size_t v = 0; v < views_.size(); ++v) views_[v].discarded = map_->discarded(v);
+  refusals_ = 0;
+  planned_before_ = seconds_.plan;
+}
+
+/// Keep a frame that shows something, to recognise it if the camera repeats it.
+void Pipeline::remember(const sensor::DepthFrame& frame) {
+  if (shows_something(frame)) last_frame_ = frame.depth;
+}
+
+/// True when a frame equals the last one that showed something; the noise of a camera that works never repeats.
+bool Pipeline::repeats_last_frame(const sensor::DepthFrame& frame) const {
+  const auto equal = [](float a, float b) { return a == b || (!(a > 0.0f) && !(b > 0.0f)); };
+  return shows_something(frame) &&
+         std::equal(frame.depth.begin(), frame.depth.end(), last_frame_.begin(), last_frame_.end(), equal);
+}
+
+plan::Progress Pipeline::progress(const fuse::Change& change) const {
+  return {cloud_, map_->images(), views_, change.added, change.kept ? &*change.kept : nullptr};
+}
+
+/// Move the result to where all views together, by their reported poses, put it.
+void Pipeline::center_on_reported_poses(ScanResult& out) const {
+  if (map_->images().empty() || out.cloud.empty()) return;
+  Eigen::Vector3d center = Eigen::Vector3d::Zero();
+  for (const auto& p : out.cloud.points) center += p.cast<double>() / static_cast<double>(out.cloud.size());
+  const Eigen::Vector3d shift = map_->shift_to_reported(center);
+  for (Cloud* cloud : {&out.cloud, &out.raw})
+    for (auto& p : cloud->points) p += shift.cast<float>();
+  for (Fruit& f : out.fruits) {
+    f.centroid += shift;
+    f.centroid_cluster += shift;
+    if (f.body) f.body->center += shift;
+  }
+}
+
+/// How to pick each fruit, from where the arm stood last.
+void Pipeline::plan_picking(ScanResult& out) const {
+  const bool known = !views_.empty() && views_.back().joints;
+  pick::PickingScene scene;
+  scene.keep_out = workcell_.keep_out;
+  scene.robot = workcell_.world_T_base.translation();
+  scene.joints = known ? *views_.back().joints : workcell_.start;
+  scene.seen = pick::seen_directions(out.cloud, out.labels, out.fruits);
+  const std::vector<Picking> plan = pick::plan_picking(out.fruits, scene, approach_, parameters_.picking);
+  for (std::size_t i = 0; i < plan.size(); ++i) out.fruits[i].picking = plan[i];
+}
+
+}  // namespace agrisee

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <agrisee/core/cancellation.hpp>
+#include <agrisee/plan/directions.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+namespace agrisee::plan {
+
+std::vector<Eigen::Vector3d> spread_directions(int n) {
+  std::vector<Eigen::Vector3d> out;
+  out.reserve(static_cast<std::size_t>(std::max(n, 0)));
+  constexpr double kGoldenAngle = 2.399963229728653;
+  for (int i = 0; i < n; ++i) {
+    const double z = 1.0 - (2.0 * i + 1.0) / n;
+    const double s = std::sqrt(1.0 - z * z);
+    out.emplace_back(s * std::cos(kGoldenAngle * i), s * std::sin(kGoldenAngle * i), z);
+  }
+  return out;
+}
+
+Eigen::Vector3d level_direction(const Eigen::Vector3d& from, const Eigen::Vector3d& to) {
+  Eigen::Vector3d d = to - from;
+  d.z() = 0.0;
+  return d.norm() > 1e-9 ? Eigen::Vector3d(d.normalized()) : Eigen::Vector3d(Eigen::Vector3d::UnitY());
+}
+
+Eigen::Vector3d frontal_direction(const Aabb& volume, const Eigen::Vector3d& robot) {
+  return level_direction(robot, volume.center());
+}
+
+std::optional<ReachableView> first_view(const Aabb& volume, const Eigen::Vector3d& robot, const Joints& current,
+                                        const Reach& reach, ViewRequest band, int skip) {
+  const Eigen::Vector3d frontal = frontal_direction(volume, robot);
+  std::vector<Eigen::Vector3d> directions = spread_directions(600);
+  directions.push_back(frontal);
+  std::stable_sort(directions.begin(), directions.end(),
+                   [&](const Eigen::Vector3d& a, const Eigen::Vector3d& b) { return a.dot(frontal) > b.dot(frontal); });
+  band.target = volume.center();
+  for (const Eigen::Vector3d& d : directions) {
+    throw_if_cancelled();
+    band.direction = d;
+    auto view = reach(band, current);
+    if (view && skip-- == 0) return view;
+  }
+  return std::nullopt;
+}
+
+}  // namespace agrisee::plan

@@ -1,0 +1,264 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <agrisee/cloud/normals.hpp>
+#include <agrisee/cloud/spacing.hpp>
+#include <agrisee/cloud/split.hpp>
+#include <agrisee/cloud/voxel.hpp>
+#include <agrisee/fuse/free_space.hpp>
+#include <agrisee/neighbors/grid.hpp>
+#include <agrisee/plan/directions.hpp>
+#include <agrisee/plan/expected_surface.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+namespace agrisee::plan {
+
+namespace {
+
+constexpr double kGrowth = 1.25;  // segment the cloud from scratch when it has grown by this factor
+
+/// The merged cloud with estimated normals, each turned towards the view that saw its point: for views that are merged
+/// as raw points.
+Cloud with_normals(const Progress& progress) {
+  Cloud cloud = progress.cloud;
+  NormalParameters normals;
+  if (const double spacing = estimate_spacing(cloud); spacing > 0.0) normals.radius = 3.0 * spacing;
+  std::vector<Eigen::Vector3d> sensors;
+  for (const View& v : progress.views) sensors.push_back(v.world_T_optical.translation());
+  cloud.normals = orient_normals_to_views(estimate_normals(cloud, normals), cloud, cloud.views, sensors);
+  return cloud;
+}
+
+/// A coarse depth image of obstacles, seen from one view.
+class ObstacleImage {
+ public:
+  /// Of points (m, world).
+  ObstacleImage(const sensor::Intrinsics& k, const Eigen::Isometry3f& optical_T_world,
+                const std::vector<Eigen::Vector3f>& obstacles)
+      : fx_(static_cast<float>(k.fx / k.width * kWidth)),
+        fy_(static_cast<float>(k.fy / k.height * kHeight)),
+        cx_(static_cast<float>((k.cx + 0.5) / k.width * kWidth)),
+        cy_(static_cast<float>((k.cy + 0.5) / k.height * kHeight)) {
+    depth_.fill(std::numeric_limits<float>::infinity());
+    for (const Eigen::Vector3f& o : obstacles) {
+      const Eigen::Vector3f p = optical_T_world * o;
+      const int c = pixel(p);
+      if (c >= 0) depth_[static_cast<std::size_t>(c)] = std::min(depth_[static_cast<std::size_t>(c)], p.z());
+    }
+  }
+
+  /// Whether the point p (m, optical frame) lies in the image and no obstacle is more than 12 mm in front of it.
+  bool shows(const Eigen::Vector3f& p) const {
+    const int c = pixel(p);
+    return c >= 0 && !(depth_[static_cast<std::size_t>(c)] < p.z() - 0.012f);
+  }
+
+ private:
+  static constexpr int kWidth = 96, kHeight = 72;
+
+  /// Index of the pixel that holds p (m, optical frame), -1 outside the image.
+  int pixel(const Eigen::Vector3f& p) const {
+    if (!(p.z() > 0.0f)) return -1;
+    const float u = fx_ * p.x() / p.z() + cx_, v = fy_ * p.y() / p.z() + cy_;
+    if (!(u >= 0.0f && v >= 0.0f && u < float(kWidth) && v < float(kHeight))) return -1;
+    return static_cast<int>(v) * kWidth + static_cast<int>(u);
+  }
+
+  float fx_, fy_, cx_, cy_;
+  std::array<float, kWidth * kHeight> depth_;  // of the nearest obstacle in each pixel (m)
+};
+
+}  // namespace
+
+ExpectedSurface::ExpectedSurface(const sensor::DepthCamera& sensor, const Aabb& volume,
+                                 const ExpectedSurfaceParameters& parameters)
+    : sensor_(sensor), volume_(volume), parameters_(parameters) {
+  parameters.check();
+  const Eigen::Vector3d size = volume.size();
+  // Enlarge the voxels of a large volume, so that there are at most two million.
+  edge_ = parameters.voxel;
+  while ((size / edge_).array().ceil().max(1.0).prod() > 2e6) edge_ *= 1.3;
+  for (int a = 0; a < 3; ++a) dims_[a] = std::max(1, static_cast<int>(std::ceil(size[a] / edge_)));
+  known_.assign(std::size_t(dims_[0]) * std::size_t(dims_[1]) * std::size_t(dims_[2]), 0);
+}
+
+void ExpectedSurface::update(const Progress& progress, const SplitParameters& split_parameters,
+                             const fuse::FreeSpaceParameters& free_space) {
+  for (; images_read_ < progress.images.size(); ++images_read_) mark_known(progress.images[images_read_], free_space);
+  const Labels labels = find_fruit(progress, split_parameters, free_space);
+  collect_samples(progress.cloud);
+  PointCloud<float> rest;
+  for (std::size_t i = 0; i < progress.cloud.size(); ++i)
+    if (labels[i] == 0) rest.points.push_back(progress.cloud.points[i]);
+  obstacles_ = average_in_voxels(rest, 0.006).points;
+  // Samples that earlier views should have shown count less.
+  for (const auto& image : progress.images)
+    for_each_shown(image.world_T_optical,
+                   [&](std::size_t i) { areas_[i] *= static_cast<float>(parameters_.missed_factor); });
+}
+
+void ExpectedSurface::mark_known(const sensor::SurfaceImage& image, const fuse::FreeSpaceParameters& free_space) {
+  std::size_t i = 0;
+  for (int z = 0; z < dims_[2]; ++z)
+    for (int y = 0; y < dims_[1]; ++y)
+      for (int x = 0; x < dims_[0]; ++x, ++i)
+        if (!known_[i] && fuse::sight(image, voxel_center(x, y, z), free_space) != fuse::Sight::unknown) known_[i] = 1;
+}
+
+Labels ExpectedSurface::find_fruit(const Progress& progress, const SplitParameters& split_parameters,
+                                   const fuse::FreeSpaceParameters& free_space) {
+  // The model needs bodies, whatever stages the final segmentation uses.
+  SplitParameters with_bodies = split_parameters;
+  with_bodies.adaptive = with_bodies.fit_bodies = true;
+  const auto through = [&](const Ellipsoid& body) { return fuse::seen_through(progress.images, body, free_space); };
+  const bool fused = progress.cloud.normals.size() == progress.cloud.size();
+  const Cloud estimated = fused ? Cloud() : with_normals(progress);
+  const Cloud& cloud = fused ? progress.cloud : estimated;
+  // Segment from scratch while the cloud grows fast; later only bring the known fruit up to date.
+  const bool anew = bodies_.empty() || static_cast<double>(cloud.size()) > kGrowth * static_cast<double>(segmented_at_);
+  Split found = anew ? split(cloud, with_bodies, through) : track(cloud, bodies_, with_bodies, through);
+  if (anew) segmented_at_ = cloud.size();
+  bodies_ = std::move(found.found);
+  return std::move(found.labels);
+}
+
+void ExpectedSurface::collect_samples(const Cloud& cloud) {
+  samples_.clear();
+  areas_.clear();
+  occluders_.clear();
+  for (const FoundBody& b : bodies_)
+    occluders_.push_back({b.fit.body.center.cast<float>(), static_cast<float>(0.97 * b.fit.body.mean_radius())});
+  area_ = covered_ = 0.0;
+  area_of_.clear();
+  covered_of_.clear();
+  extent_ = {};
+  for (const auto& p : cloud.points) extent_.extend(p.cast<double>());
+  const Aabb cloud_extent = extent_;
+  if (extent_.empty()) extent_ = volume_;
+  center_ = extent_.center();
+  if (!bodies_.empty()) extent_ = {}, center_.setZero();
+  sample_bodies(cloud);
+  sample_unknown_space(cloud_extent);
+}
+
+void ExpectedSurface::sample_bodies(const Cloud& cloud) {
+  // Any point near a fruit's surface covers it, also points of calyx and stem: no more will be seen behind them.
+  const Grid<float> grid(cloud, static_cast<float>(parameters_.cover_radius));
+  const std::vector<Eigen::Vector3d> directions = spread_directions(parameters_.samples);
+  for (std::size_t b = 0; b < bodies_.size(); ++b) {
+    const Ellipsoid& body = bodies_[b].fit.body;
+    center_ += body.center / static_cast<double>(bodies_.size());
+    for (int side : {-1, 1}) extent_.extend(body.center + Eigen::Vector3d::Constant(side * body.mean_radius()));
+    const double r = body.mean_radius(), share = 4.0 * kPi * r * r / parameters_.samples;
+    double covered = 0.0;
+    for (const Eigen::Vector3d& d : directions) {
+      const Eigen::Vector3d p = body.surface(d);
+      if (grid.count(p.cast<float>(), static_cast<float>(parameters_.cover_radius), 1) > 0)
+        covered += share;
+      else if (!inside_other(p, static_cast<int>(b)))
+        add_sample(p, body.normal(p), share, static_cast<int>(b));
+    }
+    area_of_.push_back(share * parameters_.samples);
+    covered_of_.push_back(covered);
+    area_ += area_of_.back();
+    covered_ += covered;
+  }
+}
+
+void ExpectedSurface::sample_unknown_space(const Aabb& cloud) {
+  std::size_t i = 0;
+  for (int z = 0; z < dims_[2]; ++z)
+    for (int y = 0; y < dims_[1]; ++y)
+      for (int x = 0; x < dims_[0]; ++x, ++i) {
+        if (known_[i]) continue;
+        const Eigen::Vector3d p = voxel_center(x, y, z);
+        double nearest = std::numeric_limits<double>::infinity();
+        for (const FoundBody& b : bodies_)
+          nearest = std::min(nearest, (p - b.fit.body.center).norm() - b.fit.body.mean_radius());
+        if (bodies_.empty() && cloud.distance(p) < parameters_.neighborhood) nearest = edge_;
+        if (nearest < 0.0 || nearest > parameters_.neighborhood) continue;
+        add_sample(p, Eigen::Vector3d::Zero(), parameters_.unknown_weight * edge_ * edge_, -1);
+      }
+}
+
+void ExpectedSurface::add_sample(const Eigen::Vector3d& point, const Eigen::Vector3d& normal, double area, int body) {
+  samples_.push_back({point.cast<float>(), normal.cast<float>(), body});
+  areas_.push_back(static_cast<float>(area));
+}
+
+bool ExpectedSurface::inside_other(const Eigen::Vector3d& point, int own) const {
+  for (std::size_t b = 0; b < bodies_.size(); ++b)
+    if (static_cast<int>(b) != own &&
+        (point - bodies_[b].fit.body.center).norm() < 0.98 * bodies_[b].fit.body.mean_radius())
+      return true;
+  return false;
+}
+
+Eigen::Vector3d ExpectedSurface::voxel_center(int x, int y, int z) const {
+  return volume_.min + edge_ * Eigen::Vector3d(x + 0.5, y + 0.5, z + 0.5);
+}
+
+template <typename F>
+void ExpectedSurface::for_each_shown(const Pose& world_T_optical, F&& f) const {
+  const Eigen::Isometry3f optical_T_world = world_T_optical.inverse(Eigen::Isometry).cast<float>();
+  const Eigen::Vector3f camera = world_T_optical.translation().cast<float>();
+  const auto cos_max = static_cast<float>(std::cos(parameters_.max_incidence));
+  const auto near_sq = static_cast<float>(sensor_.range_min * sensor_.range_min);
+  const auto far_sq = static_cast<float>(sensor_.range_max * sensor_.range_max);
+  const ObstacleImage image(sensor_.intrinsics, optical_T_world, obstacles_);
+  for (std::size_t i = 0; i < samples_.size(); ++i) {
+    const Sample& s = samples_[i];
+    const Eigen::Vector3f d = s.point - camera;
+    const float distance_sq = d.squaredNorm();
+    if (distance_sq < near_sq || distance_sq > far_sq) continue;
+    const float distance = std::sqrt(distance_sq);
+    if (s.body >= 0 && -d.dot(s.normal) < cos_max * distance) continue;
+    if (!image.shows(optical_T_world * s.point)) continue;
+    if (!hidden(camera, d / distance, distance, s.body)) f(i);
+  }
+}
+
+bool ExpectedSurface::hidden(const Eigen::Vector3f& camera, const Eigen::Vector3f& u, float distance, int own) const {
+  for (std::size_t b = 0; b < occluders_.size(); ++b) {
+    if (static_cast<int>(b) == own) continue;
+    const Eigen::Vector3f c = occluders_[b].center - camera;
+    const float r_sq = occluders_[b].radius * occluders_[b].radius, along = c.dot(u);
+    const float off_sq = c.squaredNorm() - along * along;
+    if (off_sq >= r_sq || along < 0.0f) continue;
+    if (along - std::sqrt(r_sq - off_sq) < distance - 1e-3f) return true;
+  }
+  return false;
+}
+
+std::vector<std::uint32_t> ExpectedSurface::shown(const Pose& world_T_optical) const {
+  std::vector<std::uint32_t> out;
+  for_each_shown(world_T_optical, [&](std::size_t i) { out.push_back(static_cast<std::uint32_t>(i)); });
+  return out;
+}
+
+double ExpectedSurface::gain(const Pose& world_T_optical) const {
+  double area = 0.0;
+  for_each_shown(world_T_optical, [&](std::size_t i) { area += double(areas_[i]); });
+  return area;
+}
+
+Completeness ExpectedSurface::completeness(const std::vector<char>& can_be_seen) const {
+  Completeness out;
+  std::vector<double> open(bodies_.size(), 0.0);  // unseen surface of each fruit that can be seen (m2)
+  for (std::size_t i = 0; i < samples_.size(); ++i)
+    if (samples_[i].body >= 0 && can_be_seen[i]) open[static_cast<std::size_t>(samples_[i].body)] += double(areas_[i]);
+  double all = 0.0;
+  for (std::size_t b = 0; b < bodies_.size(); ++b) {
+    const double seen = covered_of_[b], observable = seen + open[b];
+    out.fruits.push_back({bodies_[b].fit.body.center, seen / area_of_[b], observable / area_of_[b]});
+    out.seen += seen;
+    out.observable += observable;
+    all += area_of_[b];
+  }
+  if (all > 0.0) out.seen /= all, out.observable /= all;
+  return out;
+}
+
+}  // namespace agrisee::plan

@@ -1,0 +1,247 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <agrisee/core/cancellation.hpp>
+#include <agrisee/plan/directions.hpp>
+#include <agrisee/plan/gain_planner.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+namespace agrisee::plan {
+
+namespace {
+
+constexpr std::size_t kRefined = 8;  // the best candidates, around which more directions are tried
+
+/// Joint-space distance from the joints `from` to a view, in units of pi rad; 0 when the view has no joints. At the
+/// UR3's speed limit of pi rad/s this is a time in seconds.
+double joint_distance(const ReachableView& view, const Joints& from) {
+  return view.joints ? (*view.joints - from).norm() / kPi : 0.0;
+}
+
+}  // namespace
+
+GainPlanner::GainPlanner(const sensor::DepthCamera& sensor, const Aabb& volume, const Eigen::Vector3d& robot,
+                         const SplitParameters& split, const fuse::FreeSpaceParameters& free_space,
+                         const GainPlannerParameters& parameters)
+    : parameters_(parameters),
+      split_(split),
+      free_space_(free_space),
+      volume_(volume),
+      robot_(robot),
+      model_(sensor, volume, parameters.expected) {
+  parameters_.check();
+}
+
+void GainPlanner::observe(const Progress& progress) {
+  model_.update(progress, split_, free_space_);
+  ranked_.clear();
+  refused_.clear();
+  refused_first_ = 0;
+}
+
+std::optional<ReachableView> GainPlanner::next(const Progress& progress, const Joints& current, const Reach& reach) {
+  if (progress.cloud.empty()) return front_view(static_cast<int>(progress.views.size()), current, reach);
+  update_candidates(current, reach);
+  if (ranked_.empty()) {
+    const auto completeness = completeness_;
+    try {
+      if (const auto reason = rank(current, reach)) return stop(*reason);
+    } catch (...) {  // cancelled: do not keep half a ranking
+      ranked_.clear();
+      completeness_ = completeness;
+      throw;
+    }
+  } else {  // a view was refused
+    rank_again(current);
+    if (ranked_.empty()) return stop(StopReason::no_reachable_view);
+  }
+  Scored& chosen = ranked_[first_of_next(current)];
+  // From the present joints the view may be reached with others.
+  if (const auto view = reach(chosen.request, current)) rate(chosen, *view, current);
+  last_ = chosen.request;
+  return chosen.view;
+}
+
+void GainPlanner::refused() {
+  if (last_) refused_.push_back(*last_);
+  ++refused_first_;
+}
+
+std::vector<ReachableView> GainPlanner::candidates() const {
+  std::vector<ReachableView> views;
+  views.reserve(ranked_.size());
+  for (const Scored& s : ranked_) views.push_back(s.view);
+  return views;
+}
+
+std::optional<ReachableView> GainPlanner::front_view(int taken, const Joints& current, const Reach& reach) {
+  // Four views near the front that show nothing end the scan.
+  if (taken >= 4) return stop(StopReason::nothing_seen);
+  auto view =
+      first_view(volume_, robot_, current, reach, request(Eigen::Vector3d::UnitY()), refused_first_ + 12 * taken);
+  if (!view && taken > 0) return stop(StopReason::nothing_seen);
+  if (!view) return stop(StopReason::no_reachable_view);
+  return view;
+}
+
+void GainPlanner::update_candidates(const Joints& current, const Reach& reach) {
+  const Aabb& extent = model_.extent();
+  if (!candidates_.empty() && !((extent_.min - extent.min).norm() > 0.02) &&
+      !((extent_.max - extent.max).norm() > 0.02))
+    return;
+  std::vector<Candidate> candidates;  // kept only when complete, in case the call is cancelled
+  const std::vector<Eigen::Vector3d> directions = spread_directions(parameters_.candidates);
+  for (std::size_t i = 0; i < directions.size(); ++i) {
+    throw_if_cancelled();
+    const ViewRequest r = candidate(static_cast<double>(i), directions[i], extent);
+    if (auto view = reach(r, current)) candidates.push_back({r, std::move(*view)});
+  }
+  extent_ = extent;
+  candidates_ = std::move(candidates);
+}
+
+ViewRequest GainPlanner::candidate(double i, const Eigen::Vector3d& direction, const Aabb& extent) const {
+  // Roberts' R4 sequence: the fractional parts of i times powers of 1 / 1.1673.
+  const auto part = [](double x) { return x - std::floor(x); };
+  const Eigen::Vector3d where(part(i * 0.8566748838545029), part(i * 0.7338918566271260), part(i * 0.6287067210378087));
+  ViewRequest r = request(direction);
+  r.target += parameters_.spread * (where.array() - 0.5).matrix().cwiseProduct(extent.size());
+  r.distance = r.distance_min + part(i * 0.5385972572236101) * (r.distance_max - r.distance_min);
+  return r;
+}
+
+ViewRequest GainPlanner::request(const Eigen::Vector3d& direction) const {
+  return {model_.center(), direction, parameters_.distance, parameters_.distance_min, parameters_.distance_max};
+}
+
+std::optional<StopReason> GainPlanner::rank(const Joints& current, const Reach& reach) {
+  for (const Candidate& c : candidates_) consider(c.request, c.view, current);
+  std::vector<char> can_be_seen(model_.areas().size(), 0);
+  for (const Scored& s : ranked_)
+    for (std::uint32_t i : s.shown) can_be_seen[i] = 1;
+  completeness_ = model_.completeness(can_be_seen);
+  if (ranked_.empty()) return StopReason::no_reachable_view;
+  sort_ranked();
+  refine(current, reach);
+  const auto shows = [](const Scored& s) { return s.view.gain > 0.0; };
+  const bool any = std::any_of(ranked_.begin(), ranked_.end(), shows);
+  const auto poor = [least = least_gain()](const Scored& s) { return s.view.gain < least; };
+  ranked_.erase(std::remove_if(ranked_.begin(), ranked_.end(), poor), ranked_.end());
+  sort_ranked();
+  if (ranked_.empty()) return any ? StopReason::low_gain : StopReason::no_frontier;
+  return std::nullopt;
+}
+
+void GainPlanner::refine(const Joints& current, const Reach& reach) {
+  const double step = 0.5 * std::sqrt(4.0 * kPi / parameters_.candidates);  // half the candidates' spacing (rad)
+  for (std::size_t i = 0, n = std::min(kRefined, ranked_.size()); i < n; ++i) {
+    throw_if_cancelled();
+    const ViewRequest middle = ranked_[i].request;
+    if (const auto view = reach(middle, current)) rate(ranked_[i], *view, current);
+    const Eigen::Vector3d a = any_orthogonal<double>(middle.direction), b = middle.direction.cross(a);
+    for (int k = 0; k < 6; ++k) {
+      const double angle = kPi / 3.0 * k;
+      ViewRequest around = middle;
+      around.direction = (middle.direction + step * (std::cos(angle) * a + std::sin(angle) * b)).normalized();
+      if (const auto view = reach(around, current)) consider(around, *view, current);
+    }
+  }
+}
+
+void GainPlanner::rank_again(const Joints& current) {
+  const auto refused = [&](const Scored& s) { return was_refused(s.request); };
+  ranked_.erase(std::remove_if(ranked_.begin(), ranked_.end(), refused), ranked_.end());
+  for (Scored& s : ranked_) s.score = s.view.gain / (parameters_.dwell + joint_distance(s.view, current));
+  sort_ranked();
+}
+
+void GainPlanner::sort_ranked() {
+  std::stable_sort(ranked_.begin(), ranked_.end(), [](const Scored& a, const Scored& b) { return a.score > b.score; });
+}
+
+void GainPlanner::consider(const ViewRequest& request, const ReachableView& view, const Joints& current) {
+  throw_if_cancelled();
+  if (was_refused(request)) return;
+  ranked_.emplace_back();
+  ranked_.back().request = request;
+  rate(ranked_.back(), view, current);
+}
+
+void GainPlanner::rate(Scored& scored, const ReachableView& view, const Joints& current) const {
+  scored.view = view;
+  scored.shown = model_.shown(view.world_T_optical);
+  scored.view.gain = 0.0;
+  for (std::uint32_t i : scored.shown) scored.view.gain += double(model_.areas()[i]);
+  scored.score = scored.view.gain / (parameters_.dwell + joint_distance(view, current));
+}
+
+bool GainPlanner::was_refused(const ViewRequest& request) const {
+  return std::any_of(refused_.begin(), refused_.end(), [&](const ViewRequest& r) {
+    return r.direction.dot(request.direction) > 0.9999 && (r.target - request.target).norm() < 0.01 &&
+           std::abs(r.distance - request.distance) < 0.01;
+  });
+}
+
+double GainPlanner::least_gain() const { return parameters_.min_gain * std::max(model_.area(), 1e-6); }
+
+std::size_t GainPlanner::first_of_next(const Joints& current) const {
+  const std::vector<std::size_t> next = views_ahead(current);
+  double shortest = std::numeric_limits<double>::infinity();
+  std::size_t first = next.front();  // the best view, unless a path that begins with another is shorter
+  for (std::size_t k = 0; k < next.size(); ++k) {
+    if (ranked_[next[k]].score < parameters_.patience * ranked_.front().score) continue;
+    std::vector<std::size_t> rest = next;
+    rest.erase(rest.begin() + static_cast<std::ptrdiff_t>(k));
+    const double begun = joint_distance(ranked_[next[k]].view, current);
+    const double length = begun + shortest_path(next[k], rest, current, shortest - begun);
+    if (length < shortest - 1e-12) shortest = length, first = next[k];
+  }
+  return first;
+}
+
+std::vector<std::size_t> GainPlanner::views_ahead(const Joints& current) const {
+  const double least = least_gain();
+  std::vector<std::size_t> next{0};
+  std::vector<float> areas = model_.areas();  // of what the views planned so far leave unseen
+  while (static_cast<int>(next.size()) < parameters_.lookahead) {
+    for (std::uint32_t i : ranked_[next.back()].shown) areas[i] = 0.0f;
+    const Joints from = ranked_[next.back()].view.joints.value_or(current);
+    double best = 0.0;
+    std::size_t choice = ranked_.size();
+    for (std::size_t c = 0; c < ranked_.size(); ++c) {
+      double gain = 0.0;
+      for (std::uint32_t i : ranked_[c].shown) gain += double(areas[i]);
+      const double score = gain / (parameters_.dwell + joint_distance(ranked_[c].view, from));
+      if (gain >= least && score > best) best = score, choice = c;
+    }
+    if (choice == ranked_.size()) break;
+    next.push_back(choice);
+  }
+  return next;
+}
+
+double GainPlanner::shortest_path(std::size_t at, std::vector<std::size_t>& rest, const Joints& current,
+                                  double bound) const {
+  if (!(bound > 0.0)) return std::numeric_limits<double>::infinity();
+  if (rest.empty()) return 0.0;
+  double shortest = bound;
+  for (std::size_t k = 0; k < rest.size(); ++k) {
+    std::swap(rest[k], rest.back());
+    const std::size_t then = rest.back();
+    rest.pop_back();
+    const double step = joint_distance(ranked_[then].view, ranked_[at].view.joints.value_or(current));
+    shortest = std::min(shortest, step + shortest_path(then, rest, current, shortest - step));
+    rest.push_back(then);
+    std::swap(rest[k], rest.back());
+  }
+  return shortest < bound ? shortest : std::numeric_limits<double>::infinity();
+}
+
+std::optional<ReachableView> GainPlanner::stop(StopReason reason) {
+  reason_ = reason;
+  return std::nullopt;
+}
+
+}  // namespace agrisee::plan

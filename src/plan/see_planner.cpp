@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <agrisee/core/cancellation.hpp>
+#include <agrisee/plan/directions.hpp>
+#include <agrisee/plan/see_planner.hpp>
+
+#include <cmath>
+#include <utility>
+
+namespace agrisee::plan {
+
+namespace {
+
+constexpr double kMaxTurn = deg(45);  // between a proposal's direction and that of the view which replaces it (rad)
+
+}  // namespace
+
+SeePlanner::SeePlanner(const Aabb& volume, const Eigen::Vector3d& robot, const see::Parameters& parameters,
+                       const ViewRequest& band, int threads)
+    : volume_(volume), robot_(robot), band_(band), explorer_(parameters, threads) {}
+
+void SeePlanner::observe(const Progress& progress) {
+  sensor_ = progress.views.back().world_T_optical.translation();
+  explorer_.observe(progress.added, sensor_);
+  if (progress.kept) explorer_.keep(*progress.kept);
+}
+
+std::optional<ReachableView> SeePlanner::next(const Progress& progress, const Joints& current, const Reach& reach) {
+  // A first frame without points may be the sensor's fault: try a few more views near the front.
+  const auto taken = static_cast<int>(progress.views.size());
+  if (progress.cloud.empty() && taken < 4) {
+    auto view = first_view(volume_, robot_, current, reach, band_, refused_first_ + 12 * taken);
+    if (!view) reason_ = StopReason::no_reachable_view;
+    return view;
+  }
+  // Refusing proposals changes SEE++'s state, so it is restored when the call is cancelled.
+  std::optional<see::Explorer> before;
+  if (cancellable()) before = explorer_;
+  try {
+    return choose(current, reach);
+  } catch (...) {
+    if (before) explorer_ = std::move(*before);
+    throw;
+  }
+}
+
+void SeePlanner::refused() {
+  if (last_) explorer_.refuse(*last_);
+  ++refused_first_;
+}
+
+std::optional<ReachableView> SeePlanner::choose(const Joints& current, const Reach& reach) {
+  while (true) {
+    const std::vector<see::ViewProposal> proposals = explorer_.next_views(sensor_);
+    if (proposals.empty()) {
+      reason_ = explorer_.stop_reason();
+      return std::nullopt;
+    }
+    for (const see::ViewProposal& p : proposals) {
+      throw_if_cancelled();
+      if (auto view = project(p, current, reach)) {
+        explorer_.take(p);
+        last_ = p;
+        view->gain = p.visible;
+        return view;
+      }
+      explorer_.refuse(p);
+    }
+  }
+}
+
+std::optional<ReachableView> SeePlanner::project(const see::ViewProposal& p, const Joints& current,
+                                                 const Reach& reach) const {
+  ViewRequest request = band_;
+  // The frontier lies at the view distance along the proposal's axis.
+  request.target = p.position + band_.distance * p.direction;
+  request.direction = p.direction;
+  if (auto view = reach(request, current)) return view;
+  const Eigen::Vector3d a = any_orthogonal<double>(p.direction), b = p.direction.cross(a);
+  for (double turn = deg(9); turn <= kMaxTurn; turn += deg(9)) {
+    std::optional<ReachableView> nearest;
+    for (int k = 0; k < 8; ++k) {
+      const double around = kTwoPi * k / 8.0;
+      request.direction =
+          (std::cos(turn) * p.direction + std::sin(turn) * (std::cos(around) * a + std::sin(around) * b)).normalized();
+      const auto view = reach(request, current);
+      if (view && (!nearest || view->move_time < nearest->move_time)) nearest = view;
+    }
+    if (nearest) return nearest;
+  }
+  return std::nullopt;
+}
+
+}  // namespace agrisee::plan

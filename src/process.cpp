@@ -1,0 +1,184 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <agrisee/cloud/normals.hpp>
+#include <agrisee/cloud/orient_normals.hpp>
+#include <agrisee/cloud/sor.hpp>
+#include <agrisee/cloud/spacing.hpp>
+#include <agrisee/cloud/split.hpp>
+#include <agrisee/cloud/voxel.hpp>
+#include <agrisee/core/stopwatch.hpp>
+#include <agrisee/locate.hpp>
+#include <agrisee/neighbors/grid.hpp>
+#include <agrisee/neighbors/kdtree.hpp>
+#include <agrisee/neighbors/neighbor_lists.hpp>
+#include <agrisee/process.hpp>
+
+namespace agrisee {
+namespace {
+
+using Normals = std::vector<Eigen::Vector3f>;
+
+/// Where a point was seen from (m): its view's sensor, or the one viewpoint; empty when that is not known.
+std::optional<Eigen::Vector3d> seen_from(const Cloud& cloud, std::size_t i, const CloudOrigin& origin) {
+  if (!origin.sensors.empty() && cloud.views.size() == cloud.size()) {
+    const int view = cloud.views[i];
+    if (view < 0) return std::nullopt;
+    check_input(static_cast<std::size_t>(view) < origin.sensors.size(), "a point's view has no sensor position");
+    return origin.sensors[static_cast<std::size_t>(view)];
+  }
+  return origin.viewpoint;
+}
+
+/// Neighborhoods for normals that suit the cloud: wider where it is sparse, and wider again where it is noisy.
+/// @return the standard deviation (m) of the points about their own surface
+double adapt_to_noise(const Cloud& cloud, double spacing, const Parameters& parameters, NormalParameters& normals) {
+  const BodyParameters& bodies = parameters.split.bodies;
+  normals.radius = parameters.normal_reach * spacing;
+  const double noise = estimate_noise(cloud, Grid<float>(cloud, static_cast<float>(normals.radius)), normals.radius,
+                                      std::sqrt(bodies.radius_min * bodies.radius_max));
+  // A slope needs eight standard deviations across; more than half a fruit's radius would flatten it.
+  normals.radius = std::max(normals.radius, std::min(8.0 * noise, 0.5 * bodies.radius_min));
+  const double across = std::min(normals.radius / spacing, 20.0);
+  normals.max_neighbors = std::max(normals.max_neighbors, static_cast<int>(kPi * across * across));
+  return noise;
+}
+
+/// Unit normals for a whole cloud. Each is turned to where its point was seen from; where that is not known, so that
+/// neighbors agree.
+/// @param noise receives the standard deviation (m) of the points about their own surface; 0 if the neighborhoods are
+///   not adapted to the cloud
+Normals estimated_normals(const Cloud& cloud, const Parameters& parameters, const CloudOrigin& origin, double& noise,
+                          int threads) {
+  NormalParameters normals = parameters.normals;
+  OrientationParameters orientation;
+  bool all_known = true;
+  for (std::size_t i = 0; i < cloud.size() && all_known; ++i) all_known = seen_from(cloud, i, origin).has_value();
+  const double spacing = parameters.adaptive_normals ? estimate_spacing(cloud) : 0.0;
+  noise = 0.0;
+  if (spacing > 0.0) {
+    noise = adapt_to_noise(cloud, spacing, parameters, normals);
+    orientation.max_distance = normals.radius;
+  }
+  Normals estimated;
+  if (all_known) {
+    estimated = estimate_normals(cloud, normals, threads);
+  } else if (normals.max_neighbors <= 64) {  // short lists of neighbors are kept and used twice
+    const int k = std::max(normals.max_neighbors, orientation.neighbors + 1);
+    const NeighborLists lists = nearest_neighbors(cloud, static_cast<std::size_t>(k), threads);
+    estimated = orient_normals_consistently(estimate_normals(cloud, normals, lists, threads), cloud, orientation, lists,
+                                            threads);
+  } else {
+    estimated = orient_normals_consistently(estimate_normals(cloud, normals, threads), cloud, orientation, threads);
+  }
+  for (std::size_t i = 0; i < cloud.size(); ++i)
+    if (const auto sensor = seen_from(cloud, i, origin))
+      if (estimated[i].cast<double>().dot(*sensor - cloud.points[i].cast<double>()) < 0.0) estimated[i] = -estimated[i];
+  return estimated;
+}
+
+/// Normals that came with the cloud are kept, except those that clearly face away from their sensor: by more than
+/// `beyond` (rad), since at grazing incidence either side is possible. These are turned. Normals that are zero or not
+/// finite are replaced by zeros.
+/// @return indices of the points whose normals are kept
+Indices keep_given_normals(Cloud& cloud, const CloudOrigin& origin, double beyond) {
+  const double away = std::cos(beyond);
+  Indices known;
+  for (std::size_t i = 0; i < cloud.size(); ++i) {
+    Eigen::Vector3f& n = cloud.normals[i];
+    if (!is_finite(n) || !(n.squaredNorm() > 0.25f)) {
+      n.setZero();
+      continue;
+    }
+    known.push_back(static_cast<Index>(i));
+    const auto sensor = seen_from(cloud, i, origin);
+    if (!sensor) continue;
+    const Eigen::Vector3d sight = *sensor - cloud.points[i].cast<double>();
+    if (n.cast<double>().dot(sight) < away * sight.norm()) n = -n;
+  }
+  return known;
+}
+
+/// Estimate the normals that a cloud lacks. Where a point's sensor is not known, its normal takes the side of the
+/// nearest normal that came with the cloud.
+/// @param noise as of estimated_normals; 0 if half of the normals, or more, came with the cloud
+void complete_normals(Cloud& cloud, const Parameters& parameters, const CloudOrigin& origin, double& noise,
+                      int threads) {
+  noise = 0.0;
+  const Indices known = keep_given_normals(cloud, origin, deg(100));
+  if (known.size() == cloud.size()) return;
+  const Normals estimated = estimated_normals(cloud, parameters, origin, noise, threads);
+  if (2 * known.size() > cloud.size()) noise = 0.0;  // a few estimates say little about the rest
+  const Cloud sure = select(cloud, known);
+  const KdTree<float> search(sure);
+  Neighbors<float> nearest;
+  for (std::size_t i = 0; i < cloud.size(); ++i) {
+    if ((i & 0xFFF) == 0) throw_if_cancelled();
+    if (cloud.normals[i].squaredNorm() > 0.0f) continue;
+    cloud.normals[i] = estimated[i];
+    if (seen_from(cloud, i, origin) || sure.empty()) continue;
+    search.knn(cloud.points[i], 1, nearest);
+    if (estimated[i].dot(sure.normals[static_cast<std::size_t>(nearest.front().index)]) < -0.5f)
+      cloud.normals[i] = -estimated[i];
+  }
+}
+
+/// Give every point of a cloud a normal.
+/// @return standard deviation (m) of the points about their own surface; 0 where it is not known
+double provide_normals(Cloud& cloud, const Parameters& parameters, const CloudOrigin& origin, int threads) {
+  double noise = 0.0;
+  if (cloud.normals.empty())
+    cloud.normals = estimated_normals(cloud, parameters, origin, noise, threads);
+  else
+    complete_normals(cloud, parameters, origin.check_normals ? origin : CloudOrigin{}, noise, threads);
+  return noise;
+}
+
+}  // namespace
+
+ScanResult process(Cloud&& cloud, const Parameters& parameters, const CloudOrigin& origin,
+                   const SeenThrough& seen_through, int threads) {
+  parameters.check();
+  ScanResult result;
+  const Indices finite = finite_indices(cloud);
+  result.raw = finite.size() == cloud.size() ? std::move(cloud) : select(cloud, finite);
+  if (result.raw.views.empty()) result.raw.views.assign(result.raw.size(), -1);
+  Timing& t = result.seconds;
+
+  // Clean: statistical outlier removal.
+  timed(t.filter,
+        [&] { result.cloud = select(result.raw, remove_statistical_outliers(result.raw, parameters.sor, threads)); });
+
+  // Split: region growing, DBSCAN on the residual, bodies that compete for the points.
+  const double noise = timed(t.normals, [&] { return provide_normals(result.cloud, parameters, origin, threads); });
+  SplitParameters fitted = parameters.split;
+  fitted.bodies.fit.noise = std::max(fitted.bodies.fit.noise, 4.0 * noise);
+  const Split found = timed(t.segment, [&] { return split(result.cloud, fitted, seen_through, threads); });
+
+  // Locate: centroids, pose frames, fitted bodies.
+  timed(t.locate,
+        [&] { result.fruits = locate(result.cloud, found, origin.cluster_origin, parameters, result.labels); });
+  t.total = t.filter + t.normals + t.segment + t.locate;
+  return result;
+}
+
+ScanResult process(const Cloud& cloud, const Parameters& parameters, const CloudOrigin& origin,
+                   const SeenThrough& seen_through, int threads) {
+  return process(select(cloud, finite_indices(cloud)), parameters, origin, seen_through, threads);
+}
+
+Cloud thinned(const Cloud& cloud, const Parameters& parameters) {
+  Cloud finite = select(cloud, finite_indices(cloud));
+  const double separation = parameters.surfels.separation;
+  const KdTree<float> search(finite);
+  if (!(estimate_spacing(finite, search) < 0.9 * separation)) return finite;
+  Cloud out = average_in_voxels(finite, separation);
+  if (finite.views.empty()) return out;
+  Neighbors<float> nearest;
+  for (const auto& p : out.points) {
+    if ((out.views.size() & 0xFFF) == 0) throw_if_cancelled();
+    search.knn(p, 1, nearest);
+    out.views.push_back(finite.views[static_cast<std::size_t>(nearest.front().index)]);
+  }
+  return out;
+}
+
+}  // namespace agrisee

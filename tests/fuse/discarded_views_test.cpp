@@ -1,0 +1,152 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Fused views that contradict one another: which of them are kept.
+#include <agrisee/core/cancellation.hpp>
+
+#include "catch.hpp"
+#include "fuse/three_fruit.hpp"
+
+using namespace test;
+
+TEST_CASE("of two views that contradict one another the later is discarded") {
+  FusedViews map(kVolume, fine(), 1);
+  see(map, 0);
+  const Cloud before = map.all();
+  const Pose reported = off_by(place(1), kNearer);
+  const Observation seen = map.look(frame_from(place(1)), reported);
+  CHECK_FALSE(seen.consistent);
+  CHECK_FALSE(seen.surface.points.empty());
+  const Change change = map.take(seen, reported);
+  CHECK(change.points_in == seen.surface.points_in);
+  CHECK(change.points_in > 1000);
+  CHECK(change.added.empty());
+  CHECK_FALSE(change.kept);
+  CHECK(discarded(map) == std::vector<bool>{false, true});
+  CHECK(map.all().points == before.points);
+  CHECK(map.cloud().points == before.points);
+  CHECK(same(map.images()[1].world_T_optical, reported));
+  CHECK(map.images()[1].depth.empty());
+  see(map, 2);
+  CHECK(discarded(map) == std::vector<bool>{false, true, false});
+}
+
+TEST_CASE("views that contradict in all they show are kept where that is allowed") {
+  FusionParameters parameters = fine();
+  parameters.free_space.max_contradiction = 1.0;
+  FusedViews map(kVolume, parameters, 1);
+  see(map, 0);
+  see(map, 0, kNearer);
+  CHECK(compare(map.images()[0], map.images()[1], parameters.free_space).contradiction() == 1.0);
+  CHECK(discarded(map) == std::vector<bool>{false, false});
+}
+
+TEST_CASE("when two views show that the first was wrong the map starts again") {
+  FusedViews map(kVolume, fine(), 1), right(kVolume, fine(), 1);
+  const Vector3d small(0.001, 0.001, -0.001);
+  see(map, 0, kNearer);
+  see(map, 1);
+  CHECK(discarded(map) == std::vector<bool>{false, true});
+  const std::size_t before = map.all().size();
+  const Change change = see(map, 2, small);
+  CHECK(discarded(map) == std::vector<bool>{true, false, false});
+  // The map is that of the two right views alone.
+  const Change first = see(right, 1), second = see(right, 2, small);
+  CHECK(map.all().points == right.all().points);
+  CHECK(map.cloud().points == right.cloud().points);
+  std::vector<int> views = right.all().views;
+  for (int& v : views) ++v;
+  CHECK(map.all().views == views);
+  std::vector<Vector3f> added = first.added;
+  added.insert(added.end(), second.added.begin(), second.added.end());
+  CHECK(change.added == added);
+  CHECK(change.points_in == second.points_in);
+  REQUIRE(change.kept);  // of the old map nothing, of what was added all
+  REQUIRE(change.kept->size() == added.size());
+  for (std::size_t i = 0; i < added.size(); ++i) REQUIRE((*change.kept)[i] == static_cast<Index>(before + i));
+  for (std::size_t v = 0; v < 2; ++v) {
+    CHECK(map.images()[v + 1].depth == right.images()[v].depth);
+    CHECK(map.images()[v + 1].points == right.images()[v].points);
+    CHECK(same(map.images()[v + 1].world_T_optical, right.images()[v].world_T_optical));
+  }
+  CHECK(distance(map.images()[2].world_T_optical, place(2)) < 0.0003);
+  CHECK(map.images()[0].depth.empty());
+  CHECK(map.images()[0].points.empty());
+  CHECK(same(map.images()[0].world_T_optical, off_by(place(0), kNearer)));
+  see(map, 3);
+  see(map, 4, kNearer);
+  CHECK(discarded(map) == std::vector<bool>{true, false, false, false, true});
+}
+
+TEST_CASE("the map starts again only when more views agree than it is made of") {
+  FusedViews map(kVolume, fine(), 1);
+  see(map, 0);
+  see(map, 1, kNearer);
+  see(map, 2);
+  see(map, 3, kNearer);  // two against two
+  CHECK(discarded(map) == std::vector<bool>{false, true, false, true});
+  const Change change = see(map, 4, kNearer);  // three against two
+  CHECK(discarded(map) == std::vector<bool>{true, false, true, false, false});
+  REQUIRE(change.kept);
+  CHECK(map.all().size() == change.added.size());
+  CHECK(map.all().views.front() == 1);
+  CHECK(map.all().views.back() == 4);
+  for (const std::size_t v : {1, 3, 4}) CHECK_FALSE(map.images()[v].depth.empty());
+  for (const std::size_t v : {0, 2}) CHECK(map.images()[v].depth.empty());
+  // What the first map was made of does not come back, but new views can overthrow this one, too.
+  see(map, 0);
+  see(map, 1);
+  see(map, 2);
+  CHECK(discarded(map) == std::vector<bool>{true, false, true, false, false, true, true, true});
+  see(map, 3);
+  CHECK(discarded(map) == std::vector<bool>{true, true, true, true, true, false, false, false, false});
+}
+
+TEST_CASE("views that saw nothing and views that were skipped have no say") {
+  FusedViews map(kVolume, fine(), 1);
+  const Change nothing = see_spheres(map, {});
+  CHECK(nothing.points_in == 0);
+  CHECK(nothing.added.empty());
+  CHECK_FALSE(map.discarded(0));
+  map.skip(frame_from(place(0)), place(0));
+  see(map, 1, kNearer);
+  see(map, 2);  // one against one
+  CHECK(discarded(map) == std::vector<bool>{false, true, false, true});
+  see(map, 3);  // two against one
+  CHECK(discarded(map) == std::vector<bool>{false, true, true, false, false});
+}
+
+TEST_CASE("views that share no surface do not agree") {
+  const Sphere left{{-0.1, 0.55, 0.2}, 0.03}, right{{0.1, 0.55, 0.2}, 0.03};
+  const Vector3d error(0, -0.05, 0);
+  FusedViews map(kVolume, fine(), 1);
+  const auto see_closely = [&](const Sphere& s, double from_side) {
+    const Vector3d from = s.center + Vector3d(from_side, -0.25, 0);
+    const Pose pose = look_along(from, s.center - from);
+    const Observation seen = map.look(frame_from(pose, {left, right}, deg(20), deg(15)), off_by(pose, error));
+    CHECK_FALSE(seen.consistent);
+    CHECK(seen.surface.points.size() > 200);
+    return map.take(seen, off_by(pose, error));
+  };
+  map.take(map.look(frame_from(place(0), {left, right}, deg(70), deg(55)), place(0)), place(0));
+  CHECK(near(map.all(), left) > 50);
+  CHECK(near(map.all(), right) > 50);
+  see_closely(left, 0.0);
+  see_closely(right, 0.0);
+  CHECK(discarded(map) == std::vector<bool>{false, true, true});
+  // One that shares enough with the first of them.
+  see_closely(left, 0.02);
+  CHECK(discarded(map) == std::vector<bool>{true, false, true, false});
+}
+
+TEST_CASE("to take a view in cannot be cancelled, to look can") {
+  FusedViews map(kVolume, fine(), 1);
+  see(map, 0, kNearer);
+  see(map, 1);
+  Observation seen = map.look(frame_from(place(2)), place(2));
+  const Cancellation stop;
+  stop.request();
+  const CancellationScope scope(stop);
+  CHECK_THROWS_AS(map.look(frame_from(place(2)), place(2)), Cancelled);
+  map.take(std::move(seen), place(2));  // the map starts again, and registers what it starts with
+  CHECK(discarded(map) == std::vector<bool>{true, false, false});
+  CHECK(map.all().size() > 100);
+}

@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The reach of a workcell's UR3 is that of arm::reach with the workcell's mount and the sensor's range.
+#include <agrisee/arm/reachability.hpp>
+#include <agrisee/plan/arm_reach.hpp>
+
+#include "plan/plan_cases.hpp"
+
+using namespace cases;
+
+namespace {
+
+const Vector3d kTruss(0.015, 0.545, 0.21);
+
+/// A cell whose base, hand-eye transform, spaces and range all matter.
+Workcell cell() {
+  Workcell w;
+  w.world_T_base = pose_from_xyz_rpy({0.02, -0.01, 0.03}, {0.0, 0.0, 0.2});
+  w.tool0_T_optical = pose_from_xyz_rpy({0.01, 0.02, 0.05}, {0.0, 0.0, 0.3});
+  w.keep_out = {{"plant", Box{{0, 0.85, 0.3}, {1.2, 0.5, 1.6}}}};
+  w.sensor.range_min = 0.33;
+  w.sensor.range_max = 0.5;
+  return w;
+}
+
+/// A request from the right (positive azimuths) and above (positive elevations).
+ViewRequest request(double azimuth_deg, double elevation_deg, double distance, double nearest, double farthest) {
+  const double az = deg(azimuth_deg), el = deg(elevation_deg);
+  ViewRequest r;
+  r.target = kTruss;
+  r.direction = {-std::sin(az) * std::cos(el), std::cos(az) * std::cos(el), -std::sin(el)};
+  r.distance = distance;
+  r.distance_min = nearest;
+  r.distance_max = farthest;
+  return r;
+}
+
+/// Whether the cell's reach answers a request as arm::reach does for these distances. @return whether there is a view
+bool answers(const Workcell& w, const ViewRequest& r, double distance, double nearest, double farthest) {
+  arm::ReachParameters p;
+  p.distance = distance;
+  p.distance_min = nearest;
+  p.distance_max = farthest;
+  const auto view = reach_of(w)(r, w.start);
+  const auto expected = arm::reach(mount_of(w), w.start, r.target, r.direction, p);
+  REQUIRE(view.has_value() == expected.has_value());
+  if (!view) return false;
+  CHECK(view->world_T_optical.matrix() == expected->world_T_optical.matrix());
+  CHECK(view->target == r.target);
+  CHECK(view->joints == expected->joints);
+  CHECK(view->move_time == expected->move_time);
+  CHECK(view->move_time > 0.0);
+  CHECK(view->gain == 0.0);
+  return true;
+}
+
+}  // namespace
+
+TEST_CASE("arm reach: the mount is the workcell's, its limits and housing are the defaults") {
+  const Workcell w = cell();
+  const arm::Mount mount = mount_of(w), plain;
+  CHECK(mount.world_T_base.matrix() == w.world_T_base.matrix());
+  CHECK(mount.tool0_T_optical.matrix() == w.tool0_T_optical.matrix());
+  REQUIRE(mount.keep_out.size() == 1);
+  CHECK(mount.keep_out[0].name == "plant");
+  CHECK(mount.limits.min == plain.limits.min);
+  CHECK(mount.limits.max == plain.limits.max);
+  CHECK(mount.sensor.radius == plain.sensor.radius);
+}
+
+TEST_CASE("arm reach: a view is what the arm's own search finds") {
+  const Workcell w = cell();
+  int found = 0;
+  for (const double azimuth : {-40.0, -20.0, 0.0, 20.0, 40.0})
+    for (const double elevation : {-10.0, 10.0, 30.0})
+      found += answers(w, request(azimuth, elevation, 0.38, 0.35, 0.45), 0.38, 0.35, 0.45);
+  CHECK(found > 5);
+  CHECK(found < 15);
+}
+
+TEST_CASE("arm reach: distances outside the sensor's range are not offered") {
+  const Workcell w = cell();
+  CHECK(answers(w, request(30, 10, 0.40, 0.20, 0.90), 0.40, 0.33, 0.50));
+  CHECK(answers(w, request(30, 10, 0.25, 0.20, 0.40), 0.33, 0.33, 0.40));  // the nearest that the sensor measures
+  CHECK(answers(w, request(30, 10, 0.80, 0.40, 0.90), 0.50, 0.40, 0.50));  // the farthest
+  CHECK(answers(w, request(30, 10, 0.33, 0.20, 0.33), 0.33, 0.33, 0.33));  // one distance is enough
+}
+
+TEST_CASE("arm reach: a band of distances that the sensor does not measure has no view") {
+  const Reach reach = reach_of(cell());
+  const Joints start = cell().start;
+  CHECK_FALSE(reach(request(30, 10, 0.25, 0.20, 0.32), start));
+  CHECK_FALSE(reach(request(30, 10, 0.60, 0.51, 0.70), start));
+  CHECK(reach(request(30, 10, 0.40, 0.35, 0.45), start));
+}
+
+TEST_CASE("arm reach: what cannot be reached has no view, and an invalid mount is refused") {
+  Workcell w = cell();
+  ViewRequest far = request(30, 10, 0.38, 0.35, 0.45);
+  far.target = {5, 5, 5};
+  CHECK_FALSE(reach_of(w)(far, w.start));
+  w.tool0_T_optical.linear() *= 2.0;
+  CHECK_THROWS_AS(reach_of(w), ParameterError);
+}

@@ -1,0 +1,245 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// SEE++ behind the planners' interface takes the views that see::Explorer proposes, or the nearest that can be reached.
+#include <agrisee/plan/see_planner.hpp>
+
+#include "plan/plan_cases.hpp"
+
+using namespace cases;
+
+namespace {
+
+const Vector3d kFruit(0.0, 0.5, 0.2), kSensor(0.0, 0.1, 0.2), kRobot(0.0, 0.0, 0.0);
+const Aabb kVolume = box(kFruit, 0.1);
+
+see::Parameters parameters() {
+  see::Parameters p;
+  p.radius = 0.02;
+  p.max_updates = 10;
+  p.view_distance = 0.4;
+  return p;
+}
+
+ViewRequest band() {
+  ViewRequest r;
+  r.distance = 0.4;
+  r.distance_min = 0.31;
+  r.distance_max = 0.47;
+  return r;
+}
+
+double angle(const Vector3d& a, const Vector3d& b) { return std::atan2(a.cross(b).norm(), a.dot(b)); }
+
+/// A planner, and an explorer that is told the same and whose proposals are known.
+struct Twins {
+  SeePlanner planner{kVolume, kRobot, parameters(), band(), 1};
+  see::Explorer explorer{parameters()};
+  Scan scan;
+  Vector3d sensor = kSensor;
+
+  /// A view from `from` (m) that adds what it sees of the fruit, if that is not hidden from it by a cloth. If
+  /// `filtered`, the 100 highest points are then removed.
+  void observe(const Vector3d& from, bool cloth = false, bool filtered = false) {
+    sensor = from;
+    const Vector3d side = (from - kFruit).normalized();
+    Cloud seen;
+    test::add_sphere(seen, {kFruit, 0.035}, 0.0035, [&](const Vector3d& d) { return !cloth && d.dot(side) > 0.35; });
+    scan.added = seen.points;
+    scan.cloud.points.insert(scan.cloud.points.end(), seen.points.begin(), seen.points.end());
+    scan.views.emplace_back();
+    scan.views.back().world_T_optical = look_along(from, kFruit - from);
+    scan.kept.reset();
+    if (filtered) scan.kept.emplace();
+    for (std::size_t i = 100; filtered && i < seen.size(); ++i) scan.kept->push_back(static_cast<Index>(i));
+    planner.observe(scan.progress());
+    explorer.observe(scan.added, from);
+    if (scan.kept) explorer.keep(*scan.kept);
+  }
+  std::vector<see::ViewProposal> proposals() const { return see::Explorer(explorer).next_views(sensor); }
+  std::optional<ReachableView> next(const Reach& reach) { return planner.next(scan.progress(), Joints::Zero(), reach); }
+};
+
+/// Whether a view is what a proposal asks for.
+void check_taken(const std::optional<ReachableView>& view, const see::ViewProposal& p) {
+  REQUIRE(view);
+  CHECK((view->world_T_optical.translation() - p.position).norm() < 1e-12);
+  CHECK((view->world_T_optical.linear().col(2) - p.direction).norm() < 1e-12);
+  CHECK(view->gain == p.visible);
+}
+
+bool nowhere(const ViewRequest&) { return false; }
+
+}  // namespace
+
+TEST_CASE("see planner: while nothing is seen, four views near the front are tried") {
+  SeePlanner planner(kVolume, kRobot, parameters(), band(), 1);
+  Scan scan;
+  CHECK(planner.stop_reason() == StopReason::not_stopped);
+  int refused = 0;
+  for (int taken = 0; taken < 4; ++taken) {
+    for (int again = 0; again < 2; ++again) {
+      const auto view = planner.next(scan.progress(), Joints::Zero(), fly);
+      const auto expected = first_view(kVolume, kRobot, Joints::Zero(), fly, band(), 12 * taken + refused);
+      REQUIRE(view);
+      CHECK(view->world_T_optical.matrix() == expected->world_T_optical.matrix());
+      if (taken == 0 && again == 0) CHECK((view->world_T_optical.linear().col(2) - Vector3d::UnitY()).norm() < 1e-12);
+      if (again == 0) planner.refused(), ++refused;
+    }
+    scan.views.emplace_back();
+    planner.observe(scan.progress());
+  }
+  CHECK_FALSE(planner.next(scan.progress(), Joints::Zero(), fly));
+  CHECK(planner.stop_reason() == StopReason::nothing_seen);
+}
+
+TEST_CASE("see planner: without a first view that can be reached the scan ends") {
+  SeePlanner planner(kVolume, kRobot, parameters(), band(), 1);
+  Flight flight;
+  flight.passes = nowhere;
+  CHECK_FALSE(planner.next(Scan().progress(), Joints::Zero(), flight.reach()));
+  CHECK(flight.asked.size() == 601);
+  CHECK(planner.stop_reason() == StopReason::no_reachable_view);
+}
+
+TEST_CASE("see planner: the best proposal is taken, and what becomes of it is the explorer's business") {
+  Twins twins;
+  twins.observe(kSensor);
+  for (int i = 0; i < 4; ++i) {
+    const auto proposals = twins.proposals();
+    REQUIRE(proposals.size() > 1);
+    Flight flight;
+    const auto view = twins.next(flight.reach());
+    check_taken(view, proposals[0]);
+    REQUIRE(flight.asked.size() == 1);
+    CHECK((flight.asked[0].target - proposals[0].position - 0.4 * proposals[0].direction).norm() < 1e-12);
+    CHECK(flight.asked[0].distance == 0.4);
+    CHECK(flight.asked[0].distance_min == 0.31);
+    CHECK(flight.asked[0].distance_max == 0.47);
+    twins.explorer.next_views(twins.sensor);
+    twins.explorer.take(proposals[0]);
+    // The second view shows nothing, so its frontier is given up; the third point of view is not where it should be.
+    twins.observe(i == 2 ? Vector3d(0.3, 0.3, 0.3) : proposals[0].position, i == 1);
+    if (i == 1) CHECK_FALSE(twins.explorer.given_up().empty());
+    CHECK((twins.proposals().at(0).position - proposals[0].position).norm() > 1e-3);
+  }
+}
+
+TEST_CASE("see planner: points that a filter removed are no longer there") {
+  Twins twins;
+  twins.observe(kSensor, false, true);
+  CHECK(twins.explorer.map().size() == twins.scan.added.size() - 100);
+  const auto proposal = twins.proposals().at(0);
+  check_taken(twins.next(fly), proposal);
+  Twins unfiltered;
+  unfiltered.observe(kSensor);
+  CHECK((unfiltered.proposals().at(0).position - proposal.position).norm() > 1e-3);
+}
+
+TEST_CASE("see planner: a proposal out of reach is turned in steps of 9 degrees, at most by 45, to the shortest move") {
+  const double limit = GENERATE(0.1, 10.0, 20.0, 30.0, 40.0);
+  Twins twins;
+  twins.observe(kSensor);
+  const see::ViewProposal p = twins.proposals().at(0);
+  Flight flight;
+  flight.passes = [&](const ViewRequest& r) { return angle(r.direction, p.direction) > deg(limit); };
+  const Vector3d preferred = Vector3d(1, 2, 3).normalized();
+  const Reach reach = [&](const ViewRequest& r, const Joints& q) {
+    auto view = flight.reach()(r, q);
+    if (view) view->move_time = angle(r.direction, preferred);
+    return view;
+  };
+  const auto view = twins.next(reach);
+  REQUIRE(view);
+  const int steps = static_cast<int>(limit / 9.0) + 1;
+  REQUIRE(flight.asked.size() == static_cast<std::size_t>(1 + 8 * steps));
+  std::vector<Vector3d> around;
+  for (std::size_t i = 1; i < flight.asked.size(); ++i) {
+    const ViewRequest& r = flight.asked[i];
+    CHECK((r.target - p.position - 0.4 * p.direction).norm() < 1e-12);
+    CHECK(r.direction.norm() == Approx(1.0));
+    const double turn = deg(9.0 * static_cast<double>((i - 1) / 8 + 1));
+    CHECK(angle(r.direction, p.direction) == Approx(turn));
+    if ((i - 1) % 8 > 0)  // evenly around: a chord of 45 degrees on the circle
+      CHECK((r.direction - flight.asked[i - 1].direction).norm() == Approx(2.0 * std::sin(turn) * std::sin(deg(22.5))));
+    if ((i - 1) % 8 > 1) CHECK((r.direction - flight.asked[i - 2].direction).norm() > 1.2 * std::sin(turn));
+    if (angle(r.direction, p.direction) > deg(limit)) around.push_back(r.direction);
+  }
+  REQUIRE(around.size() == 8);
+  const auto best = std::min_element(around.begin(), around.end(), [&](const Vector3d& a, const Vector3d& b) {
+    return angle(a, preferred) < angle(b, preferred);
+  });
+  CHECK((view->world_T_optical.linear().col(2) - *best).norm() < 1e-12);
+  CHECK((view->target - p.position - 0.4 * p.direction).norm() < 1e-12);
+  CHECK(view->gain == p.visible);
+}
+
+TEST_CASE("see planner: of turned views with equal moves the first is taken") {
+  Twins twins;
+  twins.observe(kSensor);
+  Flight flight;
+  flight.passes = [&](const ViewRequest&) { return flight.asked.size() > 1; };
+  const auto view = twins.next(flight.reach());
+  REQUIRE(view);
+  REQUIRE(flight.asked.size() == 9);
+  CHECK((view->world_T_optical.linear().col(2) - flight.asked[1].direction).norm() < 1e-12);
+}
+
+TEST_CASE("see planner: a proposal that cannot even be turned is refused, and the next is tried") {
+  Twins twins;
+  twins.observe(kSensor);
+  const double height = kFruit.z() + GENERATE(-0.02, 0.0, 0.02);
+  std::size_t tried = 0;
+  const auto expected = twins.explorer.next_view(twins.sensor, [&](const see::ViewProposal& p) {
+    ++tried;
+    return (p.position + 0.4 * p.direction).z() > height;
+  });
+  REQUIRE(expected);
+  Flight flight;
+  flight.passes = [&](const ViewRequest& r) { return r.target.z() > height; };
+  check_taken(twins.next(flight.reach()), *expected);
+  CHECK(flight.asked.size() == 41 * (tried - 1) + 1);
+}
+
+TEST_CASE("see planner: when everything is out of reach, all proposals are refused and the reason says so") {
+  Twins twins;
+  twins.observe(kSensor);
+  std::size_t tried = 0;
+  CHECK_FALSE(twins.explorer.next_view(twins.sensor, [&](const see::ViewProposal&) { return ++tried == 0; }));
+  Flight flight;
+  flight.passes = nowhere;
+  CHECK_FALSE(twins.next(flight.reach()));
+  CHECK(flight.asked.size() == 41 * tried);
+  CHECK(twins.planner.stop_reason() == StopReason::no_reachable_view);
+}
+
+TEST_CASE("see planner: a refused view is not returned again") {
+  Twins twins;
+  twins.observe(kSensor);
+  for (int i = 0; i < 6; ++i) {
+    const auto proposals = twins.explorer.next_views(twins.sensor);
+    const auto view = twins.next(fly);
+    check_taken(view, proposals.at(0));
+    twins.planner.refused();
+    twins.explorer.take(proposals[0]);
+    twins.explorer.refuse(proposals[0]);
+    const auto other = twins.proposals().at(0);
+    CHECK((other.position - proposals[0].position).norm() + (other.direction - proposals[0].direction).norm() > 1e-3);
+  }
+}
+
+TEST_CASE("see planner: a cancelled call asks for one proposal at most and leaves the others as they were") {
+  Twins twins;
+  twins.observe(kSensor);
+  const auto proposals = twins.proposals();
+  Flight flight;
+  flight.passes = nowhere;
+  for (const int n : {0, 3, 41 + 3, 3 * 41 + 1}) {
+    CancelledAt cancelled;
+    REQUIRE(cancelled.next(twins.planner, twins.scan.progress(), Joints::Zero(), flight.reach(), n));
+    CHECK(cancelled.asked == (n + 40) / 41 * 41);
+  }
+  check_taken(twins.next(fly), proposals.at(0));
+  twins.planner.refused();
+  twins.explorer.next_views(twins.sensor);
+  twins.explorer.refuse(proposals[0]);
+  check_taken(twins.next(fly), twins.proposals().at(0));
+}
