@@ -71,7 +71,7 @@ Normals estimated_normals(const Cloud& cloud, const Parameters& parameters, cons
   }
   for (std::size_t i = 0; i < cloud.size(); ++i)
     if (const auto sensor = seen_from(cloud, i, origin))
-      if (estimated[i].cast<double>().dot(*sensor - cloud.points[i].cast<double>()) < 0.0) estimated[i] = -estimated[i];
+      estimated[i] = orient_towards(estimated[i], *sensor - cloud.points[i].cast<double>());
   return estimated;
 }
 
@@ -91,8 +91,7 @@ Indices keep_given_normals(Cloud& cloud, const CloudOrigin& origin, double beyon
     known.push_back(static_cast<Index>(i));
     const auto sensor = seen_from(cloud, i, origin);
     if (!sensor) continue;
-    const Eigen::Vector3d sight = *sensor - cloud.points[i].cast<double>();
-    if (n.cast<double>().dot(sight) < away * sight.norm()) n = -n;
+    n = orient_towards(n, *sensor - cloud.points[i].cast<double>(), away);
   }
   return known;
 }

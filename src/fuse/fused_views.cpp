@@ -170,7 +170,8 @@ void FusedViews::lay_on_map(sensor::SurfaceImage& image) const {
     source.normals.push_back(image.normals[c]);
   }
   const Cloud target = surfels_.cloud();
-  const IcpResult icp = register_cloud(source, source.normals, target, target.normals, parameters_.icp);
+  const IcpResult icp =
+      register_cloud(source, source.normals, target, target.normals, parameters_.icp, Pose::Identity(), threads_);
   if (!icp.accepted) return;
   const Eigen::Isometry3f correction = icp.target_T_source.cast<float>();
   for (std::size_t c = 0; c < image.points.size(); ++c) {

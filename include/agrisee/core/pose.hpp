@@ -10,8 +10,9 @@
 
 namespace agrisee {
 
-/// A rigid transform in double precision.
-using Pose = Eigen::Isometry3d;
+/// A rigid transform in double precision. It is stored without alignment, so that programs and libraries compiled for
+/// different vector instructions (-march) agree on its layout. It converts from and to Eigen::Isometry3d.
+using Pose = Eigen::Transform<double, 3, Eigen::Isometry, Eigen::DontAlign>;
 
 /// Pose from a translation (m) and roll, pitch, yaw (rad) as in URDF: rotations about the fixed axes x, y, z in turn.
 inline Pose pose_from_xyz_rpy(const Eigen::Vector3d& xyz, const Eigen::Vector3d& rpy) {
