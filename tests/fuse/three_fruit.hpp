@@ -33,8 +33,15 @@ inline sensor::DepthFrame frame_from(const Pose& pose, const std::vector<Sphere>
 inline Pose place(int i) {
   const std::vector<Vector3d> from{
       {0.0, 0.2, 0.2}, {0.05, 0.2, 0.22}, {-0.05, 0.21, 0.2}, {0.02, 0.2, 0.26}, {0.0, 0.22, 0.15}};
-  const Vector3d position = from[static_cast<std::size_t>(i) % from.size()];
+  const Vector3d position = from[static_cast<std::size_t>(i)];
   return look_along(position, Vector3d(0.01, 0.55, 0.2) - position);
+}
+
+/// What the camera sees of the three fruit at place i.
+inline const sensor::DepthFrame& frame_at(int i) {
+  static const std::vector<sensor::DepthFrame> frames{frame_from(place(0)), frame_from(place(1)), frame_from(place(2)),
+                                                      frame_from(place(3)), frame_from(place(4))};
+  return frames[static_cast<std::size_t>(i)];
 }
 
 /// A pose as it is reported when it is `error` (m) off.
@@ -46,12 +53,13 @@ inline Pose off_by(Pose pose, const Vector3d& error) {
 /// Take in what the camera sees at place i, with the pose reported `error` (m) off.
 inline Change see(FusedViews& map, int i, const Vector3d& error = kRight) {
   const Pose reported = off_by(place(i), error);
-  return map.take(map.look(frame_from(place(i)), reported), reported);
+  return map.take(map.look(frame_at(i), reported), reported);
 }
 
-/// Take in what the camera sees of other spheres at place 0.
-inline Change see_spheres(FusedViews& map, const std::vector<Sphere>& spheres) {
-  return map.take(map.look(frame_from(place(0), spheres), place(0)), place(0));
+/// Take in what the camera sees of other spheres at place 0, with the pose reported `error` (m) off.
+inline Change see_spheres(FusedViews& map, const std::vector<Sphere>& spheres, const Vector3d& error = kRight) {
+  const Pose reported = off_by(place(0), error);
+  return map.take(map.look(frame_from(place(0), spheres), reported), reported);
 }
 
 inline std::vector<bool> discarded(const FusedViews& map) {

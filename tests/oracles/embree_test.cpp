@@ -2,8 +2,11 @@
 // Rays hit what Embree 3 says they hit: the same triangle but for ties and rays within 1e-6 of an edge, the same
 // distance to 1e-5, and the same misses.
 #include <agrisee/core/random.hpp>
+#include <agrisee/geometry/bvh.hpp>
 #include <agrisee/geometry/primitives.hpp>
 #include <agrisee/study/raycast.hpp>
+
+#include <optional>
 
 #include "catch.hpp"
 #include "support/embree_scene.hpp"
@@ -158,7 +161,7 @@ TEST_CASE("a full frame is what Embree says") {
   std::size_t i = 0;
   for (int v = 0; v < k.height; ++v)
     for (int u = 0; u < k.width; ++u, ++i) {
-      const Eigen::Vector3f d = sensor::ray_direction(k, pose, u, v);
+      const Eigen::Vector3f d = study::ray_direction(k, pose, u, v);
       std::optional<Bvh::Hit> ours;
       if (image.triangle[i] != study::kNoHit) ours = Bvh::Hit{image.range[i], image.triangle[i], 0.0f, 0.0f};
       agree(mesh, ours, embree.closest(eye, d, 0.0f, 9.0f), eye, d, tally);

@@ -3,6 +3,7 @@
 #include <agrisee/neighbors/kdtree.hpp>
 #include <agrisee/pipeline.hpp>
 #include <agrisee/plan/directions.hpp>
+#include <agrisee/process.hpp>
 
 #include "catch.hpp"
 #include "spheres.hpp"
@@ -256,14 +257,16 @@ TEST_CASE("what cannot be observed is refused and what was seen is kept") {
 TEST_CASE("an external robot's own reach replaces ours") {
   const Workcell w = cell();
   int asked = 0;
-  Pipeline pipeline(w, {}, [&](const plan::ViewRequest& request, const Joints&) -> std::optional<plan::ReachableView> {
+  PipelineOptions options;
+  options.reach = [&](const plan::ViewRequest& request, const Joints&) -> std::optional<plan::ReachableView> {
     ++asked;
     if (request.direction.y() < 0.5) return std::nullopt;
     plan::ReachableView view;
     view.target = request.target;
     view.world_T_optical = look_along(request.target - request.distance * request.direction, request.direction);
     return view;
-  });
+  };
+  Pipeline pipeline(w, {}, std::move(options));
   std::size_t taken = 0;
   while (const auto next = pipeline.next_view(Joints::Zero())) {
     CHECK(next->world_T_optical.linear().col(2).y() >= 0.5 - 1e-9);

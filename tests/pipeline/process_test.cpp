@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <agrisee/cloud/spacing.hpp>
 #include <agrisee/core/random.hpp>
+#include <agrisee/neighbors/kdtree.hpp>
 #include <agrisee/process.hpp>
-#include <agrisee/process_stages.hpp>
 
 #include "catch.hpp"
 #include "interop/same_result.hpp"
@@ -51,6 +52,13 @@ CloudOrigin from_eye(bool views) {
   return origin;
 }
 
+/// No point is an outlier.
+Parameters all_points() {
+  Parameters parameters;
+  parameters.sor.std_ratio = 1e6;
+  return parameters;
+}
+
 }  // namespace
 
 TEST_CASE("normals that face away from viewpoint or view are turned, the others kept") {
@@ -59,11 +67,9 @@ TEST_CASE("normals that face away from viewpoint or view are turned, the others 
   for (auto& n : turned.normals) n = -n;
   for (const bool views : {false, true}) {
     check_found(process(turned, {}, from_eye(views)));
-    Cloud completed = turned;
-    double noise = 1.0;
-    detail::complete_normals(completed, {}, from_eye(views), noise, 1);
-    CHECK((completed.normals == cloud.normals));
-    CHECK(noise == 0.0);
+    const ScanResult result = process(turned, all_points(), from_eye(views));
+    REQUIRE(result.cloud.size() == cloud.size());
+    CHECK((result.cloud.normals == cloud.normals));
   }
   CHECK(process(turned).fruits.empty());  // trusted as they are when nothing else is known
   CloudOrigin unchecked = from_eye(true);
@@ -81,9 +87,8 @@ TEST_CASE("normals that are missing are estimated on their neighbours' side") {
   none.normals.assign(none.size(), Eigen::Vector3f::Zero());
   for (const CloudOrigin& origin : {CloudOrigin{}, from_eye(false), from_eye(true)})
     for (const Cloud* c : {&some, &none}) {
-      Cloud completed = *c;
-      double noise = 0.0;
-      detail::complete_normals(completed, {}, origin, noise, 1);
+      const Cloud completed = process(*c, all_points(), origin).cloud;
+      REQUIRE(completed.size() == cloud.size());
       std::size_t right = 0;
       for (std::size_t i = 0; i < cloud.size(); ++i) right += completed.normals[i].dot(cloud.normals[i]) > 0.8f;
       CHECK(static_cast<double>(right) > 0.98 * static_cast<double>(cloud.size()));

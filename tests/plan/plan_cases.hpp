@@ -89,25 +89,25 @@ inline Aabb box(const Vector3d& center, double half) {
 }
 
 /// Unknown voxels of 1/64 m in a row along x; voxel i is centered at ((i + 0.5) / 64, 0, 0) and stands for 2^-10 m2 of
-/// fruit. One point of the cloud, far behind them, is no fruit. All numbers are exact.
+/// fruit. The points of the cloud are no fruit. All numbers are exact.
 struct Row {
-  static constexpr double kArea = 0x1p-10;  // m2 of a voxel
+  static constexpr double kArea = 0x1p-10;  // of fruit that a voxel stands for (m2)
   Aabb volume;
   GainPlannerParameters parameters;
   Scan scan;
 
-  explicit Row(int voxels) {
+  explicit Row(int voxels, const Vector3d& point = {0.0, 1.0, 0.0}) {
     volume.min = {0.0, -1.0 / 128, -1.0 / 128};
     volume.max = {voxels / 64.0, 1.0 / 128, 1.0 / 128};
     parameters.expected.voxel = 1.0 / 64;
     parameters.expected.neighborhood = 100.0;
     parameters.expected.unknown_weight = 4.0;
     parameters.dwell = 1.0;
-    scan.add_point({0.0, 1.0, 0.0});
+    scan.add_point(point);
   }
 
-  /// A view along +y that shows `count` voxels from the one with the index `first` on, for a camera of focal length
-  /// 384, `seconds` away.
+  /// A view along +y that shows `count` voxels from the one with the index `first` on, if the focal length is 384. The
+  /// arm needs `seconds` from joints of 0; without them it does not report its joints.
   static ReachableView view(int first, int count, std::optional<double> seconds = std::nullopt) {
     ReachableView out;
     out.world_T_optical = look_along({(first + 0.5 * count) / 64.0, -count / 16.0, 0.0}, Vector3d::UnitY());
@@ -115,31 +115,33 @@ struct Row {
     return out;
   }
 
-  std::unique_ptr<GainPlanner> planner() const {
-    auto out = std::make_unique<GainPlanner>(camera(384.0), volume, Vector3d::Zero(), SplitParameters(),
+  /// A planner that has observed the scan.
+  std::unique_ptr<GainPlanner> planner(double focal = 384.0) const {
+    auto out = std::make_unique<GainPlanner>(camera(focal), volume, Vector3d::Zero(), SplitParameters(),
                                              fuse::FreeSpaceParameters(), parameters);
     out->observe(scan.progress());
     return out;
   }
 };
 
-/// A robot that knows one view for each of the planner's candidates, in their order; other requests are out of reach.
+/// A robot that knows one view for each of the planner's candidates, in their order, and remembers what it was asked
+/// for. Other requests get `other`.
 struct Script {
   std::vector<std::optional<ReachableView>> views;
-  std::vector<int> asked;  // the candidates that were asked for; -1 = another request
+  std::optional<ReachableView> other;
+  std::vector<int> asked;             // the candidates that were asked for; -1 = another request
+  std::vector<ViewRequest> requests;  // that were made
 
-  int candidate_of(const ViewRequest& r) const {
-    const auto directions = spread_directions(static_cast<int>(views.size()));
-    const auto found = std::find(directions.begin(), directions.end(), r.direction);
-    return found == directions.end() ? -1 : static_cast<int>(found - directions.begin());
-  }
   Reach reach() {
-    return [this](const ViewRequest& r, const Joints&) -> std::optional<ReachableView> {
-      asked.push_back(candidate_of(r));
-      return asked.back() < 0 ? std::nullopt : views[static_cast<std::size_t>(asked.back())];
+    return [this, directions = spread_directions(static_cast<int>(views.size()))](
+               const ViewRequest& r, const Joints&) -> std::optional<ReachableView> {
+      const auto found = std::find(directions.begin(), directions.end(), r.direction);
+      asked.push_back(found == directions.end() ? -1 : static_cast<int>(found - directions.begin()));
+      requests.push_back(r);
+      return asked.back() < 0 ? other : views[static_cast<std::size_t>(asked.back())];
     };
   }
-  /// The view that `answer` is, -1 if it is none of them.
+  /// Which of the views an answer is; -1 if it is none of them.
   int which(const std::optional<ReachableView>& answer) const {
     for (std::size_t i = 0; i < views.size(); ++i)
       if (answer && views[i] && answer->world_T_optical.matrix() == views[i]->world_T_optical.matrix())

@@ -125,7 +125,9 @@ std::vector<double> scan(const std::string& planner, std::uint64_t seed, const C
   Parameters parameters;
   parameters.planner = planner;
   parameters.max_views = 5;
-  Pipeline pipeline(w, parameters, {}, nullptr, seed);
+  PipelineOptions options;
+  options.seed = seed;
+  Pipeline pipeline(w, parameters, std::move(options));
   Joints joints = w.start;
   for (int i = 0; i < 5; ++i) {
     std::optional<plan::ReachableView> view;

@@ -68,7 +68,9 @@ TEST_CASE("planners: all that is proposed stands up to an independent check") {
     Parameters parameters;
     parameters.planner = planner;
     parameters.max_views = 6;
-    Pipeline pipeline(cell.workcell, parameters, {}, nullptr, seed);
+    PipelineOptions options;
+    options.seed = seed;
+    Pipeline pipeline(cell.workcell, parameters, std::move(options));
     Rng rng(seed, 1);
     Joints joints = cells::random_joints(rng);
     for (int step = 0; step < 8; ++step) {

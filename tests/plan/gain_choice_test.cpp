@@ -1,0 +1,350 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// How the default planner chooses among views whose gains and times are known: gain for time, refusals, and planning
+// several views ahead.
+#include <agrisee/plan/gain_planner.hpp>
+
+#include <numeric>
+
+#include "plan/plan_cases.hpp"
+
+using namespace cases;
+
+namespace {
+
+/// A planner of a row of voxels whose candidates are the views of a script.
+struct Game {
+  Row row;
+  Script script;
+  std::unique_ptr<GainPlanner> planner;
+
+  Game(int voxels, std::vector<std::optional<ReachableView>> views) : row(voxels) {
+    script.views = std::move(views);
+    row.parameters.candidates = static_cast<int>(script.views.size());
+    row.parameters.lookahead = 1;
+  }
+  /// The view that the planner wants next, from joints `seconds` away from 0: its number in the script.
+  int next(double seconds = 0.0) {
+    if (!planner) planner = row.planner();
+    const auto view = planner->next(row.scan.progress(), at_time(seconds), script.reach());
+    gain = view ? view->gain / Row::kArea : 0.0;
+    return script.which(view);
+  }
+  /// The candidates that the planner compared, by their gains in voxels.
+  std::vector<int> ranking() const {
+    std::vector<int> out;
+    for (const ReachableView& v : planner->candidates()) out.push_back(static_cast<int>(v.gain / Row::kArea));
+    return out;
+  }
+  double gain = 0.0;  // of the last view (voxels)
+};
+
+using Ranking = std::vector<int>;
+
+}  // namespace
+
+TEST_CASE("gain choice: without moves the view that shows the most wins") {
+  Game game(12, {Row::view(0, 4), Row::view(2, 8), Row::view(5, 6)});
+  CHECK(game.next() == 1);
+  CHECK(game.gain == 8.0);
+  CHECK(game.ranking() == Ranking{8, 6, 4});
+}
+
+TEST_CASE("gain choice: gain counts for the time that dwelling and moving take") {
+  // In voxels a second: 8 / (1 + 3) = 2, 6 / (1 + 1) = 3, 4 / (1 + 0) = 4.
+  Game game(12, {Row::view(0, 8, 3.0), Row::view(0, 6, 1.0), Row::view(0, 4, 0.0)});
+  CHECK(game.next(0.0) == 2);
+  CHECK(game.ranking() == Ranking{4, 6, 8});
+  // From where the largest is: 8 / 1, 6 / 3 and 4 / 4.
+  game.planner.reset();
+  CHECK(game.next(3.0) == 0);
+  CHECK(game.ranking() == Ranking{8, 6, 4});
+  // With long dwelling, moves hardly count.
+  game.planner.reset();
+  game.row.parameters.dwell = 100.0;
+  CHECK(game.next(0.0) == 0);
+}
+
+TEST_CASE("gain choice: the time is that of all joints together, and none where joints are not known") {
+  Game game(12, {Row::view(0, 6, 0.0), Row::view(0, 3), Row::view(0, 2, 0.0)});
+  *game.script.views[0]->joints << 0.0, 3.0 * kPi, 0.0, 0.0, -4.0 * kPi, 0.0;  // 5 s: 1 voxel a second
+  CHECK(game.next() == 1);
+  CHECK(game.ranking() == Ranking{3, 2, 6});
+}
+
+TEST_CASE("gain choice: the eight best are asked for again, with six directions around each") {
+  std::vector<std::optional<ReachableView>> views;
+  for (int i = 0; i < 10; ++i) views.push_back(Row::view(0, i + 1));
+  Game game(10, views);
+  CHECK(game.next() == 9);
+  std::vector<int> expected(10);
+  std::iota(expected.begin(), expected.end(), 0);
+  for (int best = 9; best >= 2; --best) {
+    expected.push_back(best);
+    expected.insert(expected.end(), 6, -1);
+  }
+  expected.push_back(9);
+  REQUIRE(game.script.asked == expected);
+  // Around the candidate by half the spacing of ten directions, which stand for 4 pi / 10 each.
+  const double step = 0.5 * std::sqrt(0.4 * kPi);
+  for (std::size_t i = 10; i < 66; i += 7) {
+    const ViewRequest& middle = game.script.requests[i];
+    for (std::size_t k = 1; k <= 6; ++k) {
+      const ViewRequest &r = game.script.requests[i + k], &other = game.script.requests[i + k % 6 + 1];
+      CHECK(r.direction.norm() == Approx(1.0));
+      CHECK(r.direction.dot(middle.direction) == Approx(1.0 / std::sqrt(1.0 + step * step)));
+      CHECK(r.direction.dot(other.direction) == Approx((1.0 + 0.5 * step * step) / (1.0 + step * step)));
+      CHECK(r.target == middle.target);
+      CHECK(r.distance == middle.distance);
+    }
+  }
+}
+
+TEST_CASE("gain choice: a better view beside a candidate is taken, and the candidate once that is refused") {
+  Game game(12, {Row::view(0, 4)});
+  game.script.other = Row::view(0, 8, 0.5);
+  CHECK(game.next() == -1);
+  CHECK(game.gain == 8.0);
+  CHECK(game.ranking() == Ranking{8, 8, 8, 8, 8, 8, 4});
+  for (int i = 0; i < 6; ++i) {
+    CHECK(game.next() == -1);
+    game.planner->refused();
+  }
+  CHECK(game.next() == 0);
+  game.planner->refused();
+  CHECK(game.next() == -1);
+  CHECK(game.gain == 0.0);
+  CHECK(game.planner->stop_reason() == StopReason::no_reachable_view);
+}
+
+TEST_CASE("gain choice: the best are rated anew as the arm reaches them from its present joints") {
+  Game game(12, {Row::view(0, 8, 7.0), Row::view(0, 6, 0.0)});
+  CHECK(game.next() == 1);
+  game.planner->observe(game.row.scan.progress());
+  game.script.views[0] = Row::view(0, 8, 0.0);  // now the arm has found a better way
+  CHECK(game.next() == 0);
+  CHECK(game.ranking() == Ranking{8, 6});
+}
+
+TEST_CASE("gain choice: the chosen view is the one the arm answered last, if it answered") {
+  Game game(12, {Row::view(0, 8, 1.0), Row::view(0, 6, 1.0)});
+  game.planner = game.row.planner();
+  int asked = 0;
+  bool lost = false;
+  const Reach counting = [&](const ViewRequest& r, const Joints& q) -> std::optional<ReachableView> {
+    if (lost) return std::nullopt;
+    auto view = game.script.reach()(r, q);
+    if (view) view->move_time = ++asked;
+    return view;
+  };
+  auto view = game.planner->next(game.row.scan.progress(), at_time(0.0), counting);
+  REQUIRE(view);
+  CHECK(asked == 5);  // 2 candidates, twice, and the best once more
+  CHECK(view->move_time == 5.0);
+  CHECK(view->gain == 8 * Row::kArea);
+  CHECK(game.planner->candidates()[0].move_time == 5.0);
+  game.planner->refused();
+  lost = true;
+  view = game.planner->next(game.row.scan.progress(), at_time(0.0), counting);
+  REQUIRE(view);
+  CHECK(view->move_time == 4.0);
+  CHECK(view->gain == 6 * Row::kArea);
+}
+
+TEST_CASE("gain choice: a refused view is not returned again until the next view was taken") {
+  Game game(12, {Row::view(0, 4), Row::view(0, 8), Row::view(0, 6)});
+  for (const int expected : {1, 2, 0, -1, -1}) {
+    CHECK(game.next() == expected);
+    if (expected >= 0) game.planner->refused();
+  }
+  CHECK(game.planner->stop_reason() == StopReason::no_reachable_view);
+  CHECK(game.ranking().empty());
+  game.planner->observe(game.row.scan.progress());
+  CHECK(game.next() == 1);
+  CHECK(game.next() == 1);  // asked twice, the same answer
+  CHECK(game.ranking() == Ranking{8, 6, 4});
+}
+
+TEST_CASE("gain choice: after a refusal the others are compared from where the arm is") {
+  Game game(12, {Row::view(0, 8, 0.0), Row::view(0, 6, 0.0), Row::view(0, 4, 5.0)});
+  CHECK(game.next(0.0) == 0);
+  CHECK(game.ranking() == Ranking{8, 6, 4});
+  game.planner->refused();
+  CHECK(game.next(5.0) == 2);  // 4 / 1 against 6 / 6
+  CHECK(game.ranking() == Ranking{4, 6});
+  CHECK(game.next(0.0) == 1);
+}
+
+TEST_CASE("gain choice: with a view, others within a centimetre of its target and distance are refused") {
+  // Two of 100 000 directions that differ by less than 0.8 degrees, and one that differs by more.
+  const auto directions = spread_directions(100000);
+  const std::size_t a = 50000;
+  std::size_t b = 0, c = 0;
+  for (std::size_t i = 0; i < directions.size(); ++i) {
+    const double cosine = directions[i].dot(directions[a]);
+    if (i != a && cosine > 0.99993) b = i;
+    if (cosine < 0.99985 && cosine > 0.9998) c = i;
+  }
+  REQUIRE(b > 0);
+  REQUIRE(c > 0);
+  const auto part = [](double x) { return x - std::floor(x); };
+  const auto distance_apart = [&](double step) { return std::abs(part(double(a) * step) - part(double(b) * step)); };
+  const auto second = [&](double targets, double distances) {  // that the planner returns, with their differences (m)
+    Row row(12);
+    row.scan.add_point({targets / distance_apart(0.8566748838545029), 1.0, 0.0});
+    row.parameters.candidates = 100000;
+    row.parameters.lookahead = 1;
+    row.parameters.spread = 1.0;
+    row.parameters.distance_min = row.parameters.distance = 0.3;
+    row.parameters.distance_max = 0.3 + distances / distance_apart(0.5385972572236101);
+    const auto planner = row.planner();
+    std::array<ViewRequest, 3> requests;
+    const Reach reach = [&](const ViewRequest& r, const Joints&) -> std::optional<ReachableView> {
+      const int count = r.direction == directions[a] ? 8 : r.direction == directions[b] ? 6 : 4;
+      if (count == 4 && r.direction != directions[c]) return std::nullopt;
+      requests[static_cast<std::size_t>(8 - count) / 2] = r;
+      return Row::view(0, count);
+    };
+    CHECK(planner->next(row.scan.progress(), Joints::Zero(), reach)->gain == 8 * Row::kArea);
+    CHECK((requests[0].target - requests[1].target).norm() == Approx(targets).margin(1e-6));
+    CHECK(std::abs(requests[0].distance - requests[1].distance) == Approx(distances).margin(1e-6));
+    planner->refused();
+    return planner->next(row.scan.progress(), Joints::Zero(), reach)->gain / Row::kArea;
+  };
+  CHECK(second(0.0, 0.0) == 4.0);
+  CHECK(second(0.0099, 0.0099) == 4.0);
+  CHECK(second(0.0101, 0.0) == 6.0);
+  CHECK(second(0.0, 0.0101) == 6.0);
+}
+
+TEST_CASE("gain choice: of several views worth taking, the nearest is taken first") {
+  // From 0 s the first promises 8 / 3 voxels a second, the second, on the way to it, 4 / 2.
+  Game game(12, {Row::view(0, 8, 2.0), Row::view(8, 4, 1.0)});
+  SECTION("only one view is planned") { CHECK(game.next() == 0); }
+  SECTION("two are") {
+    game.row.parameters.lookahead = 2;
+    CHECK(game.next() == 1);
+    CHECK(game.gain == 4.0);
+    CHECK(game.ranking() == Ranking{8, 4});
+  }
+  SECTION("from the other side the first is the nearer one") {
+    game.row.parameters.lookahead = 2;
+    CHECK(game.next(3.0) == 0);
+  }
+  SECTION("what the best view shows as well is not worth another") {
+    game.row.parameters.lookahead = 2;
+    game.script.views[1] = Row::view(4, 4, 1.0);
+    CHECK(game.next() == 0);
+    game.planner.reset();
+    game.script.views[1] = Row::view(5, 4, 1.0);  // but one voxel of it
+    CHECK(game.next() == 1);
+  }
+  SECTION("nor is what promises less than the smallest gain") {
+    game.row.parameters.lookahead = 2;
+    game.script.views[1] = Row::view(5, 4, 1.0);
+    game.row.parameters.min_gain = 1.0 * Row::kArea / 1e-6;
+    CHECK(game.next() == 1);
+    game.planner.reset();
+    game.row.parameters.min_gain = 1.1 * Row::kArea / 1e-6;
+    CHECK(game.next() == 0);
+  }
+}
+
+TEST_CASE("gain choice: the nearest is taken first only if it scores enough") {
+  // 8 / (1 + 3) = 2 and 3 / (1 + 1) = 1.5 voxels a second.
+  Game game(12, {Row::view(0, 8, 3.0), Row::view(8, 3, 1.0)});
+  game.row.parameters.lookahead = 2;
+  for (const double patience : {0.0, 0.74, 0.75, 0.76, 1.0}) {
+    game.planner.reset();
+    game.row.parameters.patience = patience;
+    CHECK(game.next() == (patience <= 0.75 ? 1 : 0));
+  }
+}
+
+TEST_CASE("gain choice: of equally long ways the one that begins with the best view is taken, of others the shorter") {
+  Game game(12, {Row::view(0, 8, 1.0), Row::view(8, 4, -1.0)});
+  game.row.parameters.lookahead = 2;
+  CHECK(game.next() == 0);
+  game.planner.reset();
+  game.script.views[1] = Row::view(8, 4, -0.9995);
+  CHECK(game.next() == 1);
+}
+
+TEST_CASE("gain choice: as many views are planned ahead as asked for") {
+  // On a line at 4, 3, 2 and 1 s; each promises less than the one behind it.
+  Game game(20, {Row::view(0, 8, 4.0), Row::view(8, 6, 3.0), Row::view(14, 4, 2.0), Row::view(18, 2, 1.0)});
+  game.row.parameters.patience = 0.0;
+  game.row.parameters.dwell = 10.0;
+  for (const int lookahead : {1, 2, 3, 4, 5}) {
+    game.planner.reset();
+    game.row.parameters.lookahead = lookahead;
+    CHECK(game.next() == std::min(lookahead, 4) - 1);
+  }
+}
+
+TEST_CASE("gain choice: the same as by trying all orders, in random games") {
+  struct Choice {
+    int first, count;
+    std::optional<double> at;
+  };
+  Rng rng(9);
+  int not_the_best = 0;
+  for (int round = 0; round < 150; ++round) {
+    std::vector<Choice> choices;
+    std::vector<std::optional<ReachableView>> views;
+    for (int i = 0; i < 8; ++i) {
+      const int count = 1 + static_cast<int>(rng.below(8));
+      choices.push_back(
+          {static_cast<int>(rng.below(static_cast<std::uint64_t>(24 - count))), count, rng.uniform(-2, 2)});
+      if (rng.below(8) == 0) choices.back().at.reset();
+      views.push_back(Row::view(choices.back().first, count, choices.back().at));
+    }
+    Game game(24, views);
+    game.row.parameters.lookahead = 1 + static_cast<int>(rng.below(5));
+    game.row.parameters.patience = rng.uniform(0.0, 0.7);
+    game.row.parameters.min_gain = 1.5 * Row::kArea / 1e-6;
+    const double now = rng.uniform(-2, 2);
+
+    // A view without joints costs no move; after it, the arm counts as where it is now.
+    const auto way = [&](double from, const Choice& to) { return to.at ? std::abs(*to.at - from) : 0.0; };
+    const auto place = [&](const Choice& c) { return c.at.value_or(now); };
+    const auto score = [&](const Choice& c) { return c.count / (1.0 + way(now, c)); };
+    std::stable_sort(choices.begin(), choices.end(),
+                     [&](const Choice& a, const Choice& b) { return score(a) > score(b); });
+    choices.erase(std::remove_if(choices.begin(), choices.end(), [](const Choice& c) { return c.count < 2; }),
+                  choices.end());
+    std::vector<Choice> ahead{choices[0]};
+    std::vector<char> shown(24, 0);
+    while (static_cast<int>(ahead.size()) < game.row.parameters.lookahead) {
+      std::fill_n(shown.begin() + ahead.back().first, ahead.back().count, 1);
+      double most = 0.0;
+      std::optional<Choice> best;
+      for (const Choice& c : choices) {
+        const auto left = std::count(shown.begin() + c.first, shown.begin() + c.first + c.count, 0);
+        const double rate = double(left) / (1.0 + way(place(ahead.back()), c));
+        if (left >= 2 && rate > most) most = rate, best = c;
+      }
+      if (!best) break;
+      ahead.push_back(*best);
+    }
+    std::vector<std::size_t> order(ahead.size());
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    double shortest = 1e9;
+    std::size_t first = 0;
+    do {
+      if (score(ahead[order[0]]) < game.row.parameters.patience * score(ahead[0])) continue;
+      double length = way(now, ahead[order[0]]);
+      for (std::size_t k = 1; k < order.size(); ++k) length += way(place(ahead[order[k - 1]]), ahead[order[k]]);
+      if (length < shortest - 1e-12) shortest = length, first = order[0];
+    } while (std::next_permutation(order.begin(), order.end()));
+    not_the_best += first > 0;
+
+    const auto view = [&] {
+      game.planner = game.row.planner();
+      return game.planner->next(game.row.scan.progress(), at_time(now), game.script.reach());
+    }();
+    INFO("round " << round);
+    REQUIRE(view);
+    CHECK(view->world_T_optical.matrix() == Row::view(ahead[first].first, ahead[first].count).world_T_optical.matrix());
+  }
+  CHECK(not_the_best > 20);
+}
