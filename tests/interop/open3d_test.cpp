@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Clouds of Open3D, in place.
+#include <agrisee/cloud/sor.hpp>
 #include <agrisee/interop/open3d.hpp>
+#include <agrisee/neighbors/kdtree.hpp>
 
 #include "interop/same_result.hpp"
 

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Clouds of PCL, in place.
+#include <agrisee/cloud/sor.hpp>
 #include <agrisee/interop/pcl.hpp>
+#include <agrisee/neighbors/kdtree.hpp>
 #include <agrisee/process.hpp>
 
 #include <pcl/impl/point_types.hpp>

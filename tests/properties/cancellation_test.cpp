@@ -7,6 +7,7 @@
 // docs/reliability.md. A loop that does not look takes longer than 200 ms here, and that is what the test is for; with
 // sanitizers, which slow everything down, a second.
 #include <agrisee/pipeline.hpp>
+#include <agrisee/process.hpp>
 
 #include <pthread.h>
 #include <thread>
