@@ -10,7 +10,7 @@
 using namespace agrisee;
 using namespace agrisee::arm;
 
-TEST_CASE("angles wrap into (-pi, pi]") {
+TEST_CASE("angles wrap into the range above -pi and up to pi") {
   CHECK(wrap(0.0) == 0.0);
   CHECK(wrap(kPi) == kPi);
   CHECK(wrap(-kPi) == kPi);

@@ -46,7 +46,7 @@ TEST_CASE("parameters read back as they were written") {
   }
 }
 
-TEST_CASE("absent keys keep their values; a preset sets them") {
+TEST_CASE("absent keys keep their values, a preset sets them") {
   CHECK(io::read_parameters(write("")).sor.mean_k == 20);
   const Parameters p = io::read_parameters(write("preset: paper\nsor: {mean_k: 5}\n"));
   CHECK(p.sor.mean_k == 5);

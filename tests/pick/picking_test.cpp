@@ -218,7 +218,7 @@ TEST_CASE("picking: a space in front forces an approach from the side") {
   CHECK(std::abs(plan[0].direction.x()) > std::abs(before.x()) + 0.1);
 }
 
-TEST_CASE("picking: a space that contains the fruit does not count, for gripper and arm; for others it does") {
+TEST_CASE("picking: a space that contains the fruit does not count, for gripper and arm, for others it does") {
   const Fruit a = fruit(1, {0.05, 0.5, 0.2});
   const std::vector<KeepOut> around{{"cluster", Cylinder{{0.0, 0.5, 0.2}, 0.15, 0.6}}};
   CHECK(same(plan_with_ur3({a}, scene(around))[0], plan_with_ur3({a}, scene())[0]));

@@ -72,7 +72,7 @@ TEST_CASE("directions: a level direction ignores heights") {
   CHECK((frontal_direction(kVolume, kRobot) - kFrontal).norm() < 1e-15);
 }
 
-TEST_CASE("directions: straight above one another, level is y; a micrometre is enough to know better") {
+TEST_CASE("directions: straight above one another, level is y, a micrometre is enough to know better") {
   CHECK(level_direction({1, 2, 3}, {1, 2, 5}) == Vector3d(0, 1, 0));
   CHECK(level_direction({0, 0, 3}, {1e-9, 0, 5}) == Vector3d(0, 1, 0));
   CHECK(level_direction({0, 0, 3}, {1e-6, 0, 5}) == Vector3d(1, 0, 0));

@@ -100,7 +100,7 @@ TEST_CASE("expected surface: from afar, from aside or from inside nothing is sho
   CHECK(model.gain(look_along(kFruit, {0, 0, 1})) == 0.0);  // all faces away
 }
 
-TEST_CASE("expected surface: half of a sphere is covered, which brings no gain; the other half is expected") {
+TEST_CASE("expected surface: half of a sphere is covered, which brings no gain, the other half is expected") {
   ExpectedSurfaceParameters p = bare(2000);
   p.cover_radius = 0.005;
   Scan scan;

@@ -197,7 +197,7 @@ TEST_CASE("means, worst rows and repeatability are what they are by hand") {
   CHECK(scenes[0].at("greedy_views_95").empty());
 }
 
-TEST_CASE("the truss of the paper's localisation table is compared with it; a fruit that is never matched is missing") {
+TEST_CASE("the truss of the paper's localisation table is compared with it, a fruit that is never matched is missing") {
   const TempFolder folder;
   std::vector<study::CellRecord> cells{cell("seven", 7, 1, 1, false), cell("seven", 7, 1, 2, false)};
   report::write_experiment_report(folder / "r.md", cells, {}, kInfo);

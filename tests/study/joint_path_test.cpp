@@ -57,7 +57,7 @@ std::vector<Joints> shuffled_line(std::size_t n, std::uint64_t seed) {
 
 }  // namespace
 
-TEST_CASE("the length of a path is the sum of its joint differences; views without joints are skipped") {
+TEST_CASE("the length of a path is the sum of its joint differences, views without joints are skipped") {
   std::vector<View> views(4);
   views[0].joints = Joints::Zero();
   views[0].joints->head<2>() << 3.0, 4.0;

@@ -41,18 +41,18 @@ TEST_CASE("the union and the greedy order of known views") {
   // From the front, a little beside it, from above, and from far away.
   const std::vector<plan::ReachableView> views{look({0.0, 0.1, 0.2}), look({0.02, 0.1, 0.2}), look({0.0, 0.5, 0.6}),
                                                look({0.0, 0.1, 9.9})};
-  const Observability o = observe_from(traced, samples, {}, views);
+  const Observability o = observe_from(traced, samples, sensor::l515(), views);
   REQUIRE(o.views.size() == 3);  // the last is out of range
   Flags any(samples.size(), 0);
   for (std::size_t v = 0; v < 3; ++v) {
-    const Flags flags = visible_to(traced, samples, views[v].world_T_optical, {});
+    const Flags flags = visible_to(traced, samples, views[v].world_T_optical, sensor::l515());
     for (std::size_t i = 0; i < samples.size(); ++i) {
       REQUIRE(o.sees(v, i) == bool(flags[i]));
       any[i] |= flags[i];
     }
   }
   CHECK(o.observable == any);
-  const Observability threaded = observe_from(traced, samples, {}, views, 3);
+  const Observability threaded = observe_from(traced, samples, sensor::l515(), views, 3);
   CHECK(threaded.seen == o.seen);
 
   CHECK(most_frontal(o, {0.0, 0.5, 0.2}, {0, 1, 0}) == 0);
