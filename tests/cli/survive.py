@@ -142,7 +142,7 @@ def test_damage(truth):
     whole = open(record, "rb").read()
     for damaged in (whole[:-1], whole[:40], b"", whole[:1000] + bytes([whole[1000] ^ 1]) + whole[1001:]):
         open(record, "wb").write(damaged)
-        expect("0002.view.*(damaged|not the record)", "--resume", "r")
+        expect("0002.view.*(damaged|not a view record)", "--resume", "r")
     open(record, "wb").write(whole.replace(b"view 1\n", b"view 2\n", 1))
     expect("0002.view.*version 1", "--resume", "r")
     shutil.copy("whole/views/0003.view", record)
