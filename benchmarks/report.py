@@ -103,15 +103,11 @@ def comparison(results):
 
 
 def compile_time():
-    """Seconds for the example of the README, with optimisation: with agrisee::compiled, and with headers alone."""
-    seconds = []
-    for flags in (["-DAGRISEE_COMPILED"], []):
-        begin = time.time()
-        subprocess.run(["c++", "-std=c++17", "-O2", *flags, "-I", str(ROOT / "include"), "-isystem",
-                        "/usr/include/eigen3", "-c", "-o", "/dev/null", str(ROOT / "examples/01_process_cloud.cpp")],
-                       check=True)
-        seconds.append(time.time() - begin)
-    return seconds
+    """Seconds for compiling the example of the README, with optimisation."""
+    begin = time.time()
+    subprocess.run(["c++", "-std=c++17", "-O2", "-I", str(ROOT / "include"), "-isystem", "/usr/include/eigen3", "-c", "-o",
+                    "/dev/null", str(ROOT / "examples/01_process_cloud.cpp")], check=True)
+    return time.time() - begin
 
 
 def main():
@@ -131,15 +127,13 @@ def main():
         if program.is_file() and program.stat().st_mode & 0o100:
             print(program.name, file=sys.stderr)
             own.update({f"{program.name[6:]}: {name}": value for name, value in run(program, ".*", few).items()})
-    compiled, headers = compile_time()
     text = ["# Benchmarks", "", "Written by `make bench`" + (" `LARGE=1`" if large else "") + " at " +
             output_of("git", "-C", str(ROOT), "rev-parse", "--short", "HEAD") + ".", "", machine(), "",
             "All libraries get the very same cloud, a noisy truss, in the same process, and the answers are compared"
             " before anything is timed; times of one row come from one program. Wall time in random order, medians of"
             f" {repetitions} runs (of {few} at 1.5 million points and of our stages alone). \"Fastest peer\" is the fastest of"
             " PCL, Open3D, nanoflann and Embree that has the stage. Only the ratios travel to other machines.", "", comparison(results)]
-    text += ["", f"`examples/01_process_cloud.cpp`, the README's ten lines, compiles in {compiled:.1f} s with"
-             f" `agrisee::compiled`, in {headers:.1f} s with the headers alone (`-O2`)."]
+    text += ["", f"`examples/01_process_cloud.cpp`, the README's ten lines, compiles in {compile_time():.1f} s (`-O2`)."]
     text += ["", pathlib.Path(__file__).with_name("notes.md").read_text().strip()]
     text += ["", "## Our stages alone", "", "| program: run / argument | ms |", "|---|---|"]
     text += [f"| {name} | {number(value[0])} |" for name, value in own.items()]
