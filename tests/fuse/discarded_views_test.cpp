@@ -3,6 +3,7 @@
 #include <agrisee/core/cancellation.hpp>
 
 #include "catch.hpp"
+#include "fuse/by_hand.hpp"
 #include "fuse/three_fruit.hpp"
 
 using namespace test;
@@ -136,6 +137,35 @@ TEST_CASE("views that share no surface do not agree") {
   // One that shares enough with the first of them.
   see_closely(left, 0.02);
   CHECK(discarded(map) == std::vector<bool>{true, false, true, false});
+}
+
+TEST_CASE("views agree from 50 common points and up to the largest contradiction") {
+  FusionParameters parameters;
+  parameters.free_space.margin = 0.25;
+  // A small view of a wall at 2 m: some points on the wall and some 1 m in front of it.
+  const auto seen = [](int agree, int refute, bool consistent) {
+    Observation out;
+    out.surface = wall(2.0f);
+    out.surface.points_in = 1;
+    out.consistent = consistent;
+    for (int i = 0; i < agree + refute; ++i) {
+      out.surface.points.push_back(at(out.surface, 3, 2, i < agree ? 2.0 : 1.0).cast<float>());
+      out.surface.normals.emplace_back(0.0f, -1.0f, 0.0f);
+      out.surface.sigma.push_back(0.001f);
+    }
+    return out;
+  };
+  const auto starts_again = [&](const Observation& a, const Observation& b) {
+    FusedViews map(kVolume, parameters, 1);
+    map.take(seen(1, 0, true), small_pose());
+    CHECK_FALSE(map.take(a, small_pose()).kept);
+    return map.take(b, small_pose()).kept.has_value();
+  };
+  CHECK_FALSE(starts_again(seen(25, 0, false), seen(24, 0, false)));
+  CHECK(starts_again(seen(25, 0, false), seen(25, 0, false)));
+  CHECK(starts_again(seen(35, 15, false), seen(0, 0, false)));  // 15 of 50 are 0.3
+  CHECK_FALSE(starts_again(seen(35, 15, false), seen(0, 1, false)));
+  CHECK_FALSE(starts_again(seen(34, 16, false), seen(0, 0, false)));
 }
 
 TEST_CASE("to take a view in cannot be cancelled, to look can") {

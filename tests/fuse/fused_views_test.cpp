@@ -207,6 +207,13 @@ TEST_CASE("the map shifts by the mean difference of reported and registered pose
   CHECK((map.shift_to_reported(center) - Vector3d(0.001, 0.0, 0.001)).norm() < 0.0001);
 }
 
+TEST_CASE("the map of one view shifts by all of its difference") {
+  FusedViews map(kVolume, fine(), 1);
+  const Vector3d error(0.002, -0.001, 0.001);
+  map.take(map.look(frame_at(0), place(0)), off_by(place(0), error));
+  CHECK((map.shift_to_reported({0.01, 0.55, 0.2}) - error).norm() < 1e-12);
+}
+
 TEST_CASE("where a reported pose is turned the shift is that of the map's center") {
   FusedViews map(kVolume, fine(), 1);
   see(map, 0);

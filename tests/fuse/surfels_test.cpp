@@ -40,6 +40,15 @@ TEST_CASE("the first sample of a place founds a surfel") {
   CHECK(s.seen_by == 1);
 }
 
+TEST_CASE("a surfel without samples is of no view and weighs nothing") {
+  const Surfel s{};
+  CHECK(s.weight == 0.0f);
+  CHECK(s.view == -1);
+  CHECK(s.last_view == -1);
+  CHECK(s.samples == 0);
+  CHECK(s.seen_by == 0);
+}
+
 TEST_CASE("a surfel moves along its normal by inverse variance") {
   SurfelMap map = map_of(1.0, 0.5);
   map.add({0, 0, 0}, kUp, 0.5f, 3);

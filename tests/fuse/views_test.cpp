@@ -45,3 +45,11 @@ TEST_CASE("pixels without return are not counted") {
   CHECK(fuse::count_inside(flat(0.0f), test::small_pose(), everything) == 0);
   CHECK(fuse::count_inside(sensor::DepthFrame{}, test::small_pose(), everything) == 0);
 }
+
+TEST_CASE("an observation is consistent and a change is none until something else is found") {
+  CHECK(fuse::Observation{}.consistent);
+  const fuse::Change change;
+  CHECK(change.points_in == 0);
+  CHECK(change.added.empty());
+  CHECK_FALSE(change.kept);
+}
