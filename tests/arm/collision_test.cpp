@@ -154,3 +154,28 @@ TEST_CASE("collision: input that is no posture and no mount is refused") {
   mount.sensor.depth = 0.0;
   CHECK_THROWS_AS(mount.check(), ParameterError);
 }
+
+TEST_CASE("longer arms have longer and wider solids, and are free in common postures") {
+  for (const UrModel& model : ur_models()) {
+    CAPTURE(std::string(model.name));
+    Mount mount;
+    mount.model = model;
+    mount.limits = model.limits;
+    CHECK_FALSE(collides((Joints() << 0.0, -1.57, 1.57, -1.57, -1.57, 0.0).finished(), mount));
+    CHECK_FALSE(collides((Joints() << 0.0, -0.8, 1.2, -0.4, -1.57, 0.0).finished(), mount));
+    // Folded onto itself: the wrist in the upper arm.
+    CHECK(collides((Joints() << 0.0, -1.57, 3.1, 0.0, 0.0, 0.0).finished(), mount));
+    // The solids reach from joint to joint: a post at the elbow of the stretched arm is hit, one beyond the arm is not.
+    const double elbow = -model.a2, end = -model.a2 - model.a3 + 0.4;
+    mount.keep_out = {{"post", Box{{elbow, 0.0, model.d1}, {0.01, 1.0, 0.01}}}};
+    const auto hit = find_collision(Joints::Zero(), mount);
+    REQUIRE(hit);
+    CHECK((hit->part == Part::upper_arm || hit->part == Part::forearm));
+    mount.keep_out = {{"post", Box{{end, 0.0, model.d1}, {0.01, 1.0, 0.01}}}};
+    CHECK_FALSE(collides(Joints::Zero(), mount));
+    for (const Piece& piece : model.pieces) {
+      CHECK(piece.cylinder.height > 0.01);
+      CHECK(piece.cylinder.radius >= 0.0329);
+    }
+  }
+}

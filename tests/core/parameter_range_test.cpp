@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <agrisee/core/parameter_range.hpp>
 
+#include <functional>
 #include <limits>
 
 #include "catch.hpp"
@@ -104,6 +105,25 @@ TEST_CASE("a struct is checked field by field, and errors name the whole key") {
   CHECK(has_fields<Outer>);
   CHECK_FALSE(has_fields<double>);
   CHECK_FALSE(has_fields<std::string>);
+}
+
+TEST_CASE("a number that looks like millimetres or degrees is said to be so") {
+  const Range length = Range::positive().up_to(1.0).in_metres(), angle = Range::between(0.0, 3.2).in_radians();
+  CHECK(length.likely_cause(25.0) == ": lengths are in metres; 25 mm are 0.025");
+  CHECK(angle.likely_cause(90.0) == ": angles are in radians; 90 degrees are 1.57079633");
+  CHECK(length.likely_cause(0.5).empty());     // in the range
+  CHECK(length.likely_cause(-25.0).empty());   // too small
+  CHECK(length.likely_cause(2500.0).empty());  // too large in either unit
+  CHECK(length.likely_cause(kNan).empty());
+  CHECK(Range::positive().up_to(1.0).likely_cause(25.0).empty());
+  struct Lengths {
+    double radius = 25.0;
+    static void fields(const Lengths& p, const std::function<void(const char*, double, Range)>& f) {
+      f("radius", p.radius, Range::positive().up_to(1.0).in_metres());
+    }
+  };
+  CHECK_THROWS_WITH(check_fields(Lengths()),
+                    "radius must be above 0 and at most 1, got 25: lengths are in metres; 25 mm are 0.025");
 }
 
 TEST_CASE("the first field out of its range is reported, in the order in which they are listed") {

@@ -11,6 +11,7 @@
 
 #include <cmath>
 #include <optional>
+#include <string>
 
 namespace agrisee::arm {
 
@@ -26,15 +27,15 @@ struct JointLimits {
   static JointLimits ur3() { return {}; }
 
   /// @throws ParameterError with the name of the field that is out of range
-  void check() const {
-    for (int j = 0; j < 6; ++j) {
-      check_parameter(min[j] <= max[j], "limits.min", "at most limits.max", min[j]);
-      check_parameter(velocity[j] > 0.0, "limits.velocity", "positive", velocity[j]);
-    }
-  }
+  void check() const;
+
+  /// What is wrong with joint angles outside of these limits, with the likely cause; empty if there is nothing wrong.
+  /// @param q joint angles (rad)
+  /// @param slack how far outside of its limits a joint may be (rad)
+  std::string complaint(const Joints& q, double slack = 0.0) const;
 
   /// True if every joint is within its limits, borders included.
-  bool contain(const Joints& q) const { return (q.array() >= min.array()).all() && (q.array() <= max.array()).all(); }
+  bool contain(const Joints& q) const;
 };
 
 /// The equivalent angle in (-pi, pi] (rad).
@@ -59,15 +60,7 @@ inline std::optional<double> nearest(double q, double reference, double min, dou
 
 /// The joint angles of the same posture as `q` (each joint may differ by a multiple of 2 pi) that lie within the limits
 /// and nearest to those of `reference`; nothing if some joint has no such angle.
-inline std::optional<Joints> nearest(const Joints& q, const Joints& reference, const JointLimits& limits) {
-  Joints out;
-  for (int j = 0; j < 6; ++j) {
-    const auto a = nearest(q[j], reference[j], limits.min[j], limits.max[j]);
-    if (!a) return std::nullopt;
-    out[j] = *a;
-  }
-  return out;
-}
+std::optional<Joints> nearest(const Joints& q, const Joints& reference, const JointLimits& limits);
 
 /// Euclidean distance in joint space (rad).
 inline double joint_distance(const Joints& from, const Joints& to) { return (to - from).norm(); }
@@ -75,8 +68,6 @@ inline double joint_distance(const Joints& from, const Joints& to) { return (to 
 /// Shortest duration (s) of a straight move in joint space, in which the joint that takes longest moves at its speed
 /// limit all the way. This is a lower bound: acceleration is ignored, since the UR3's acceleration limits are not
 /// published.
-inline double move_time(const Joints& from, const Joints& to, const JointLimits& limits = {}) {
-  return ((to - from).cwiseAbs().cwiseQuotient(limits.velocity)).maxCoeff();
-}
+double move_time(const Joints& from, const Joints& to, const JointLimits& limits = {});
 
 }  // namespace agrisee::arm

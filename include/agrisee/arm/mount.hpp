@@ -4,7 +4,7 @@
 /// these.
 #pragma once
 
-#include <agrisee/arm/limits.hpp>
+#include <agrisee/arm/ur_model.hpp>
 #include <agrisee/core/pose.hpp>
 #include <agrisee/geometry/overlap.hpp>
 
@@ -24,24 +24,15 @@ struct Mount {
   Pose world_T_base = Pose::Identity();       ///< pose of base_link in world
   Pose tool0_T_optical = default_hand_eye();  ///< hand-eye transform
   std::vector<KeepOut> keep_out;              ///< forbidden spaces in world
+  UrModel model;                              ///< which arm it is; its own limits are not used, `limits` are
   JointLimits limits;                         ///< of joint angles and speeds
   SensorBody sensor;                          ///< housing of the sensor
 
   /// @throws ParameterError with the name of the field that is out of range
-  void check() const {
-    if (!is_rigid(world_T_base)) throw ParameterError("world_T_base must be a finite rigid pose");
-    if (!is_rigid(tool0_T_optical)) throw ParameterError("tool0_T_optical must be a finite rigid pose");
-    limits.check();
-    check_parameter(sensor.radius > 0.0 && std::isfinite(sensor.radius), "sensor.radius", "positive", sensor.radius);
-    check_parameter(sensor.depth > 0.0 && std::isfinite(sensor.depth), "sensor.depth", "positive", sensor.depth);
-    for (const KeepOut& space : keep_out) space.check();
-  }
+  void check() const;
 };
 
 /// The housing, in world, of a sensor at world_T_optical.
-inline OrientedCylinder housing(const SensorBody& sensor, const Pose& world_T_optical) {
-  const Eigen::Vector3d axis = world_T_optical.linear().col(2);
-  return {world_T_optical.translation() - 0.5 * sensor.depth * axis, axis, sensor.radius, sensor.depth};
-}
+OrientedCylinder housing(const SensorBody& sensor, const Pose& world_T_optical);
 
 }  // namespace agrisee::arm

@@ -8,7 +8,7 @@
 /// template <typename P, typename F>
 /// static void fields(P& p, F&& f) {
 ///   f("enabled", p.enabled);                                                // true or false: no range
-///   f("radius_min", p.radius_min, Range::positive());                       // a number
+///   f("radius_min", p.radius_min, Range::positive().up_to(1.0).in_metres());  // a number
 ///   f("radius_max", p.radius_max, Range::at_least({p.radius_min, "radius_min"}));
 ///   f("planner", p.planner, OneOf(kPlannerNames));                          // a text
 ///   f("fit", p.fit);                                                        // a struct with fields of its own
@@ -93,6 +93,11 @@ class Range {
     return range;
   }
 
+  /// The same for a length in metres: a number that would be in the range as millimetres is said to be so.
+  constexpr Range in_metres() const { return with_unit("lengths are in metres; ", "mm", 1e-3); }
+  /// The same for an angle in radians: a number that would be in the range as degrees is said to be so.
+  constexpr Range in_radians() const { return with_unit("angles are in radians; ", "degrees", 0.017453292519943295); }
+
   /// Whether a number is in the range. NaN and infinity never are.
   bool contains(double x) const {
     if (!std::isfinite(x)) return false;
@@ -113,6 +118,13 @@ class Range {
     return has_high ? low + " and " + high : low;
   }
 
+  /// The likely cause of a number that is too large, to be put behind a message: ": lengths are in metres; 25 mm are
+  /// 0.025". Empty where none is known.
+  std::string likely_cause(double x) const {
+    if (!unit_rule_ || contains(x) || !(x > high_.value) || !contains(other_unit_ * x)) return "";
+    return std::string(": ") + unit_rule_ + number(x) + " " + other_name_ + " are " + number(other_unit_ * x);
+  }
+
   /// A number as messages show it.
   static std::string number(double x) {
     char digits[32];
@@ -125,12 +137,23 @@ class Range {
 
   constexpr Range() = default;
 
+  constexpr Range with_unit(const char* rule, const char* other, double factor) const {
+    Range range = *this;
+    range.unit_rule_ = rule;
+    range.other_name_ = other;
+    range.other_unit_ = factor;
+    return range;
+  }
+
   static std::string words(const Limit& limit) {
     return limit.name ? std::string(limit.name) + " (" + number(limit.value) + ")" : number(limit.value);
   }
 
   Limit low_ = -kInfinity, high_ = kInfinity;
   bool low_open_ = false, high_open_ = false;  // whether the limit itself is outside
+  const char* unit_rule_ = nullptr;            // null: the field has no unit that is often mistaken
+  const char* other_name_ = nullptr;           // of the unit in which the field may have been given by mistake
+  double other_unit_ = 0.0;                    // in units of the field
 };
 
 /// The texts that a parameter may take. Refers to the array that it was made from.
@@ -183,7 +206,7 @@ void check_field(const std::string& prefix, const char* name, const T& value, co
     const auto x = static_cast<double>(value);
     if (rule.contains(x)) return;
     const std::string wanted = std::isfinite(x) ? rule.text() : "a finite number";
-    throw FieldError(prefix + name, "must be " + wanted + ", got " + Range::number(x));
+    throw FieldError(prefix + name, "must be " + wanted + ", got " + Range::number(x) + rule.likely_cause(x));
   } else {
     if (!rule.contains(value)) throw FieldError(prefix + name, "must be " + rule.text() + ", got " + value);
   }

@@ -10,16 +10,35 @@
 
 namespace agrisee {
 
-/// A rigid transform in double precision. It is stored without alignment, so that programs and libraries compiled for
-/// different vector instructions (-march) agree on its layout. It converts from and to Eigen::Isometry3d.
-using Pose = Eigen::Transform<double, 3, Eigen::Isometry, Eigen::DontAlign>;
+/// A rigid transform. It is stored without alignment, so that programs and libraries compiled for
+/// different vector instructions (-march) agree on its layout. It converts from and to
+/// Eigen::Isometry3d.
+template <typename S>
+using Transform = Eigen::Transform<S, 3, Eigen::Isometry, Eigen::DontAlign>;
+
+/// A rigid transform in double precision.
+using Pose = Transform<double>;
+
+namespace detail {
+/// The type S, in a parameter that takes no part in deducing S.
+template <typename S>
+struct Same {
+  using type = S;
+};
+/// A vector that any expression or list of three numbers converts to.
+template <typename S>
+using AnyVector3 = Vector3<typename Same<S>::type>;
+}  // namespace detail
+
+// These functions are templates so that a program compiles, of Eigen's rotations, only what it uses.
 
 /// Pose from a translation (m) and roll, pitch, yaw (rad) as in URDF: rotations about the fixed axes x, y, z in turn.
-inline Pose pose_from_xyz_rpy(const Eigen::Vector3d& xyz, const Eigen::Vector3d& rpy) {
-  Pose pose = Pose::Identity();
+template <typename S = double>
+Transform<S> pose_from_xyz_rpy(const detail::AnyVector3<S>& xyz, const detail::AnyVector3<S>& rpy) {
+  using Turn = Eigen::AngleAxis<S>;
+  Transform<S> pose = Transform<S>::Identity();
   pose.linear() =
-      (Eigen::AngleAxisd(rpy.z(), Eigen::Vector3d::UnitZ()) * Eigen::AngleAxisd(rpy.y(), Eigen::Vector3d::UnitY()) *
-       Eigen::AngleAxisd(rpy.x(), Eigen::Vector3d::UnitX()))
+      (Turn(rpy.z(), Vector3<S>::UnitZ()) * Turn(rpy.y(), Vector3<S>::UnitY()) * Turn(rpy.x(), Vector3<S>::UnitX()))
           .toRotationMatrix();
   pose.translation() = xyz;
   return pose;
@@ -40,43 +59,54 @@ Vector3<S> any_orthogonal(const Vector3<S>& n) {
 /// towards -z of world; `roll` (rad) then turns the camera about its own z axis. For a sensor that looks straight up or
 /// down, its x axis is that of world.
 /// @throws InputError if `direction` is zero or not finite
-inline Pose look_along(const Eigen::Vector3d& position, const Eigen::Vector3d& direction, double roll = 0.0) {
-  const double length = direction.norm();
-  check_input(std::isfinite(length) && length > 0.0, "look_along: the viewing direction is zero or not finite");
-  const Eigen::Vector3d z = direction / length;
-  Eigen::Vector3d x = z.cross(Eigen::Vector3d::UnitZ());
-  if (x.norm() < 1e-9)
-    x = Eigen::Vector3d::UnitX();
+template <typename S = double>
+Transform<S> look_along(const detail::AnyVector3<S>& position, const detail::AnyVector3<S>& direction,
+                        typename detail::Same<S>::type roll = 0) {
+  const S length = direction.norm();
+  check_input(std::isfinite(length) && length > 0, "look_along: the viewing direction is zero or not finite");
+  const Vector3<S> z = direction / length;
+  Vector3<S> x = z.cross(Vector3<S>::UnitZ());
+  if (x.norm() < S(1e-9))
+    x = Vector3<S>::UnitX();
   else
     x.normalize();
-  Pose pose = Pose::Identity();
+  Transform<S> pose = Transform<S>::Identity();
   pose.linear().col(0) = x;
   pose.linear().col(1) = z.cross(x);
   pose.linear().col(2) = z;
   pose.translation() = position;
-  if (roll != 0.0) pose.rotate(Eigen::AngleAxisd(roll, Eigen::Vector3d::UnitZ()));
+  if (roll != 0) pose.rotate(Eigen::AngleAxis<S>(roll, Vector3<S>::UnitZ()));
   return pose;
 }
 
 /// Hand-eye transform (tool0_T_optical) where none is given: the optical frame 30 mm ahead of tool0, axes parallel.
-inline Pose default_hand_eye() { return pose_from_xyz_rpy({0.0, 0.0, 0.03}, Eigen::Vector3d::Zero()); }
-
-/// True if all entries are finite and the rotation matrix is orthonormal (to 1e-6) and right-handed.
-inline bool is_rigid(const Pose& pose) {
-  return pose.matrix().allFinite() &&
-         (pose.linear() * pose.linear().transpose() - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff() < 1e-6 &&
-         pose.linear().determinant() > 0.0;
+inline Pose default_hand_eye() {
+  Pose tool0_T_optical = Pose::Identity();
+  tool0_T_optical(2, 3) = 0.03;
+  return tool0_T_optical;
 }
 
-/// A rotation as a unit quaternion with w >= 0, which makes it unique (but for half turns).
-inline Eigen::Quaterniond quaternion(const Eigen::Matrix3d& rotation) {
-  Eigen::Quaterniond q(rotation);
+/// True if all entries are finite and the rotation matrix is orthonormal (to 1e-6) and right-handed.
+template <typename S, int Options>
+bool is_rigid(const Eigen::Transform<S, 3, Eigen::Isometry, Options>& pose) {
+  return pose.matrix().allFinite() &&
+         (pose.linear() * pose.linear().transpose() - Matrix3<S>::Identity()).cwiseAbs().maxCoeff() < S(1e-6) &&
+         pose.linear().determinant() > 0;
+}
+
+/// A rotation matrix as a unit quaternion with w >= 0, which makes it unique (but for half turns).
+template <typename Derived>
+Eigen::Quaternion<typename Derived::Scalar> quaternion(const Eigen::MatrixBase<Derived>& rotation) {
+  Eigen::Quaternion<typename Derived::Scalar> q(rotation);
   q.normalize();
-  if (q.w() < 0.0) q.coeffs() = -q.coeffs();
+  if (q.w() < 0) q.coeffs() = -q.coeffs();
   return q;
 }
 
 /// Angle (rad) of a pose's rotation. It is accurate for small angles too, unlike the arc cosine of the trace.
-inline double angle_of(const Pose& pose) { return Eigen::AngleAxisd(Eigen::Quaterniond(pose.linear())).angle(); }
+template <typename S, int Options>
+S angle_of(const Eigen::Transform<S, 3, Eigen::Isometry, Options>& pose) {
+  return Eigen::AngleAxis<S>(Eigen::Quaternion<S>(pose.linear())).angle();
+}
 
 }  // namespace agrisee

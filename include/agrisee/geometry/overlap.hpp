@@ -24,44 +24,22 @@ struct OrientedCylinder {
 
 /// A capsule that encloses a cylinder. It has the same axis; its segment ends half a radius before the cylinder's ends,
 /// so that it is 12 % wider than the cylinder and 0.62 radii longer at each end.
-inline Capsule enclosing_capsule(const OrientedCylinder& c) {
-  const double inset = std::min(0.5 * c.radius, 0.5 * c.height);
-  const Eigen::Vector3d half = (0.5 * c.height - inset) * c.axis;
-  return {c.center - half, c.center + half, std::hypot(c.radius, inset)};
-}
+Capsule enclosing_capsule(const OrientedCylinder& c);
 
 /// The point of a box nearest to p (m); p itself if it lies inside.
-inline Eigen::Vector3d nearest_point(const Box& box, const Eigen::Vector3d& p) {
-  return p.cwiseMax(box.center - 0.5 * box.size).cwiseMin(box.center + 0.5 * box.size);
-}
+Eigen::Vector3d nearest_point(const Box& box, const Eigen::Vector3d& p);
 /// The point of a cylinder nearest to p (m); p itself if it lies inside.
-inline Eigen::Vector3d nearest_point(const OrientedCylinder& c, const Eigen::Vector3d& p) {
-  const Eigen::Vector3d d = p - c.center;
-  const double along = d.dot(c.axis);
-  Eigen::Vector3d across = d - along * c.axis;
-  const double rho = across.norm();
-  if (rho > c.radius) across *= c.radius / rho;
-  return c.center + std::clamp(along, -0.5 * c.height, 0.5 * c.height) * c.axis + across;
-}
+Eigen::Vector3d nearest_point(const OrientedCylinder& c, const Eigen::Vector3d& p);
 /// The point of a cylinder nearest to p (m); p itself if it lies inside.
-inline Eigen::Vector3d nearest_point(const Cylinder& c, const Eigen::Vector3d& p) {
-  return nearest_point(OrientedCylinder{c.center, Eigen::Vector3d::UnitZ(), c.radius, c.height}, p);
-}
+Eigen::Vector3d nearest_point(const Cylinder& c, const Eigen::Vector3d& p);
 
 /// Support function: the largest v . x over the points x of a box.
-inline double support(const Box& box, const Eigen::Vector3d& v) {
-  return v.dot(box.center) + 0.5 * v.cwiseAbs().dot(box.size);
-}
+double support(const Box& box, const Eigen::Vector3d& v);
 /// Support function of a cylinder: the largest v . x over its points x.
-inline double support(const Cylinder& c, const Eigen::Vector3d& v) {
-  return v.dot(c.center) + c.radius * std::hypot(v.x(), v.y()) + 0.5 * c.height * std::abs(v.z());
-}
+double support(const Cylinder& c, const Eigen::Vector3d& v);
 
 /// Support function of a cylinder: the largest v . x over its points x.
-inline double support(const OrientedCylinder& c, const Eigen::Vector3d& v) {
-  const double along = v.dot(c.axis);
-  return v.dot(c.center) + 0.5 * c.height * std::abs(along) + c.radius * (v - along * c.axis).norm();
-}
+double support(const OrientedCylinder& c, const Eigen::Vector3d& v);
 
 /// True if a capsule overlaps a Box, Cylinder or KeepOut. Takes about 5 ns if its middle is far away, otherwise 30 to
 /// 200 ns.
@@ -76,12 +54,7 @@ bool overlap(const Capsule& capsule, const Solid& solid) {
 }
 
 /// True if two capsules overlap.
-inline bool overlap(const Capsule& a, const Capsule& b) {
-  const double reach = a.radius + b.radius - kTouch;
-  const double halves = 0.5 * ((a.b - a.a).norm() + (b.b - b.a).norm());
-  if (0.5 * (a.a + a.b - b.a - b.b).norm() >= reach + halves) return false;
-  return !(segment_distance(a.a, a.b, b.a, b.b) >= reach);
-}
+bool overlap(const Capsule& a, const Capsule& b);
 
 /// True if a cylinder of any orientation overlaps a Box, an upright Cylinder or another cylinder of any orientation.
 ///
@@ -108,8 +81,6 @@ bool overlap(OrientedCylinder body, const Solid& solid) {
   return true;
 }
 /// True if a cylinder overlaps a forbidden space.
-inline bool overlap(const OrientedCylinder& body, const KeepOut& space) {
-  return std::visit([&](const auto& shape) { return overlap(body, shape); }, space.shape);
-}
+bool overlap(const OrientedCylinder& body, const KeepOut& space);
 
 }  // namespace agrisee

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The UR3's kinematics: postures computed by hand, the round trip through all inverse solutions, singular poses,
 // limits.
-#include <agrisee/arm/ur3.hpp>
+#include <agrisee/arm/ur.hpp>
 #include <agrisee/core/random.hpp>
 
 #include <limits>
@@ -167,12 +167,12 @@ TEST_CASE("UR3: singular poses of the shoulder, the wrist's centre at d4 from th
     const double bend = rng.uniform(0.2, 1.2);
     q[1] = -kPi / 2 + bend;
     q[2] = -2.0 * bend;
-    const double rest = ur3::a2 * std::cos(q[1]) + ur3::a3 * std::cos(q[1] + q[2]);
-    REQUIRE(std::abs(rest) < ur3::d5);
-    q[3] = std::asin(-rest / ur3::d5) - q[1] - q[2];
+    const double rest = UrModel{}.a2 * std::cos(q[1]) + UrModel{}.a3 * std::cos(q[1] + q[2]);
+    REQUIRE(std::abs(rest) < UrModel{}.d5);
+    q[3] = std::asin(-rest / UrModel{}.d5) - q[1] - q[2];
     const Pose pose = forward(q);
-    const Eigen::Vector3d wrist = pose.translation() - ur3::d6 * pose.linear().col(2);
-    REQUIRE(wrist.head<2>().norm() == Approx(ur3::d4).margin(1e-12));
+    const Eigen::Vector3d wrist = pose.translation() - UrModel{}.d6 * pose.linear().col(2);
+    REQUIRE(wrist.head<2>().norm() == Approx(UrModel{}.d4).margin(1e-12));
     const auto solutions = inverse(pose);
     check_solutions(solutions, pose);
     REQUIRE(nearest_difference(solutions, q) < 1e-5);
@@ -264,4 +264,41 @@ TEST_CASE("UR3: input that is no pose is refused") {
   CHECK_THROWS_AS(inverse(forward(Joints::Zero()), {}, nan), InputError);
   CHECK_THROWS_AS(forward(joints(0, 0, nan, 0, 0, 0)), InputError);
   CHECK_THROWS_AS(jacobian(joints(0, 0, 0, 0, inf, 0)), InputError);
+}
+
+/// base_link_T_tool0 by the product of Denavit-Hartenberg matrices: the maker's convention, independent of ours.
+Pose by_denavit_hartenberg(const Joints& q, const UrModel& m) {
+  const double d[] = {m.d1, 0, 0, m.d4, m.d5, m.d6}, a[] = {0, m.a2, m.a3, 0, 0, 0};
+  const double alpha[] = {kPi / 2, 0, 0, kPi / 2, -kPi / 2, 0};
+  Eigen::Isometry3d pose(Eigen::AngleAxisd(kPi, Eigen::Vector3d::UnitZ()));  // base_link to the controller's base
+  for (int i = 0; i < 6; ++i)
+    pose = pose * Eigen::AngleAxisd(q[i], Eigen::Vector3d::UnitZ()) * Eigen::Translation3d(a[i], 0, d[i]) *
+           Eigen::AngleAxisd(alpha[i], Eigen::Vector3d::UnitX());
+  return pose;
+}
+
+TEST_CASE("every model of the family moves as its Denavit-Hartenberg parameters say, and back") {
+  CHECK(ur_models().size() == 4);
+  for (const UrModel& model : ur_models()) {
+    CAPTURE(std::string(model.name));
+    Rng rng(7);
+    for (int i = 0; i < 500; ++i) {
+      const Joints q = random_joints(rng, kPi);
+      const Pose pose = forward(q, model);
+      REQUIRE(difference(pose, by_denavit_hartenberg(q, model)) < 1e-9);
+      const auto solutions = inverse(pose, {}, q[5], model);
+      double nearest = 1.0;
+      for (const Joints& s : solutions) {
+        REQUIRE(difference(forward(s, model), pose) < 1e-9);
+        nearest = std::min(nearest, (s - q).unaryExpr([](double x) { return std::abs(wrap(x)); }).maxCoeff());
+      }
+      REQUIRE(nearest < 1e-6);
+    }
+  }
+}
+
+TEST_CASE("models are found by name") {
+  CHECK(ur_model("UR5e").a2 == -0.425);
+  CHECK(ur_model("ur10e").limits.velocity[0] == Approx(deg(120)));
+  CHECK_THROWS_WITH(ur_model("ur7"), Catch::Matchers::Contains("known are ur3, ur3e, ur5e, ur10e"));
 }

@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <agrisee/result.hpp>
+
+#include <algorithm>
+#include <utility>
+
+namespace agrisee {
+namespace {
+
+/// "a, b and c"
+std::string listed(const std::vector<std::string>& parts) {
+  std::string out;
+  for (std::size_t i = 0; i < parts.size(); ++i)
+    out += (i == 0 ? "" : i + 1 < parts.size() ? ", " : " and ") + parts[i];
+  return out;
+}
+
+}  // namespace
+
+std::string discarded_views(const std::vector<View>& views) {
+  const auto count = [&](DiscardReason reason) {
+    std::string numbers;
+    std::size_t n = 0;
+    for (std::size_t v = 0; v < views.size(); ++v) {
+      if (!views[v].discarded || views[v].discard_reason != reason) continue;
+      numbers += (n++ ? ", " : "") + std::to_string(v + 1);
+    }
+    return std::pair(n, numbers);
+  };
+  std::vector<std::string> parts;
+  const auto add = [&](DiscardReason reason, const char* one, const char* many) {
+    const auto [n, numbers] = count(reason);
+    if (n == 1) parts.push_back("view " + numbers + " " + one);
+    if (n > 1) parts.push_back("views " + numbers + " " + many);
+  };
+  add(DiscardReason::contradicts_others, "contradicts the others (is its pose wrong?)",
+      "contradict the others (are their poses wrong?)");
+  add(DiscardReason::repeated_frame, "repeats the frame before (does the camera hang?)",
+      "repeat the frame before (does the camera hang?)");
+  add(DiscardReason::none, "for an unknown reason", "for an unknown reason");
+  const auto n = std::count_if(views.begin(), views.end(), [](const View& v) { return v.discarded; });
+  if (n == 0) return "";
+  return std::to_string(n) + " of " + std::to_string(views.size()) + (n == 1 ? " views was" : " views were") +
+         " discarded: " + listed(parts);
+}
+
+std::string why_no_fruit(const ScanResult& result) {
+  if (!result.fruits.empty()) return "";
+  const auto saw = [](const View& v) { return v.points_in > 0; };
+  if (result.raw.empty()) {
+    if (result.views.empty()) return "there are no points";
+    if (std::none_of(result.views.begin(), result.views.end(), saw))
+      return "no view saw a point inside the scan volume";
+    return "every view with points inside the scan volume was discarded";
+  }
+  if (result.cloud.empty()) return "cleaning left none of " + std::to_string(result.raw.size()) + " points";
+  const BodyCounts& n = result.bodies;
+  if (n.taken == 0 && n.rejected() == 0)
+    return "no round surface was found in " + std::to_string(result.cloud.size()) + " points";
+  std::vector<std::string> parts;
+  const auto add = [&](std::size_t count, const char* what) {
+    if (count > 0) parts.push_back(std::to_string(count) + " " + what);
+  };
+  add(n.too_small, "smaller than the expected radii");
+  add(n.too_large, "larger than the expected radii, or flat");
+  add(n.inside_out, "with normals that face inwards (is the position of the sensor right?)");
+  add(n.little_seen, "of which too little was seen");
+  add(n.contradicted, "with points inside, or through which a view looked");
+  add(n.too_flat, "too flat, as leaves and stems are");
+  add(n.overlapping, "inside another");
+  add(n.not_fitted, "that no ellipsoid fits");
+  add(n.taken, "without points of its own");
+  return "none of the surfaces that might be fruit is one: " + listed(parts);
+}
+
+}  // namespace agrisee
