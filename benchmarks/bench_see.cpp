@@ -77,11 +77,11 @@ void first_step(benchmark::State& state) {
     state.PauseTiming();
     see::Explorer explorer = before;
     state.ResumeTiming();
-    benchmark::DoNotOptimize(explorer.next_views(sensor));
+    benchmark::DoNotOptimize(explorer.next_view(sensor));
   }
 }
 
-/// A later planning step: only the nearest 50 frontiers are updated.
+/// Another choice in the same step, after the first one was refused: frames and proposals are kept.
 void next_step(benchmark::State& state) {
   const Cloud& cloud = merged(static_cast<std::size_t>(state.range(0)));
   std::vector<Eigen::Vector3f> half;
@@ -89,9 +89,15 @@ void next_step(benchmark::State& state) {
   for (const auto& p : cloud.points)
     if (p.y() < middle) half.push_back(p);
   const Eigen::Vector3d sensor(0.1, -0.4, 0.1);
-  see::Explorer explorer((see::Parameters()));
-  explorer.observe(half, sensor);
-  for (auto _ : state) benchmark::DoNotOptimize(explorer.next_views(sensor));
+  see::Explorer before((see::Parameters()));
+  before.observe(half, sensor);
+  if (const auto first = before.next_view(sensor)) before.refuse(*first);
+  for (auto _ : state) {
+    state.PauseTiming();
+    see::Explorer explorer = before;
+    state.ResumeTiming();
+    benchmark::DoNotOptimize(explorer.next_view(sensor));
+  }
 }
 
 BENCHMARK(classify_from_scratch)->Arg(15000)->Arg(150000)->Unit(benchmark::kMillisecond);

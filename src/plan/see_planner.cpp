@@ -20,7 +20,7 @@ SeePlanner::SeePlanner(const Aabb& volume, const Eigen::Vector3d& robot, const s
 
 void SeePlanner::observe(const Progress& progress) {
   sensor_ = progress.views.back().world_T_optical.translation();
-  explorer_.observe(progress.added, sensor_);
+  explorer_.observe(progress.added, progress.observed, sensor_);
   if (progress.kept) explorer_.keep(*progress.kept);
 }
 
@@ -49,23 +49,19 @@ void SeePlanner::refused() {
 }
 
 std::optional<ReachableView> SeePlanner::choose(const Joints& current, const Reach& reach) {
-  while (true) {
-    const std::vector<see::ViewProposal> proposals = explorer_.next_views(sensor_);
-    if (proposals.empty()) {
-      reason_ = explorer_.stop_reason();
-      return std::nullopt;
+  while (const auto p = explorer_.next_view(sensor_)) {
+    throw_if_cancelled();
+    if (auto view = project(*p, current, reach)) {
+      explorer_.move_view(*p, view->world_T_optical.translation());
+      explorer_.take(*p);
+      last_ = *p;
+      view->gain = p->visible;
+      return view;
     }
-    for (const see::ViewProposal& p : proposals) {
-      throw_if_cancelled();
-      if (auto view = project(p, current, reach)) {
-        explorer_.take(p);
-        last_ = p;
-        view->gain = p.visible;
-        return view;
-      }
-      explorer_.refuse(p);
-    }
+    explorer_.refuse(*p);
   }
+  reason_ = explorer_.stop_reason();
+  return std::nullopt;
 }
 
 std::optional<ReachableView> SeePlanner::project(const see::ViewProposal& p, const Joints& current,
@@ -83,7 +79,8 @@ std::optional<ReachableView> SeePlanner::project(const see::ViewProposal& p, con
       request.direction =
           (std::cos(turn) * p.direction + std::sin(turn) * (std::cos(around) * a + std::sin(around) * b)).normalized();
       const auto view = reach(request, current);
-      if (view && (!nearest || view->move_time < nearest->move_time)) nearest = view;
+      if (!view || (nearest && nearest->move_time <= view->move_time)) continue;
+      if (explorer_.sees(p, view->world_T_optical.translation())) nearest = view;
     }
     if (nearest) return nearest;
   }

@@ -65,6 +65,12 @@ TEST_CASE("arm reach: the mount is the workcell's, its limits and housing are th
   CHECK(mount.limits.min == plain.limits.min);
   CHECK(mount.limits.max == plain.limits.max);
   CHECK(mount.sensor.radius == plain.sensor.radius);
+  CHECK(mount.sensor.depth == plain.sensor.depth);
+  Workcell large = w;
+  large.sensor.housing_radius = 0.065;
+  large.sensor.housing_depth = 0.126;
+  CHECK(mount_of(large).sensor.radius == 0.065);
+  CHECK(mount_of(large).sensor.depth == 0.126);
 }
 
 TEST_CASE("arm reach: a view is what the arm's own search finds") {

@@ -62,10 +62,10 @@ struct Scan {
   Cloud cloud;
   std::vector<sensor::SurfaceImage> images;
   std::vector<View> views;
-  std::vector<Eigen::Vector3f> added;
+  std::vector<Eigen::Vector3f> added, observed;
   std::optional<Indices> kept;
 
-  Progress progress() const { return {cloud, images, views, added, kept ? &*kept : nullptr}; }
+  Progress progress() const { return {cloud, images, views, added, observed, kept ? &*kept : nullptr}; }
   void add_point(const Vector3d& p) {
     cloud.points.push_back(p.cast<float>());
     cloud.normals.push_back(-Eigen::Vector3f::UnitY());

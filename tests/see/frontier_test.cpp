@@ -16,8 +16,10 @@ namespace {
 Frontier frame_at(const Points& cloud, Index i, const Eigen::Vector3d& seen_from, const Parameters& p = {}) {
   const KdTree<float> tree(cloud);
   const Grid<float> grid(cloud, 0.02f);
-  const auto a = frontier_frame(cloud, tree, tree, i, seen_from, p);
-  const auto b = frontier_frame(cloud, grid, tree, i, seen_from, p);
+  const Observation seen(cloud, seen_from);
+  FrameScratch<float> scratch;
+  const auto a = frontier_frame(cloud, tree, i, seen_from, seen, p, scratch);
+  const auto b = frontier_frame(cloud, grid, i, seen_from, seen, p, scratch);
   REQUIRE(a);
   REQUIRE(b);
   REQUIRE(a->normal.dot(b->normal) > 1.0 - 1e-6);  // whatever the search
@@ -64,17 +66,38 @@ TEST_CASE("frontier frame at the edge of a seen cap", "[see]") {
   REQUIRE_FALSE(points_outward(f, 2.0 * f.point));
 }
 
-TEST_CASE("free space decides the side where the sight grazes the surface", "[see]") {
+TEST_CASE("what a view observed: centroid and free space", "[see]") {
+  // A wall at z = 0, seen from 0.4 m above.
+  Points wall = test::rectangle(-0.05, 0.05, -0.05, 0.05, 40000);
+  wall.push_back(Eigen::Vector3f::Constant(std::nanf("")));
+  const Observation seen(wall, {0.0, 0.0, 0.4});
+  REQUIRE(seen.size() == 40000);
+  REQUIRE(seen.centroid().norm() < 1e-3);
+  REQUIRE(Observation(Points{{1, 2, 3}, {3, 2, 1}}, Eigen::Vector3d::Zero()).centroid() == Eigen::Vector3d(2, 2, 2));
+  REQUIRE_FALSE(seen.hides({0.0, 0.0, 0.01}));
+  REQUIRE(seen.hides({0.0, 0.0, -0.01}));
+  REQUIRE(seen.hides({0.03, 0.02, -0.005}));
+  REQUIRE(seen.hides({0.053, 0.0, -0.01}));       // 3 mm past its edge: within the beam
+  REQUIRE_FALSE(seen.hides({0.07, 0.0, -0.01}));  // 2 cm past it
+  REQUIRE_FALSE(seen.hides({0.0, 0.0, 0.4}));     // the sensor's own place
+  REQUIRE_FALSE(Observation().hides({0.0, 0.0, 1.0}));
+}
+
+TEST_CASE("the free space that the last view shows decides the normal's side", "[see]") {
   Points cloud = test::rectangle(-0.2, 0.0, -0.1, 0.1, 6000);
   cloud.push_back(Eigen::Vector3f::Zero());
   const auto i = static_cast<Index>(cloud.size() - 1);
-  for (float z = 0.008f; z < 0.03f; z += 0.002f) cloud.push_back({0.0f, 0.0f, z});  // something stands above it
-  // From almost edge-on above, points are met above and none below: the free side is below.
-  Parameters p;
-  p.rho = 5e5;
-  REQUIRE(frame_at(cloud, i, {0.4, 0.0, 0.02}, p).normal.z() < -0.9);
-  // A steeper sight proves the side, whatever stands there.
-  REQUIRE(frame_at(cloud, i, {0.2, 0.0, 0.3}, p).normal.z() > 0.9);
+  const KdTree<float> tree(cloud);
+  FrameScratch<float> scratch;
+  const Parameters p;
+  const auto normal = [&](const Eigen::Vector3d& first, const Points& points, const Eigen::Vector3d& sensor) {
+    return frontier_frame(cloud, tree, i, first, Observation(points, sensor), p, scratch)->normal;
+  };
+  const Eigen::Vector3d above(0.05, 0.0, 0.4), below(0.05, 0.0, -0.4);
+  REQUIRE(normal(above, cloud, above).z() > 0.99);
+  REQUIRE(normal(below, cloud, above).z() > 0.99);  // whoever saw it first, this view looked through the space above
+  REQUIRE(normal(above, cloud, below).z() < -0.99);
+  REQUIRE(normal(below, {}, above).z() < -0.99);  // nothing seen: both sides are free
 }
 
 TEST_CASE("frontier frames of degenerate neighbourhoods are defined", "[see]") {
@@ -91,30 +114,17 @@ TEST_CASE("frontier frames of degenerate neighbourhoods are defined", "[see]") {
 
   const Points one(1, Eigen::Vector3f::Zero());
   const KdTree<float> tree(one);
-  REQUIRE_FALSE(frontier_frame(one, tree, tree, 0, Eigen::Vector3d::Zero(), Parameters()));
-  REQUIRE_FALSE(frontier_frame(one, tree, tree, 0, Eigen::Vector3d::Constant(std::nan("")), Parameters()));
-  const Points nan(1, Eigen::Vector3f::Constant(std::nanf("")));
-  REQUIRE_FALSE(frontier_frame(nan, tree, tree, 0, eye, Parameters()));
+  FrameScratch<float> scratch;
+  const auto none = [&](const Points& cloud, const Eigen::Vector3d& from) {
+    return !frontier_frame(cloud, tree, 0, from, Observation(), Parameters(), scratch);
+  };
+  REQUIRE(none(one, Eigen::Vector3d::Zero()));
+  REQUIRE(none(one, Eigen::Vector3d::Constant(std::nan(""))));
+  REQUIRE(none(Points(1, Eigen::Vector3f::Constant(std::nanf(""))), eye));
 }
 
-TEST_CASE("directions between two, and shifted views", "[see]") {
-  const Eigen::Vector3d x = Eigen::Vector3d::UnitX(), y = Eigen::Vector3d::UnitY();
-  REQUIRE((between(x, y, 0.0) - x).norm() < 1e-12);
-  REQUIRE((between(x, y, 1.0) - y).norm() < 1e-12);
-  REQUIRE((between(x, y, 1.0 / 3.0) - Eigen::Vector3d(std::cos(deg(30)), std::sin(deg(30)), 0)).norm() < 1e-12);
-  REQUIRE((between(x, x, 0.7) - x).norm() < 1e-12);
-  const Eigen::Vector3d half = between(x, -x, 0.5);
-  REQUIRE(std::abs(half.dot(x)) < 1e-12);
-  REQUIRE(half.norm() == Approx(1.0));
-
-  Frontier f;
-  f.index = 4;
-  f.point = {0.1, 0.0, 0.0};
-  const ViewProposal last = view_of(f.point, 4, Eigen::Vector3d::UnitZ(), 0.4);
-  const ViewProposal moved =
-      shift_view(last, f, {0.08, 0.0, 0.0}, 2.0, 0.4);  // seen 2 cm to the left: go right by 4 cm
-  REQUIRE((moved.position - f.point).norm() == Approx(0.4));
-  REQUIRE((moved.position - f.point).normalized().dot(Eigen::Vector3d(0.04, 0.0, 0.4).normalized()) == Approx(1.0));
-  REQUIRE((f.point - moved.position).normalized().dot(moved.direction) == Approx(1.0));
-  REQUIRE((side_of(view_of(f.point, 4, x, 0.0), f.point) - x).norm() < 1e-12);  // a view on the point itself
+TEST_CASE("the side of a view", "[see]") {
+  const Eigen::Vector3d x = Eigen::Vector3d::UnitX(), point(0.1, 0.0, 0.0);
+  REQUIRE((side_of(view_of(point, 4, x, 0.4), point) - x).norm() < 1e-12);
+  REQUIRE((side_of(view_of(point, 4, x, 0.0), point) - x).norm() < 1e-12);  // a view on the point itself
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// @file
-/// Answers a planner's view requests for our UR3 model: inverse kinematics, joint limits, keep-out spaces and
+/// Answers a planner's view requests for an arm of the UR family: inverse kinematics, joint limits, keep-out spaces and
 /// self-collision.
 #pragma once
 
@@ -11,10 +11,10 @@
 namespace agrisee::plan {
 
 /// How the arm of a workcell is mounted, how it holds its sensor, and the spaces that neither may enter. Joint limits
-/// and the sensor's housing keep their defaults.
+/// are those of the arm's model, the housing is the sensor's.
 arm::Mount mount_of(const Workcell& workcell);
 
-/// The reach of a workcell's UR3. Distances outside the sensor's range are never offered. See arm::reach for which of
+/// The reach of a workcell's arm. Distances outside the sensor's range are never offered. See arm::reach for which of
 /// several solutions is chosen, and for the cost.
 /// @throws ParameterError when the workcell's mount is not valid
 Reach reach_of(const Workcell& workcell);

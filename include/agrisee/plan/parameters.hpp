@@ -26,7 +26,7 @@ struct ExpectedSurfaceParameters {
   /// f(name, field, range) for every field.
   template <typename P, typename F>
   static void fields(P& p, F&& f) {
-    f("max_incidence", p.max_incidence, Range::above(0.0).below({kPi / 2, "pi/2"}));
+    f("max_incidence", p.max_incidence, Range::above(0.0).below({kPi / 2, "pi/2"}).in_radians());
     f("samples", p.samples, Range::between(1, 100000));
     f("cover_radius", p.cover_radius, Range::positive());
     f("voxel", p.voxel, Range::positive());

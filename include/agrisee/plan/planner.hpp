@@ -44,6 +44,7 @@ struct Progress {
   const std::vector<sensor::SurfaceImage>& images;  ///< surface image of each view; empty unless surfaces are fused
   const std::vector<View>& views;                   ///< taken so far
   const std::vector<Eigen::Vector3f>& added;        ///< points that the last view added (m)
+  const std::vector<Eigen::Vector3f>& observed;     ///< all points that the last view showed (m)
   const Indices* kept = nullptr;  ///< points that the filter kept which ran after the last view, as indices into the
                                   ///< points from before the view followed by `added`; null when no filter ran
 };

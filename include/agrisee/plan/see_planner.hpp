@@ -10,9 +10,9 @@
 
 namespace agrisee::plan {
 
-/// Takes SEE++'s best reachable proposal. A proposal out of reach is replaced by the reachable view of the same
-/// frontier whose direction differs least, by at most 45 degrees. Where there is none the proposal is refused, see
-/// see::Explorer::refuse.
+/// Takes SEE++'s best reachable proposal. A proposal out of reach is replaced by the reachable view whose direction
+/// differs least, by at most 45 degrees, and whose line of sight to the same frontier is free. Where there is none the
+/// frontier is given up, see see::Explorer::refuse().
 class SeePlanner : public Planner {
  public:
   /// @param volume to be scanned (world)
@@ -32,7 +32,7 @@ class SeePlanner : public Planner {
  private:
   /// SEE++'s best proposal that can be reached; refuses those that cannot.
   std::optional<ReachableView> choose(const Joints& current, const Reach& reach);
-  /// The reachable view that is nearest to a proposal.
+  /// The reachable view that is nearest to a proposal and sees its frontier.
   std::optional<ReachableView> project(const see::ViewProposal& p, const Joints& current, const Reach& reach) const;
 
   Aabb volume_;

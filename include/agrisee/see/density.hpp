@@ -5,14 +5,14 @@
 ///
 /// - The density of a point is the number of points at most r away, itself included.
 /// - A core point has a density of at least k.
-/// - A frontier point is not core, but has both a core point and another point that is not core within r.
+/// - A frontier point is not core, but has both a core point and an outlier within r.
 /// - All other points are outliers.
 ///
-/// SEE's rule for frontiers says "outlier" where this says "not core": so the classes do not depend on an order.
-///
-/// After a new view, points are counted again only around its new points, and classified again only near those and
-/// near points that became core. The result equals a classification from scratch. Cost: O(pairs within r that involve
-/// a new point).
+/// Frontiers and outliers depend on one another, so points are classified one after the other, as SEE++ does. First the
+/// new points, in their order: only points that have a class already count as outliers. Then all points that are not
+/// core and have a new point within r, itself included, in their order: an outlier finds itself, so it becomes a
+/// frontier if a core point is within r. Other points keep their class. A frontier that was given up (give_up()) is an
+/// outlier until a new point comes near. Cost: O(pairs within r that involve a new point).
 #pragma once
 
 #include <agrisee/core/parallel.hpp>
@@ -63,18 +63,22 @@ class DensityMap {
   template <typename C>
   Indices insert(const C& cloud, int view, int threads = 1) {
     Indices kept;
+    const std::size_t before = size();
     for (std::size_t i = 0; i < agrisee::size(cloud); ++i) {
       const Vector3<S> p = point(cloud, i).template cast<S>();
       if (!is_finite(p) || (separation_ > 0 && grid_.nearer(p, separation_))) continue;
       append(p, view);
       kept.push_back(static_cast<Index>(i));
     }
-    update(threads);
+    added_ = size() - before;
+    count(threads);
+    classify_near_new();
     return kept;
   }
 
-  /// Remove all points but `kept`: densities and classes are then those of these points alone. For filters that run
-  /// between views.
+  /// Remove all points but `kept`: densities are then those of these points alone. Frontiers and outliers keep their
+  /// class, but a frontier without a core point within r becomes an outlier. A point that is no longer core becomes a
+  /// frontier if a core point is within r, else an outlier. For filters that run between views.
   /// @param kept indices of cloud(), ascending
   /// @param threads the result does not depend on it
   /// @throws InputError when an index is out of range
@@ -82,11 +86,38 @@ class DensityMap {
     for (Index i : kept)
       check_input(i >= 0 && static_cast<std::size_t>(i) < size(), "DensityMap::keep: an index is out of range");
     const PointCloud<S> old = select(cloud_, kept);
+    std::vector<PointClass> classes;
+    for (Index i : kept) classes.push_back(class_of(i));
     *this = DensityMap(*this, Empty{});
     for (std::size_t i = 0; i < old.size(); ++i) append(old.points[i], old.views[i]);
-    update(threads);
+    count(threads);
+    for (std::size_t i = 0; i < size(); ++i) {
+      const bool frontier = classes[i] == PointClass::frontier;
+      set_class(static_cast<Index>(i), is_core(i) ? PointClass::core
+                                       : frontier ? PointClass::frontier
+                                                  : PointClass::outlier);
+    }
+    for (std::size_t i = 0; i < size(); ++i) {
+      if (is_core(i) || classes[i] == PointClass::outlier) continue;
+      set_class(static_cast<Index>(i),
+                has_near(i, PointClass::core, size()) ? PointClass::frontier : PointClass::outlier);
+    }
+    added_ = near_added_ = 0;
   }
 
+  /// Make a frontier an outlier. It becomes a frontier again when a later view adds a point within r, and it still is
+  /// near a core point and not core itself.
+  /// @throws InputError if point i is not a frontier
+  void give_up(Index i) {
+    check_input(i >= 0 && static_cast<std::size_t>(i) < size() && class_of(i) == PointClass::frontier,
+                "DensityMap::give_up: the point is not a frontier");
+    set_class(i, PointClass::outlier);
+  }
+
+  /// Number of points that the last insert() added.
+  std::size_t added() const { return added_; }
+  /// Number of points that are not core and have a point within r that the last insert() added, themselves included.
+  std::size_t near_added() const { return near_added_; }
   /// Number of points.
   std::size_t size() const { return cloud_.size(); }
   /// The merged points and, for each, the view that saw it first.
@@ -118,11 +149,10 @@ class DensityMap {
     CellIndex cell;
     std::array<std::vector<S>, 3> xyz;
     Indices ids;
-    Vector3<S> min, max;      // bounding box of its points
-    Indices near;             // blocks whose cells may hold points within r, itself included
-    std::size_t counted = 0;  // number of points that the last update has counted
-    std::size_t cores = 0;    // number of core points
-    bool changed = false;     // holds a new point or one that became core
+    Vector3<S> min, max;                 // bounding box of its points
+    Indices near;                        // blocks whose cells may hold points within r, itself included
+    std::size_t counted = 0;             // number of points that the last update has counted
+    std::array<std::size_t, 3> holds{};  // number of points of each class
 
     std::size_t size() const { return ids.size(); }
     bool fresh() const { return counted < ids.size(); }
@@ -141,12 +171,15 @@ class DensityMap {
     cloud_.views.push_back(view);
     result_.counts.push_back(0);
     result_.classes.push_back(PointClass::outlier);
+    near_new_.push_back(0);
     const CellIndex cell = CellTable::cell(p, inverse_);
     Index b = table_.find(cell);
     if (b < 0) b = add_block(cell, p);
     Block& block = blocks_[static_cast<std::size_t>(b)];
     for (int a = 0; a < 3; ++a) block.xyz[static_cast<std::size_t>(a)].push_back(p[a]);
     block.ids.push_back(i);
+    ++block.holds[0];
+    block_of_.push_back(b);
     block.min = block.min.cwiseMin(p);
     block.max = block.max.cwiseMax(p);
   }
@@ -174,7 +207,16 @@ class DensityMap {
     return b;
   }
 
-  bool is_core(Index i) const { return static_cast<std::size_t>(result_.counts[static_cast<std::size_t>(i)]) >= k_; }
+  bool is_core(std::size_t i) const { return static_cast<std::size_t>(result_.counts[i]) >= k_; }
+  Block& block_of(std::size_t i) { return blocks_[static_cast<std::size_t>(block_of_[i])]; }
+
+  void set_class(Index i, PointClass c) {
+    PointClass& now = result_.classes[static_cast<std::size_t>(i)];
+    Block& block = block_of(static_cast<std::size_t>(i));
+    --block.holds[static_cast<std::size_t>(now)];
+    ++block.holds[static_cast<std::size_t>(c)];
+    now = c;
+  }
 
   /// Number of points of b, from the one at `begin` on, that are within r of p.
   int count_within(const Block& b, std::size_t begin, const Vector3<S>& p) const {
@@ -196,21 +238,19 @@ class DensityMap {
     return in;
   }
 
-  /// Bring counts and classes up to date with the points that were appended since the last update.
-  void update(int threads) {
+  /// Bring the counts up to date with the points that were appended since the last time, and mark the points that have
+  /// one of them within r.
+  void count(int threads) {
     parallel_for(
         blocks_.size(), threads, [&](std::size_t b) { recount(blocks_[b]); }, 8);
     for (Block& b : blocks_) b.counted = b.size();
-    parallel_for(
-        blocks_.size(), threads, [&](std::size_t b) { reclassify(blocks_[b]); }, 8);
-    for (Block& b : blocks_) b.changed = false;
   }
 
   void recount(Block& a) {
+    for (Index id : a.ids) near_new_[static_cast<std::size_t>(id)] = 0;
     bool affected = false;
     for (Index n : a.near) affected = affected || blocks_[static_cast<std::size_t>(n)].fresh();
     if (!affected) return;
-    a.changed = a.fresh();
     for (std::size_t i = 0; i < a.size(); ++i) {
       const Vector3<S> p = a.point(i);
       const bool is_new = i >= a.counted;
@@ -219,38 +259,39 @@ class DensityMap {
         const Block& b = blocks_[static_cast<std::size_t>(n)];
         if (is_new || b.fresh()) in += count_within(b, is_new ? 0 : b.counted, p);
       }
-      const bool was_core = is_core(a.ids[i]);
       result_.counts[static_cast<std::size_t>(a.ids[i])] += in;
-      if (!was_core && is_core(a.ids[i])) {
-        ++a.cores;
-        a.changed = true;
-      }
+      near_new_[static_cast<std::size_t>(a.ids[i])] = in > 0;
     }
   }
 
-  void reclassify(const Block& a) {
-    bool affected = false;
-    for (Index n : a.near) affected = affected || blocks_[static_cast<std::size_t>(n)].changed;
-    if (!affected) return;
-    for (std::size_t i = 0; i < a.size(); ++i) {
-      const Index id = a.ids[i];
-      result_.classes[static_cast<std::size_t>(id)] = is_core(id)         ? PointClass::core
-                                                      : is_frontier(a, i) ? PointClass::frontier
-                                                                          : PointClass::outlier;
+  /// Classify the points from added_ before the end on, and those near them.
+  void classify_near_new() {
+    near_added_ = 0;
+    for (std::size_t i = 0; i < size(); ++i)
+      if (near_new_[i] && is_core(i)) set_class(static_cast<Index>(i), PointClass::core);
+    const auto classify = [&](std::size_t i, bool outlier_near) {
+      const bool frontier = outlier_near && has_near(i, PointClass::core, size());
+      set_class(static_cast<Index>(i), frontier ? PointClass::frontier : PointClass::outlier);
+    };
+    for (std::size_t i = size() - added_; i < size(); ++i)
+      if (!is_core(i)) classify(i, has_near(i, PointClass::outlier, i));
+    for (std::size_t i = 0; i < size(); ++i) {
+      if (!near_new_[i] || is_core(i)) continue;
+      ++near_added_;
+      classify(i, result_.classes[i] == PointClass::outlier || has_near(i, PointClass::outlier, size()));
     }
   }
 
-  bool is_frontier(const Block& a, std::size_t i) const {
-    const Vector3<S> p = a.point(i);
-    bool has_core = false, has_other = false;
-    for (Index n : a.near) {
+  /// Whether another point of the class, with an index below `end`, is within r of point i.
+  bool has_near(std::size_t i, PointClass wanted, std::size_t end) const {
+    const Vector3<S> p = cloud_.points[i];
+    for (Index n : blocks_[static_cast<std::size_t>(block_of_[i])].near) {
       const Block& b = blocks_[static_cast<std::size_t>(n)];
-      if ((has_core || b.cores == 0) && (has_other || b.cores == b.size())) continue;
+      if (b.holds[static_cast<std::size_t>(wanted)] == 0) continue;
       for (std::size_t j = 0; j < b.size(); ++j) {
-        bool& has = is_core(b.ids[j]) ? has_core : has_other;
-        if (has || b.ids[j] == a.ids[i] || !(distance_sq<S>(b.point(j), p) <= radius_ * radius_)) continue;
-        has = true;
-        if (has_core && has_other) return true;
+        const auto id = static_cast<std::size_t>(b.ids[j]);
+        if (id < end && id != i && result_.classes[id] == wanted && distance_sq<S>(b.point(j), p) <= radius_ * radius_)
+          return true;
       }
     }
     return false;
@@ -264,6 +305,9 @@ class DensityMap {
   Classification result_;
   CellTable table_;
   std::vector<Block> blocks_;
+  Indices block_of_;                        // per point
+  std::vector<char> near_new_;              // per point: whether one of the last insert() is within r, itself included
+  std::size_t added_ = 0, near_added_ = 0;  // see added() and near_added()
 };
 
 /// Density and class of every point of a ready cloud, in which no points are merged.

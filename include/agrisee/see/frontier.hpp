@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// The local frame of a frontier point (SEE++; [1], AgriSEE): which way the surface faces, and in which direction it
-/// continues unseen. World frame, metres. Cost per frame: one query for the k nearest points and, if the point was seen
-/// at a grazing angle, at most 2 r / upsilon queries for the points in a ball.
+/// continues unseen. World frame, metres. Cost per frame: one query for the k nearest points, and a few steps along the
+/// normal.
 #pragma once
 
 #include <agrisee/core/pose.hpp>
 #include <agrisee/geometry/pca.hpp>
 #include <agrisee/neighbors/neighbors.hpp>
+#include <agrisee/see/observation.hpp>
 #include <agrisee/see/parameters.hpp>
 
 #include <algorithm>
@@ -24,34 +25,22 @@ struct Frontier {
   Eigen::Vector3d boundary = Eigen::Vector3d::UnitY();   ///< unit, along the edge of the seen part: normal x direction
 };
 
-/// If the cosine of the angle of incidence is below this, the line of sight does not tell which side of the surface is
-/// outside: a normal may well be wrong by 12 degrees.
-constexpr double kGrazing = 0.2;
+/// Memory that is used again from frame to frame. One per thread.
+template <typename S = float>
+struct FrameScratch {
+  Neighbors<S> neighbors;  ///< found so far
+  Indices ids;             ///< their indices
+};
 
 namespace detail {
-
-/// A position in the scalar type of a search.
-template <typename S>
-Vector3<S> cast_to(const Eigen::Vector3d& p) {
-  return p.template cast<S>();
-}
-
-/// Number of balls that hold points, among balls of radius upsilon whose centers lie every upsilon from p along the
-/// unit vector `u`, up to `length`.
-template <typename S, typename Search>
-int occupied_balls(const Search& search, const Eigen::Vector3d& p, const Eigen::Vector3d& u, double upsilon,
-                   double length) {
-  int occupied = 0;
-  for (int m = 1; m * upsilon <= length; ++m)
-    if (search.count(cast_to<S>(p + (m * upsilon) * u), static_cast<S>(upsilon), 1) > 0) ++occupied;
-  return occupied;
-}
 
 /// Indices of the k points nearest to q in no particular order, or of all points if there are fewer. Of points at equal
 /// distances those with lower indices are taken. The k-th is expected about `radius` away: for hundreds of neighbors,
 /// selecting from all points in a ball is several times faster than a heap.
 template <typename S, typename Search>
-void k_nearest(const Search& search, const Vector3<S>& q, std::size_t k, S radius, Neighbors<S>& found, Indices& ids) {
+const Indices& k_nearest(const Search& search, const Vector3<S>& q, std::size_t k, S radius, FrameScratch<S>& scratch) {
+  Neighbors<S>& found = scratch.neighbors;
+  Indices& ids = scratch.ids;
   for (const S reach : {S(1.25) * radius, S(2) * radius}) {
     found.clear();
     search.visit(q, reach, [&](Index i, S d_sq) { found.push_back({i, d_sq}); });
@@ -65,6 +54,35 @@ void k_nearest(const Search& search, const Vector3<S>& q, std::size_t k, S radiu
   }
   ids.clear();
   for (const Neighbor<S>& n : found) ids.push_back(n.index);
+  return ids;
+}
+
+/// Principal axes of a frontier's neighbors. If all are on a line, the first axis is the direction across it that is
+/// nearest to the line of sight; if all are equal, it is the line of sight.
+inline Eigen::Matrix3d frame_axes(const PrincipalAxes<double>& pca, const Eigen::Vector3d& sight) {
+  Eigen::Matrix3d axes = pca.axes;
+  if (!(pca.variance[2] > 0.0)) {
+    axes.col(2) = any_orthogonal<double>(sight);
+    axes.col(0) = sight;
+  } else if (pca.variance[1] <= 1e-6 * pca.variance[2]) {
+    const Eigen::Vector3d line = axes.col(2).normalized();
+    const Eigen::Vector3d across = sight - sight.dot(line) * line;
+    axes.col(2) = line;
+    axes.col(0) = across.norm() > 1e-6 ? across.normalized() : any_orthogonal<double>(line);
+  }
+  return axes;
+}
+
+/// Whether the normal has to be turned round. Two positions move away from the point, along the normal and against it,
+/// in steps of upsilon and at most up to psi. The normal points to the one that is in free space first.
+inline bool faces_inwards(const Observation& seen, const Eigen::Vector3d& p, const Eigen::Vector3d& normal,
+                          const Parameters& parameters) {
+  for (int m = 1; m * parameters.upsilon <= parameters.psi; ++m) {
+    const Eigen::Vector3d step = (m * parameters.upsilon) * normal;
+    if (!seen.hides(p + step)) return false;
+    if (!seen.hides(p - step)) return true;
+  }
+  return false;
 }
 
 }  // namespace detail
@@ -72,22 +90,23 @@ void k_nearest(const Search& search, const Vector3<S>& q, std::size_t k, S radiu
 /// Frame of the frontier point `index`.
 ///
 /// It follows from the principal axes of the k nearest points, the point itself included, or of all points if the cloud
-/// is smaller. The normal is the axis of smallest variance, turned towards `seen_from`. If the point was seen at a
-/// grazing angle (kGrazing), free space decides instead: balls of radius upsilon are tested every upsilon, up to r, on
-/// both sides, and the normal points to the side on which fewer of them hold points. `direction` is that of the other
-/// two axes along which the point lies farthest from the mean of its neighbors, pointing away from the mean. If all
-/// neighbors lie on a line, the normal is the direction across it that is nearest to the line of sight.
+/// is smaller. The normal is the axis of smallest variance, turned towards `seen_from`, and turned round if the free
+/// space that `seen` shows is on the other side. `direction` is that of the other two axes along which the point lies
+/// farthest from the mean of its neighbors, pointing away from the mean. If all neighbors lie on a line, the normal is
+/// the direction across it that is nearest to the line of sight.
 ///
 /// @param cloud any cloud (m, world)
 /// @param search a KdTree or Grid over the cloud
-/// @param near a search with `count(q, r, cap)` for small radii over the same points (may be the same object)
 /// @param index of the frontier point
 /// @param seen_from position of the sensor when it first saw the point (m, world)
-/// @param parameters k, radius and upsilon are used
+/// @param seen the last view
+/// @param parameters k, radius, upsilon and psi are used
+/// @param scratch memory to use again
 /// @return empty if the point is not finite or the sensor is at its place
-template <typename C, typename Search, typename Near>
-std::optional<Frontier> frontier_frame(const C& cloud, const Search& search, const Near& near, Index index,
-                                       const Eigen::Vector3d& seen_from, const Parameters& parameters) {
+template <typename C, typename Search>
+std::optional<Frontier> frontier_frame(const C& cloud, const Search& search, Index index,
+                                       const Eigen::Vector3d& seen_from, const Observation& seen,
+                                       const Parameters& parameters, FrameScratch<scalar_t<C>>& scratch) {
   using S = scalar_t<C>;
   const Vector3<S> q = point(cloud, static_cast<std::size_t>(index));
   Frontier f;
@@ -98,33 +117,17 @@ std::optional<Frontier> frontier_frame(const C& cloud, const Search& search, con
   if (!is_finite(q) || !std::isfinite(range) || !(range > 0.0)) return std::nullopt;
   sight /= range;
 
-  thread_local Neighbors<S> neighbors;
-  thread_local Indices ids;
-  detail::k_nearest<S>(search, q, parameters.k(), static_cast<S>(parameters.radius), neighbors, ids);
-  const PrincipalAxes<S> pca = principal_axes(cloud, ids);
-  Eigen::Matrix3d axes = pca.axes.template cast<double>();
-  const Eigen::Vector3d variance = pca.variance.template cast<double>();
-  const double tiny = 1e-6 * variance[2];
-  if (!(variance[2] > 0.0)) {  // all points are equal
-    axes.col(2) = any_orthogonal<double>(sight);
-    axes.col(0) = sight;
-  } else if (variance[1] <= tiny) {  // on a line
-    const Eigen::Vector3d line = axes.col(2).normalized();
-    const Eigen::Vector3d across = sight - sight.dot(line) * line;
-    axes.col(2) = line;
-    axes.col(0) = across.norm() > 1e-6 ? across.normalized() : any_orthogonal<double>(line);
-  }
+  const PrincipalAxes<S> pca = principal_axes(
+      cloud, detail::k_nearest<S>(search, q, parameters.k(), static_cast<S>(parameters.radius), scratch));
+  const Eigen::Vector3d mean = pca.mean.template cast<double>();
+  const Eigen::Matrix3d axes =
+      detail::frame_axes({mean, pca.variance.template cast<double>(), pca.axes.template cast<double>()}, sight);
   f.normal = axes.col(0).normalized();
-  const double cosine = f.normal.dot(sight);
-  if (cosine < 0.0) f.normal = -f.normal;
-  if (std::abs(cosine) < kGrazing) {
-    const int ahead = detail::occupied_balls<S>(near, f.point, f.normal, parameters.upsilon, parameters.radius);
-    const int behind = detail::occupied_balls<S>(near, f.point, -f.normal, parameters.upsilon, parameters.radius);
-    if (ahead > behind) f.normal = -f.normal;
-  }
+  if (f.normal.dot(sight) < 0.0) f.normal = -f.normal;
+  if (detail::faces_inwards(seen, f.point, f.normal, parameters)) f.normal = -f.normal;
   const Eigen::Vector3d t2 = (axes.col(2) - axes.col(2).dot(f.normal) * f.normal).normalized();
   const Eigen::Vector3d t1 = f.normal.cross(t2);
-  const Eigen::Vector3d away = f.point - pca.mean.template cast<double>();
+  const Eigen::Vector3d away = f.point - mean;
   f.direction = std::abs(away.dot(t1)) >= std::abs(away.dot(t2)) ? t1 : t2;
   if (f.direction.dot(away) < 0.0) f.direction = -f.direction;
   f.boundary = f.normal.cross(f.direction);

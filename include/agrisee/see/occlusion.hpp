@@ -12,44 +12,57 @@
 
 namespace agrisee::see {
 
-/// True if the line of sight from the point p to a sensor is free.
+/// How far (m) the surface's own points reach at a frontier (SEE++): balls of radius upsilon are tested every upsilon
+/// along its normal, from the point on, up to the first that holds no points. The first two hold the frontier itself.
+/// Cost: one query for each other.
+/// @param search a neighbor search with `count(q, r, cap)`, of scalar S
+template <typename S, typename Search>
+double surface_depth(const Search& search, const Frontier& f, double upsilon) {
+  for (int m = 2;; ++m) {
+    const Vector3<S> at = (f.point + (m * upsilon) * f.normal).template cast<S>();
+    if (search.count(at, static_cast<S>(upsilon), 1) == 0) return m * upsilon;
+  }
+}
+
+/// True if the line of sight from the point p to a sensor is free (SEE++).
 ///
-/// Balls of radius upsilon are tested every upsilon along the line, up to the sensor or to the distance psi, whichever
-/// is nearer. Balls before the first empty one hold the surface of p itself. Every later one must be empty, too. If no
-/// ball is empty, the line is blocked. Cost: at most psi / upsilon queries for the points in a ball.
+/// Balls of radius upsilon are tested every upsilon along the line, from `start` to `start` + psi. All must be empty.
+/// Cost: at most psi / upsilon queries for the points in a ball.
 /// @param search a neighbor search with `count(q, r, cap)`, of scalar S
 /// @param p the point (m, world)
+/// @param start distance of the first ball from p (m): the surface_depth() of the frontier there
 /// @param sensor position of the sensor (m, world)
 /// @param parameters psi and upsilon are used
 /// @param bounds box about the cloud; what is farther than upsilon outside it is known to be free
 template <typename S, typename Search>
-bool is_visible(const Search& search, const Eigen::Vector3d& p, const Eigen::Vector3d& sensor,
+bool is_visible(const Search& search, const Eigen::Vector3d& p, double start, const Eigen::Vector3d& sensor,
                 const Parameters& parameters, const Aabb& bounds) {
   const Eigen::Vector3d line = sensor - p;
   const double range = line.norm();
   if (!(range > 0.0) || !std::isfinite(range)) return false;
   const Eigen::Vector3d u = line / range;
-  const double length = std::min(parameters.psi, range);
-  bool left_surface = false;
-  for (int m = 1; m * parameters.upsilon <= length; ++m) {
-    const Eigen::Vector3d at = p + (m * parameters.upsilon) * u;
+  for (int m = 0; m * parameters.upsilon < parameters.psi; ++m) {
+    const Eigen::Vector3d at = p + (start + m * parameters.upsilon) * u;
     if (bounds.distance(at) > parameters.upsilon) return true;  // p is inside, so the line does not enter again
-    const bool occupied = search.count(Vector3<S>(at.cast<S>()), static_cast<S>(parameters.upsilon), 1) > 0;
-    if (occupied && left_surface) return false;
-    left_surface = left_surface || !occupied;
+    if (search.count(Vector3<S>(at.cast<S>()), static_cast<S>(parameters.upsilon), 1) > 0) return false;
   }
-  return left_surface || length < parameters.upsilon;
+  return true;
 }
 
-/// Unit directions from p to the points that can occlude it: those farther away than upsilon and at most psi away (m).
-template <typename C>
-std::vector<Eigen::Vector3f> occluder_directions(const C& cloud, const Eigen::Vector3d& p, double upsilon, double psi) {
+/// Unit directions to the points that can occlude a frontier: those at most psi (m) from it, seen from `eye` (m,
+/// world).
+/// @param points a search with `size()` and `point(i)`: points of the cloud that are about upsilon apart
+template <typename Points>
+std::vector<Eigen::Vector3f> occluder_directions(const Points& points, const Eigen::Vector3d& frontier,
+                                                 const Eigen::Vector3d& eye, double psi) {
   std::vector<Eigen::Vector3f> out;
-  out.reserve(agrisee::size(cloud));
-  for (std::size_t i = 0; i < agrisee::size(cloud); ++i) {
-    const Eigen::Vector3f d = (point(cloud, i).template cast<double>() - p).template cast<float>();
-    const float range = d.norm();
-    if (range > static_cast<float>(upsilon) && range <= static_cast<float>(psi)) out.push_back(d / range);
+  out.reserve(points.size());
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const Eigen::Vector3d p = points.point(i).template cast<double>();
+    if ((p - frontier).squaredNorm() > psi * psi) continue;
+    const Eigen::Vector3d d = p - eye;
+    const double range = d.norm();
+    if (range > 0.0) out.push_back((d / range).cast<float>());
   }
   return out;
 }
@@ -165,20 +178,22 @@ inline FreeDirection freest_direction(const std::vector<Eigen::Vector3f>& occlud
   return detail::FreeSearch(axis, max_angle, tolerance).run(occluders);
 }
 
-/// The view proposed for a frontier: along its normal if that line of sight is free, else from the side within
-/// `max_incidence` of the normal that is farthest from all occluders. Even that may be blocked.
-/// @param cloud any cloud (m, world)
-/// @param search a search over it with `count(q, r, cap)`
+/// The view of a frontier from the side that is farthest from all its occluders (SEE++, view optimisation). They are
+/// seen from a place at the distance `start` in front of the frontier, on the line to `seen_from`: so the surface's own
+/// points do not fill all directions. Sides behind the surface are left out: in gaps between its points, rays would
+/// pass through it. Even the best view may be blocked.
+/// @param points see occluder_directions()
 /// @param f the frontier
-/// @param parameters view_distance, psi, upsilon and max_incidence are used
-/// @param bounds a box that holds the cloud
-template <typename C, typename Search>
-ViewProposal propose_visible(const C& cloud, const Search& search, const Frontier& f, const Parameters& parameters,
-                             const Aabb& bounds) {
-  ViewProposal v = propose(f, parameters.view_distance);
-  if (is_visible<scalar_t<C>>(search, f.point, v.position, parameters, bounds)) return v;
-  const auto occluders = occluder_directions(cloud, f.point, parameters.upsilon, parameters.psi);
-  const FreeDirection free = freest_direction(occluders, f.normal, parameters.max_incidence);
+/// @param start the frontier's surface_depth() (m)
+/// @param seen_from position of the sensor that first saw the frontier (m, world)
+/// @param parameters view_distance and psi are used
+template <typename Points>
+ViewProposal propose_around(const Points& points, const Frontier& f, double start, const Eigen::Vector3d& seen_from,
+                            const Parameters& parameters) {
+  const Eigen::Vector3d line = seen_from - f.point;
+  const Eigen::Vector3d first = line.norm() > 0.0 ? Eigen::Vector3d(line.normalized()) : f.normal;
+  const auto occluders = occluder_directions(points, f.point, f.point + start * first, parameters.psi);
+  const FreeDirection free = freest_direction(occluders, f.normal, 0.5 * kPi);
   return view_of(f.point, f.index, free.direction.normalized(), parameters.view_distance);
 }
 

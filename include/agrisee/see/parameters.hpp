@@ -26,29 +26,25 @@ struct Parameters {
   double radius = 0.04;                  ///< r: radius of the neighborhood in which density is measured (m)
   double separation = 0.0;               ///< epsilon: smallest distance of merged points (m); 0: see min_separation()
   double view_distance = kViewDistance;  ///< d: distance of a proposed view from its frontier point (m)
-  int max_updates = 50;                  ///< tau: number of frontiers whose views are updated in a step
+  int max_updates = 50;                  ///< tau: number of views that are updated in a step
   double psi = 0.5;                      ///< occluders count up to this distance along a sight line (m)
   double upsilon = 0.005;                ///< radius about a sight line that must be free of points (m)
-  double max_incidence = deg(80);        ///< largest angle between a frontier's normal and the line to its view (rad)
-  double least_move = 0.1;               ///< shorter moves (m) count as this long when gain is divided by distance
   int max_views = 20;                    ///< largest number of views
-  int min_gain = 0;                      ///< a view must see at least this many of the updated frontiers; 0: any
-  int max_shifts = 3;                    ///< how often a view that did not cover its frontier is shifted
-  int max_pulls = 3;  ///< in how many steps an unreachable view is turned towards where its point was seen from
-  bool return_to_first_view = false;  ///< look again from where a frontier was first seen before it is given up
-  double give_up_radius = 0.01;       ///< frontiers within this distance of one that is given up are given up, too (m)
+  bool adjusted_first = true;         ///< a view that was adjusted or switched comes next; off: it competes as in SEE++
   bool outward_normals_only = false;  ///< only frontiers whose normals point away from the cloud's mean ([1], eq. 2)
 
-  /// The values of [1], table of parameters. It gives none for psi, upsilon and the number of views: those are of
-  /// SEE++.
-  static Parameters paper() {
+  /// SEE++ as published: its own rule for the separation. Density, distances and tau are those of [1].
+  static Parameters published() {
     Parameters p;
     p.separation = std::cbrt(3.0 * p.radius / (2.0 * kPi * p.rho));
-    p.max_incidence = deg(90);
-    p.least_move = p.upsilon;
     p.max_views = 50;
-    p.return_to_first_view = true;
-    p.give_up_radius = 0.0;
+    return p;
+  }
+
+  /// The values of [1], table of parameters, and its test of normals. It gives no values for psi, upsilon and the
+  /// number of views.
+  static Parameters paper() {
+    Parameters p = published();
     p.outward_normals_only = true;
     return p;
   }
@@ -85,14 +81,8 @@ struct Parameters {
     f("max_updates", p.max_updates, Range::at_least(1));
     f("psi", p.psi, Range::positive());
     f("upsilon", p.upsilon, Range::positive().from({p.psi / 1e5, "psi / 100000"}));
-    f("max_incidence", p.max_incidence, Range::above(0.0).up_to({0.5 * kPi, "pi/2"}));
-    f("least_move", p.least_move, Range::positive());
     f("max_views", p.max_views, Range::at_least(1));
-    f("min_gain", p.min_gain, Range::not_negative());
-    f("max_shifts", p.max_shifts, Range::between(0, 20));
-    f("max_pulls", p.max_pulls, Range::between(0, 100));
-    f("return_to_first_view", p.return_to_first_view);
-    f("give_up_radius", p.give_up_radius, Range::not_negative());
+    f("adjusted_first", p.adjusted_first);
     f("outward_normals_only", p.outward_normals_only);
   }
 };

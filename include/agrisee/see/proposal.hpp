@@ -12,8 +12,7 @@ struct ViewProposal {
   Eigen::Vector3d position = Eigen::Vector3d::Zero();    ///< of the sensor (m, world)
   Eigen::Vector3d direction = Eigen::Vector3d::UnitX();  ///< unit, along the optical axis
   Index frontier = -1;                                   ///< index in the cloud of the frontier point that it is for
-  int visible = 0;                                       ///< number of the updated frontiers that it sees
-  double score = 0.0;  ///< `visible` divided by the distance from the sensor's present position (1/m)
+  int visible = 0;                                       ///< number of frontiers that it is known to see
 };
 
 /// The view of the point `target` (m, world) from a side (unit vector) at a distance (m): v = p + d side, looking along
@@ -37,27 +36,6 @@ inline Eigen::Vector3d side_of(const ViewProposal& view, const Eigen::Vector3d& 
   const Eigen::Vector3d d = view.position - target;
   const double length = d.norm();
   return length > 0.0 ? Eigen::Vector3d(d / length) : Eigen::Vector3d(-view.direction);
-}
-
-/// The unit vector at the share `t` (0..1) of the great arc from the unit vector `a` to `b`. If they are opposite, any
-/// of the arcs between them is used.
-inline Eigen::Vector3d between(const Eigen::Vector3d& a, const Eigen::Vector3d& b, double t) {
-  Eigen::Vector3d across = b - a.dot(b) * a;
-  const double sine = across.norm();
-  if (sine < 1e-9 && a.dot(b) > 0.0) return a;
-  across = sine < 1e-9 ? any_orthogonal<double>(a) : Eigen::Vector3d(across / sine);
-  const double angle = t * std::atan2(sine, a.dot(b));
-  return std::cos(angle) * a + std::sin(angle) * across;
-}
-
-/// The next view of a frontier that the view `last` did not cover (SEE++): the position is moved by `factor` times the
-/// offset from the centroid of the points that `last` added near the frontier to the frontier itself. The new view
-/// looks at the frontier again, from `view_distance`. Positions and distances in m, world.
-inline ViewProposal shift_view(const ViewProposal& last, const Frontier& f, const Eigen::Vector3d& added_centroid,
-                               double factor, double view_distance) {
-  ViewProposal moved = last;
-  moved.position += factor * (f.point - added_centroid);
-  return view_of(f.point, f.index, side_of(moved, f.point), view_distance);
 }
 
 }  // namespace agrisee::see

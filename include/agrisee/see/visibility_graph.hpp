@@ -1,60 +1,51 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// @file
-/// Which proposed view sees which frontiers (SEE++, frontier visibility graph). World frame, metres.
-/// Cost: views times frontiers lines of sight, each of at most psi / upsilon queries for the points in a ball.
+/// Which views see which frontiers (SEE++, frontier visibility graph). A node stands for a frontier and the view that
+/// is proposed for it; an arc from a node to another says that the view of the first sees the frontier of the second.
 #pragma once
 
-#include <agrisee/core/parallel.hpp>
-#include <agrisee/see/occlusion.hpp>
+#include <agrisee/core/types.hpp>
+
+#include <algorithm>
+#include <cstddef>
+#include <vector>
 
 namespace agrisee::see {
 
-/// For every view the frontiers that it sees.
-struct VisibilityGraph {
-  std::vector<Indices> sees;  ///< per view: positions in the list of frontiers, ascending
-
-  /// Whether view i sees frontier j.
-  bool edge(std::size_t i, std::size_t j) const {
-    return std::binary_search(sees[i].begin(), sees[i].end(), static_cast<Index>(j));
+/// A directed graph whose arcs out of a node are replaced as a whole. Arcs to a node that was removed do not count.
+class VisibilityGraph {
+ public:
+  /// Add a node without arcs. @return its number; no other node ever has the same
+  Index add() {
+    arcs_.emplace_back();
+    alive_.push_back(1);
+    return static_cast<Index>(arcs_.size()) - 1;
   }
-  /// Number of frontiers that view i sees.
-  int out_degree(std::size_t i) const { return static_cast<int>(sees[i].size()); }
+  /// Remove a node with all arcs from and to it.
+  void remove(Index node) {
+    arcs_[at(node)] = {};
+    alive_[at(node)] = 0;
+  }
+  /// Replace the arcs out of a node. @param to nodes, each once and none of them the node itself
+  void connect(Index node, Indices to) {
+    std::sort(to.begin(), to.end());
+    arcs_[at(node)] = std::move(to);
+  }
+  /// Whether there is an arc.
+  bool arc(Index from, Index to) const {
+    return alive_[at(to)] && std::binary_search(arcs_[at(from)].begin(), arcs_[at(from)].end(), to);
+  }
+  /// Number of arcs out of a node: how many other frontiers its view sees.
+  int out_degree(Index node) const {
+    const Indices& to = arcs_[at(node)];
+    return static_cast<int>(std::count_if(to.begin(), to.end(), [&](Index t) { return alive_[at(t)] != 0; }));
+  }
+
+ private:
+  static std::size_t at(Index node) { return static_cast<std::size_t>(node); }
+
+  std::vector<Indices> arcs_;  // per node, ascending
+  std::vector<char> alive_;    // per node
 };
-
-/// Whether a view sees a frontier: it is within `max_incidence` of the frontier's normal, and the line of sight is
-/// free. The parameters are those of visibility_graph.
-template <typename S, typename Search>
-bool sees(const Search& search, const ViewProposal& view, const Frontier& f, const Parameters& parameters,
-          const Aabb& bounds) {
-  const Eigen::Vector3d line = view.position - f.point;
-  // Slightly more than max_incidence is allowed: freest_direction may return a direction at the limit, to its
-  // tolerance.
-  if (!(line.dot(f.normal) >= (std::cos(parameters.max_incidence) - 0.01) * line.norm())) return false;
-  return is_visible<S>(search, f.point, view.position, parameters, bounds);
-}
-
-/// Test every view against every frontier.
-/// @param search a search with `count(q, r, cap)` of scalar S over the merged cloud
-/// @param views the proposals
-/// @param frontiers the frontiers
-/// @param parameters max_incidence, psi and upsilon are used
-/// @param bounds a box that holds the cloud (m, world)
-/// @param threads the result does not depend on it
-template <typename S, typename Search>
-VisibilityGraph visibility_graph(const Search& search, const std::vector<ViewProposal>& views,
-                                 const std::vector<Frontier>& frontiers, const Parameters& parameters,
-                                 const Aabb& bounds, int threads = 1) {
-  VisibilityGraph graph;
-  graph.sees.resize(views.size());
-  parallel_for(
-      views.size(), threads,
-      [&](std::size_t i) {
-        for (std::size_t j = 0; j < frontiers.size(); ++j)
-          if (sees<S>(search, views[i], frontiers[j], parameters, bounds))
-            graph.sees[i].push_back(static_cast<Index>(j));
-      },
-      1);
-  return graph;
-}
 
 }  // namespace agrisee::see
