@@ -57,4 +57,9 @@ void ply(const std::uint8_t* data, std::size_t size) {
 
 void pcd(const std::uint8_t* data, std::size_t size) { read_both(data, size, io::read_pcd); }
 
+void table(const std::uint8_t* data, std::size_t size) {
+  read_both(data, size, io::read_cloud);
+  read_both(data, size, io::read_table_cloud);
+}
+
 }  // namespace agrisee::fuzz

@@ -5,7 +5,7 @@
 set -uo pipefail
 build=$1 seconds=$2; shift 2
 here=$(cd "$(dirname "$0")" && pwd)
-targets=${*:-ply pcd stl obj scene parameters records messages}
+targets=${*:-ply pcd table depth recorded stl obj scene parameters records messages}
 cores=$(nproc)
 count=$(wc -w <<<"$targets")
 each=$((seconds * cores / count)); [ "$each" -gt 0 ] || each=1

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "seeds.hpp"
 
+#include <agrisee/io/depth_image.hpp>
 #include <agrisee/io/files.hpp>
 #include <agrisee/io/mesh_file.hpp>
 #include <agrisee/io/parameters.hpp>
@@ -96,6 +97,30 @@ void add_clouds(std::vector<Seed>& seeds, const fs::path& folder) {
   seeds.push_back({"pcd", "copies", pcd_header("binary_compressed") + repeated});
 }
 
+void add_tables(std::vector<Seed>& seeds) {
+  seeds.push_back({"table", "xyz", "1 2 3\n# c\n4 -5e-3 nan 6\n"});
+  seeds.push_back({"table", "named", "//X Y Z nx ny nz view label\n1 2 3 0 0 1 4 5\n"});
+  seeds.push_back({"table", "csv", "z;x;y;\"name\"\n1;2;3;a\n;;;\n"});
+}
+
+void add_depth(std::vector<Seed>& seeds, const fs::path& folder) {
+  sensor::DepthFrame frame;
+  frame.intrinsics = {4, 2, 5.0, 6.0, 1.5, 0.5};
+  frame.depth = {0.5f, 0.51f, 0.0f, 0.52f, 0.5f, 0.5f, 70.0f, 0.4f};
+  io::write_depth_png(folder / "depth.png", frame);
+  io::write_depth_npy(folder / "depth.npy", frame);
+  for (const char* name : {"depth.png", "depth.npy"}) seeds.push_back({"depth", name, bytes_of(folder / name)});
+  seeds.push_back({"table", "npy", bytes_of(folder / "depth.npy")});
+  const std::string camera = "camera: {width: 4, height: 2, fx: 5, fy: 6, cx: 1.5, cy: 0.5, depth_scale: 1e-3}\n";
+  seeds.push_back(
+      {"recorded", "matrix",
+       "name: a\n" + camera + "views:\n- {depth: d.png, pose: [[1, 0, 0, 7], [0, 1, 0, 8], [0, 0, 1, 9]]}\n"});
+  seeds.push_back({"recorded", "forms",
+                   camera + "base: {xyz: [1, 2, 3], quaternion: [0, 0, 0.6, 0.8]}\n"
+                            "scan_volume: {min: [0, 0, 0], max: [1, 1, 1]}\n"
+                            "views: [{depth: d.png, pose: {xyz: [1, 2, 3], rpy: [0.1, 0.2, 0.3]}}]\n"});
+}
+
 void add_meshes(std::vector<Seed>& seeds, const fs::path& folder) {
   io::write_stl(folder / "stl", seed_mesh());
   seeds.push_back({"stl", "binary", bytes_of(folder / "stl")});
@@ -123,7 +148,7 @@ void add_texts(std::vector<Seed>& seeds, const fs::path& folder) {
        "objects:\n  - &o {id: 1, class: fruit, mesh: fruit_1.stl, xyz: [1, 2, 3], rpy: [0, 0, 0.4], scale: 2}\n"
        "  - {id: 0, class: leaf, mesh: ./fruit_1.stl}\n"});
 
-  for (const char* preset : {"default", "paper"})
+  for (const char* preset : kPresetNames)
     seeds.push_back({"parameters", preset, io::parameters_to_yaml(Parameters::named(preset))});
   seeds.push_back(
       {"parameters", "few", "preset: paper\nmax_views: 3\nsor: {mean_k: 12, std_ratio: 1.5}\nicp:\n  kernel: huber\n"});
@@ -192,6 +217,8 @@ std::vector<Seed> make_seeds() {
   const fs::path folder = scratch() / "seeds";
   fs::create_directories(folder);
   add_clouds(seeds, folder);
+  add_tables(seeds);
+  add_depth(seeds, folder);
   add_meshes(seeds, folder);
   add_texts(seeds, folder);
   add_messages(seeds);

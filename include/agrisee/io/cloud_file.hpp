@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// @file
-/// Reads a point cloud from a file of any format that AgriSEE knows (PLY, PCD).
+/// Reads a point cloud from a file of any format that AgriSEE knows: PLY, PCD, NPY, and tables of numbers (XYZ, CSV).
 #pragma once
 
 #include <agrisee/core/cloud.hpp>
@@ -25,13 +25,26 @@ struct CloudFile {
   std::size_t height = 0;   ///< number of rows; 1 when the cloud is not organised
 };
 
-/// Read a cloud. The first bytes of the file say whether it is PLY (ASCII or binary) or PCD (ASCII, binary or
-/// compressed).
+/// Read a cloud. The first bytes of the file say whether it is PLY (ASCII or binary), PCD (ASCII, binary or
+/// compressed), NPY (see read_npy_cloud) or a table of numbers (see read_table_cloud).
 ///
 /// Coordinates may be of any numeric type. Normals (`nx ny nz` or `normal_x normal_y normal_z`) are scaled to unit
 /// length; normals without a direction become zero, which means unknown. Everything else in the file is skipped.
 /// Cost: one pass over the file. Memory is bounded by the size of the file, even when its header claims more points.
-/// @throws FileError when the file cannot be read, is neither PLY nor PCD, or is malformed
+/// @throws FileError when the file cannot be read, is of no such format, or is malformed
 CloudFile read_cloud(const std::filesystem::path& path, NonFinite non_finite = NonFinite::drop);
+
+/// Read a cloud that numpy.save wrote: an array of N rows of three numbers or more, or of rows by columns by three or
+/// more (an organised cloud). The first three are x, y and z, the others are skipped.
+/// @throws FileError as read_cloud
+CloudFile read_npy_cloud(const std::filesystem::path& path, NonFinite non_finite = NonFinite::drop);
+
+/// Read a cloud from a table of numbers, one point a line, separated by blanks, commas or semicolons.
+///
+/// The first line may name the columns, also behind `#` or `//`; they then have the meaning that the properties of a
+/// PLY file have. Without names the first three numbers of a line are x, y and z, the others are skipped. Other lines
+/// that begin with `#` or `//` are comments. An empty coordinate is NaN.
+/// @throws FileError as read_cloud; it names the line
+CloudFile read_table_cloud(const std::filesystem::path& path, NonFinite non_finite = NonFinite::drop);
 
 }  // namespace agrisee::io

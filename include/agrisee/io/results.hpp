@@ -9,6 +9,8 @@
 #include <agrisee/workcell.hpp>
 
 #include <filesystem>
+#include <string>
+#include <vector>
 
 namespace agrisee::io {
 
@@ -16,6 +18,8 @@ namespace agrisee::io {
 struct RunInfo {
   std::string scene;               ///< name of the scene, or file of a ready cloud
   std::string version;             ///< version of AgriSEE
+  std::string time;                ///< when the result was made, see utc_now; empty: not written
+  std::string frame_id = "world";  ///< name of the frame in which the result is
   std::uint64_t seed = 0;          ///< seed of all random numbers
   int threads = 1;                 ///< number of threads; the result does not depend on it
   std::string noise = "none";      ///< noise model of the simulated sensor
@@ -23,6 +27,11 @@ struct RunInfo {
   std::string planner;             ///< see Parameters::planner
   std::string parameters_json;     ///< all parameters as a JSON object; empty means {}
 };
+
+/// The time now, in UTC, as ISO 8601 writes it: "2026-03-21T13:07:55Z". Where the environment variable
+/// SOURCE_DATE_EPOCH holds a number of seconds since 1970, it is that time, so that files can be made again byte for
+/// byte (reproducible-builds.org).
+std::string utc_now();
 
 /// The contents of run.json.
 struct RunFile {
@@ -42,7 +51,9 @@ void write_views(const std::filesystem::path& path, const std::vector<View>& vie
 
 /// Write fruits.json: a list with an object per fruit (docs/formats.md).
 ///
-/// - Always: `id`, `points`, `found_by`, `centroid_cluster`, `centroid_world`, `sigma_world`, `orientation_world`.
+/// - Always: `id`, `points`, `found_by`, `position_world` and `position_cluster` (see Fruit::position),
+/// `centroid_world`,
+///   `centroid_cluster`, `sigma_world`, `orientation_world`.
 /// - With a fitted body: `center_world` (m), `radii` (m), `body_orientation_world`, `center_covariance_world` (m2,
 /// three
 ///   rows), `rms` (m), `completeness`, `confidence`, `volume` and `volume_error` (m3), `mass` and `mass_error` (kg);
@@ -54,6 +65,9 @@ void write_views(const std::filesystem::path& path, const std::vector<View>& vie
 ///   if the arm is known, `pre_grasp_joints` (rad).
 /// @throws InputError for a fruit that is not finite  @throws FileError when it cannot be written
 void write_fruits(const std::filesystem::path& path, const std::vector<Fruit>& fruits);
+
+/// What write_fruits writes. @throws InputError for a fruit that is not finite
+std::string fruits_to_json(const std::vector<Fruit>& fruits);
 
 /// Write fruits.csv: the values of fruits.json as a table with a row per fruit. Where there is no body or no picking
 /// plan, its cells are empty. Only the upper triangle of the covariance is written; the ids in `picking_after` are
@@ -77,8 +91,10 @@ void write_run(const std::filesystem::path& path, const ScanResult& result, cons
 void write_result(const std::filesystem::path& folder, const ScanResult& result, const Workcell& workcell,
                   const RunInfo& info);
 
-/// Read views.csv. Columns may be in any order; unknown columns are skipped.
-/// @throws FileError for a missing column, or a cell that is not a number
+/// Read views.csv. Columns may be in any order; unknown columns are skipped. Only `view`, `x`, `y` and `z` are
+/// required: where there are no others, rotations are the identity, and the rest is zero or absent.
+/// @throws FileError for a missing column, also of a group of which a part is there (such as `qx` without `qw`), or a
+///   cell that is not a number
 std::vector<View> read_views(const std::filesystem::path& path);
 
 /// Read fruits.json. Unknown keys are skipped. A fruit has a body if it has the keys `center_world` and `radii`, and a

@@ -3,6 +3,7 @@
 /// The page of a scan: one HTML file for a browser, `report.html` in the result folder.
 #pragma once
 
+#include <agrisee/io/depth_picture.hpp>
 #include <agrisee/io/results.hpp>
 
 #include <filesystem>
@@ -20,17 +21,24 @@ struct ScanHistory {
   };
   std::vector<Curve> curves;              ///< in the order in which the legend lists them
   std::vector<Eigen::Vector3f> frontier;  ///< points at which the planner would have continued (m, world frame)
+  /// What the camera saw in each view, by depth_picture(); views beyond the end of the list have no picture.
+  std::vector<DepthPicture> depth;
+  /// Whether the scan still runs. The page then loads itself anew every few seconds, and so follows a program that
+  /// writes it after every view.
+  bool running = false;
 };
 
 /// The page as HTML text. It is complete in itself: it loads nothing from the disk or the network. It shows the cloud
 /// coloured by fruit, the points of no fruit, the merged cloud, the frontier, the fitted bodies and pose frames; view
-/// by view the sensor, its path and the arm; a table of the fruit, curves over the views, times and parameters.
+/// by view the sensor, its path, the arm and the depth image; a table of the fruit, curves over the views, times and
+/// parameters.
 ///
 /// Every result that write_result accepts can be shown, even an empty one. Coordinates are stored in 16 bits per axis
 /// (an extent of 10 m in steps of 0.15 mm); clouds with a larger extent in single precision. Points that are not finite
-/// are left out. Of a cloud with more than `max_points` points every k-th is shown, and the page says so. The arm (UR3)
-/// is drawn for views whose joints are known. Equal arguments give equal bytes. Size: about 0.6 MB, and 18 bytes per
-/// point of the consolidated and 11 per point of the merged cloud.
+/// are left out. Of a cloud with more than `max_points` points every k-th is shown, and the page says so. The arm
+/// is drawn for views whose joints are known. Equal arguments give equal bytes. Size: about 0.65 MB, 18 bytes
+/// per point of the consolidated and 11 per point of the merged cloud, and 4/3 of the depth pictures, of which at most
+/// 3 MB are shown: above that, only those of every k-th view.
 /// @param result what to show
 /// @param workcell scan volume, keep-out solids, robot and sensor
 /// @param info how the scan was made

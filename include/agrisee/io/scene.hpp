@@ -9,13 +9,16 @@
 #include <agrisee/workcell.hpp>
 
 #include <filesystem>
+#include <string>
+#include <vector>
 
 namespace agrisee::io {
 
 /// The contents of a scene file.
 struct SceneFile {
-  Workcell workcell;   ///< robot, sensor, scan volume and keep-out solids
-  study::Scene scene;  ///< meshes in world coordinates (m), in the order of the file
+  Workcell workcell;                  ///< robot, sensor, scan volume and keep-out solids
+  study::Scene scene;                 ///< meshes in world coordinates (m), in the order of the file
+  std::vector<std::string> warnings;  ///< what was put right and should be looked at: "<key>: ..."
 };
 
 /// Read a scene and its meshes. A mesh that is named several times is read once.
@@ -32,7 +35,7 @@ SceneFile read_scene(const std::filesystem::path& path);
 /// gives the same scene, except that mesh vertices are in the order of their first use.
 /// @throws InputError for a scene that the format cannot express or that read_scene would reject (such as a fruit
 /// without
-///   a positive id, an empty scan volume, or intrinsics that do not follow from fields of view)
+///   a positive id, an empty scan volume, or a camera without intrinsics)
 /// @throws FileError when a file cannot be written
 void write_scene(const std::filesystem::path& path, const SceneFile& file);
 

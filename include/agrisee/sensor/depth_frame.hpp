@@ -5,6 +5,9 @@
 
 #include <agrisee/sensor/intrinsics.hpp>
 
+#include <algorithm>
+#include <cstdio>
+
 namespace agrisee::sensor {
 
 /// A depth image in the optical frame (z forward, x right, y down).
@@ -30,6 +33,27 @@ inline void check(const DepthFrame& frame) {
                   std::isfinite(k.cx) && std::isfinite(k.cy),
               "depth frame: unusable intrinsics");
   check_input(frame.depth.size() == k.size(), "depth frame: the image size differs from its intrinsics");
+}
+
+/// Refuse a depth image that cannot be in metres: no depth camera sees a scene most of which is farther than 50 m or
+/// nearer than 1 mm. A frame without returns passes.
+/// @throws InputError that names the median depth and the likely cause
+inline void check_depth_unit(const DepthFrame& frame) {
+  constexpr std::size_t kSamples = 2000;
+  const std::size_t step = frame.depth.size() / kSamples + 1;
+  std::vector<float> depths;
+  for (std::size_t i = 0; i < frame.depth.size(); i += step)
+    if (DepthFrame::valid(frame.depth[i])) depths.push_back(frame.depth[i]);
+  if (depths.empty()) return;
+  const auto middle = depths.begin() + static_cast<std::ptrdiff_t>(depths.size() / 2);
+  std::nth_element(depths.begin(), middle, depths.end());
+  const auto refuse = [&](const char* cause) {
+    char number[32];
+    std::snprintf(number, sizeof number, "%.3g", static_cast<double>(*middle));
+    throw InputError("depth frame: its median depth is " + std::string(number) + " m: " + cause);
+  };
+  if (*middle > 50.0f) refuse("is it in millimetres, or in another unit of the camera? Depths have to be in metres");
+  if (*middle < 0.001f) refuse("were depths in metres multiplied by the camera's depth unit once more?");
 }
 
 }  // namespace agrisee::sensor

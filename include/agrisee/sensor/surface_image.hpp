@@ -33,7 +33,7 @@ struct SurfaceParameters {
     f("target_sigma", p.target_sigma, Range::positive());
     f("max_window", p.max_window, Range::between(1, 20));
     f("smallest_radius", p.smallest_radius, Range::positive());
-    f("max_incidence", p.max_incidence, Range::above(0.0).below({kPi / 2, "pi/2"}));
+    f("max_incidence", p.max_incidence, Range::above(0.0).below({kPi / 2, "pi/2"}).in_radians());
   }
 };
 

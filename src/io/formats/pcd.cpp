@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <agrisee/io/files.hpp>
 #include <agrisee/io/pcd.hpp>
-#include <agrisee/io/ply.hpp>
 
-#include <fstream>
 #include <optional>
 
 #include "io/formats/cloud_columns.hpp"
@@ -241,19 +239,6 @@ CloudFile read_pcd(const std::filesystem::path& path, NonFinite non_finite) {
   else if (header.points > 0)
     read_binary(path, header, compressed ? plain.data.get() : body.data(), compressed, sinks);
   return columns.finish(non_finite, header.width, header.height);
-}
-
-CloudFile read_cloud(const std::filesystem::path& path, NonFinite non_finite) {
-  std::string first(16, '\0');
-  std::error_code ignored;
-  if (std::filesystem::is_regular_file(path, ignored)) std::ifstream(path, std::ios::binary).read(first.data(), 16);
-  const std::string extension = lower(path.extension().string());
-  if (first.compare(0, 3, "ply") == 0 && is_blank(first[3])) return read_ply(path, non_finite);
-  if (first.compare(0, 6, "# .PCD") == 0 || first.compare(0, 7, "VERSION") == 0 || extension == ".pcd")
-    return read_pcd(path, non_finite);
-  if (extension == ".ply") return read_ply(path, non_finite);
-  read_bytes(path);  // throws a better message if the path is not a file
-  fail(path, "is neither a PLY nor a PCD file");
 }
 
 }  // namespace agrisee::io

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "io/formats/text.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cctype>
 #include <clocale>
@@ -158,6 +159,48 @@ std::string excerpt(std::string_view text) {
   std::string out = "'";
   for (char c : text.substr(0, kLongest)) out += c >= ' ' && c < 127 ? c : '?';
   return out + (text.size() > kLongest ? "...'" : "'");
+}
+
+namespace {
+
+/// How many letters have to be added, left out, changed or swapped with the next one to turn one word into the other
+/// (optimal string alignment).
+std::size_t distance(std::string_view a, std::string_view b) {
+  std::vector<std::vector<std::size_t>> table(a.size() + 1, std::vector<std::size_t>(b.size() + 1));
+  for (std::size_t i = 0; i <= a.size(); ++i)
+    for (std::size_t j = 0; j <= b.size(); ++j) {
+      if (i == 0 || j == 0) {
+        table[i][j] = i + j;
+        continue;
+      }
+      const std::size_t changed = table[i - 1][j - 1] + (a[i - 1] == b[j - 1] ? 0 : 1);
+      table[i][j] = std::min({table[i - 1][j] + 1, table[i][j - 1] + 1, changed});
+      if (i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1])
+        table[i][j] = std::min(table[i][j], table[i - 2][j - 2] + 1);
+    }
+  return table[a.size()][b.size()];
+}
+
+}  // namespace
+
+std::optional<std::string> nearest_word(std::string_view word, const std::vector<std::string>& words) {
+  constexpr std::size_t kLongest = 64;
+  if (word.size() < 2 || word.size() > kLongest) return std::nullopt;
+  std::optional<std::string> nearest;
+  std::size_t least = std::max<std::size_t>(1, word.size() / 3) + 1;
+  for (const std::string& candidate : words) {
+    const bool begins = word.size() > 2 && candidate.compare(0, word.size(), word) == 0;
+    const std::size_t far = begins ? 1 : distance(word, candidate);
+    if (far >= least) continue;
+    least = far;
+    nearest = candidate;
+  }
+  return nearest;
+}
+
+std::string did_you_mean(std::string_view word, const std::vector<std::string>& words) {
+  const auto nearest = nearest_word(word, words);
+  return nearest ? "; did you mean '" + *nearest + "'?" : "";
 }
 
 std::string_view next_word(std::string_view& text) {

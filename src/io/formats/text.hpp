@@ -7,6 +7,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace agrisee::io {
 
@@ -30,6 +31,13 @@ std::string_view trimmed(std::string_view text);
 std::string lower(std::string_view text);
 /// `text` in quotes for an error message: at most 40 characters, unprintable ones replaced by `?`.
 std::string excerpt(std::string_view text);
+
+/// Of some words, the one that a mistyped word probably means: the one of which it is the beginning, or from which it
+/// differs least (letters added, left out, changed or swapped; at most a third of them). None if no word is that near.
+std::optional<std::string> nearest_word(std::string_view word, const std::vector<std::string>& words);
+
+/// "; did you mean 'scan_volume'?", to be added to a message about an unknown word; empty if no word is near.
+std::string did_you_mean(std::string_view word, const std::vector<std::string>& words);
 
 inline bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\r' || c == '\n' || c == '\v' || c == '\f'; }
 

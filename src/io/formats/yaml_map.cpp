@@ -67,12 +67,13 @@ YAML::Node parse_yaml(const std::filesystem::path& path, const std::string& text
   }
 }
 
-void YamlValue::fail(const std::string& message) const {
+std::string YamlValue::place() const {
   const YAML::Mark mark = node_.Mark();
-  const std::string what = key_.empty() ? message : key_ + ": " + message;
-  if (mark.is_null()) io::fail(path_, what);
-  io::fail(path_, static_cast<std::size_t>(mark.line) + 1, what);
+  const std::string line = mark.is_null() ? "" : ":" + std::to_string(mark.line + 1);
+  return path_.string() + line + (key_.empty() ? "" : ": " + key_);
 }
+
+void YamlValue::fail(const std::string& message) const { throw FileError(place() + ": " + message); }
 
 void YamlValue::check_keys(std::initializer_list<const char*> known) const {
   if (!node_.IsMap()) fail("expected keys and values");
@@ -81,7 +82,7 @@ void YamlValue::check_keys(std::initializer_list<const char*> known) const {
     const YamlValue key(path_, member.first, key_);
     const std::string name = member.first.IsScalar() ? member.first.Scalar() : "?";
     if (std::none_of(known.begin(), known.end(), [&](const char* k) { return name == k; }))
-      key.fail("unknown key " + excerpt(name));
+      key.fail("unknown key " + excerpt(name) + did_you_mean(name, {known.begin(), known.end()}));
     if (!seen.insert(name).second) key.fail("key " + excerpt(name) + " twice");
   }
 }

@@ -28,6 +28,7 @@ class YamlValue {
   /// Check that the value is a map in which no key is repeated and all keys are among `known`.
   void check_keys(std::initializer_list<const char*> known) const;
   bool has(const char* key) const;
+  bool is_list() const { return node_.IsSequence(); }
   /// The member `key`, which must exist.
   YamlValue at(const char* key) const;
   /// An item of a list.
@@ -46,6 +47,10 @@ class YamlValue {
     for (int i = 0; i < N; ++i) out[i] = at(static_cast<std::size_t>(i)).number();
     return out;
   }
+  /// The path of keys from the document, such as "robot.base".
+  const std::string& key() const { return key_; }
+  /// "<path>:<line>: <key>", for messages about what the value refers to.
+  std::string place() const;
   /// Throw FileError "<path>:<line>: <key>: <message>".
   [[noreturn]] void fail(const std::string& message) const;
 

@@ -75,6 +75,9 @@ void add_head(CsvWriter& csv) {
     for (const char* axis : {"_x", "_y", "_z"}) csv.cell(std::string(name) + axis);
   for (const char* axis : {"_x", "_y", "_z", "_w"}) csv.cell("pre_grasp_orientation_world" + std::string(axis));
   for (int i = 1; i <= 6; ++i) csv.cell("pre_grasp_q" + std::to_string(i));
+  for (const char* name : {"position_world", "position_cluster"})
+    for (const char* axis : {"_x", "_y", "_z"}) csv.cell(std::string(name) + axis);
+  csv.cell("truss");
   csv.end_row();
 }
 
@@ -92,8 +95,11 @@ void add_body(CsvWriter& csv, const Body& body) {
 Json to_json(const Fruit& fruit) {
   Json j;
   j["id"] = fruit.id;
+  j["truss"] = fruit.truss;
   j["points"] = fruit.points;
   j["found_by"] = fruit.found_by;
+  j["position_world"] = json_list(fruit.position(), "fruit: position_world is not finite");
+  j["position_cluster"] = json_list(fruit.position_cluster(), "fruit: position_cluster is not finite");
   j["centroid_cluster"] = json_list(fruit.centroid_cluster, "fruit: centroid_cluster is not finite");
   j["centroid_world"] = json_list(fruit.centroid, "fruit: centroid_world is not finite");
   j["sigma_world"] = json_list(fruit.sigma, "fruit: sigma_world is not finite");
@@ -205,10 +211,15 @@ std::string fruits_csv_text(const std::vector<Fruit>& fruits) {
       add_picking(csv, *fruit.picking);
     else
       csv.empty_cells(20);
+    csv.cells(fruit.position());
+    csv.cells(fruit.position_cluster());
+    csv.cell(static_cast<std::size_t>(fruit.truss));
     csv.end_row();
   }
   return csv.text();
 }
+
+std::string fruits_to_json(const std::vector<Fruit>& fruits) { return fruits_text(fruits); }
 
 void write_fruits(const std::filesystem::path& path, const std::vector<Fruit>& fruits) {
   write_file(path, fruits_text(fruits));
@@ -228,6 +239,7 @@ std::vector<Fruit> read_fruits(const std::filesystem::path& path) {
     Fruit fruit;
     fruit.id = positive_integer(value.at("id"));
     if (!ids.insert(fruit.id).second) value.at("id").fail("two fruits have the id " + std::to_string(fruit.id));
+    if (value.has("truss")) fruit.truss = positive_integer(value.at("truss"));
     fruit.points = static_cast<std::size_t>(value.at("points").count());
     fruit.found_by = value.at("found_by").text();
     fruit.centroid_cluster = value.at("centroid_cluster").numbers<3>();

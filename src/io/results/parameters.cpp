@@ -5,6 +5,7 @@
 #include <set>
 #include <type_traits>
 
+#include "io/formats/text.hpp"
 #include "io/formats/yaml_map.hpp"
 
 namespace agrisee::io {
@@ -99,7 +100,9 @@ struct YamlReader {
     T::fields(value, YamlReader{path, map, prefix, keys});
     for (const auto& entry : map) {
       const std::string name = entry.first.IsScalar() ? entry.first.as<std::string>() : "?";
-      if (!keys.count(name)) throw FileError(place(path, entry.first) + ": unknown key '" + prefix + name + "'");
+      if (!keys.count(name))
+        throw FileError(place(path, entry.first) + ": unknown key '" + prefix + name + "'" +
+                        did_you_mean(name, {keys.begin(), keys.end()}));
     }
   }
 };

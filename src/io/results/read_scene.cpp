@@ -1,75 +1,95 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <agrisee/core/rigid_pose.hpp>
 #include <agrisee/io/files.hpp>
 #include <agrisee/io/mesh_file.hpp>
 #include <agrisee/io/scene.hpp>
+#include <agrisee/plan/arm_reach.hpp>
 
 #include <map>
 #include <set>
 
 #include "io/formats/text.hpp"
+#include "io/formats/yaml_camera.hpp"
 #include "io/formats/yaml_map.hpp"
+#include "io/formats/yaml_pose.hpp"
 
 namespace agrisee::io {
 namespace {
 
 namespace fs = std::filesystem;
 
-double positive(const YamlValue& value) {
-  const double x = value.number();
-  if (!(x > 0.0)) value.fail("must be positive, got " + format(x));
-  return x;
-}
-
-Pose read_pose(const YamlValue& value) {
-  value.check_keys({"xyz", "rpy"});
-  return pose_from_xyz_rpy(value.at("xyz").numbers<3>(), value.at("rpy").numbers<3>());
-}
-
-void read_robot(const YamlValue& robot, Workcell& cell) {
-  robot.check_keys({"base", "tool", "start"});
-  cell.world_T_base = read_pose(robot.at("base"));
-  if (robot.has("tool")) cell.tool0_T_optical = read_pose(robot.at("tool"));
+void read_robot(const YamlValue& robot, Workcell& cell, std::vector<std::string>& warnings) {
+  robot.check_keys({"arm", "base", "tool", "gripper", "start"});
+  if (robot.has("arm")) {
+    const YamlValue name = robot.at("arm");
+    try {
+      cell.arm = arm::ur_model(name.text());
+    } catch (const InputError& error) {
+      name.fail(error.what());
+    }
+  }
+  cell.world_T_base = read_pose(robot.at("base"), warnings);
+  if (robot.has("tool")) cell.tool0_T_optical = read_pose(robot.at("tool"), warnings);
+  if (robot.has("gripper")) cell.tool0_T_tool = read_pose(robot.at("gripper"), warnings);
   if (robot.has("start")) cell.start = robot.at("start").numbers<6>();
+  if (const std::string fault = plan::mount_of(cell).limits.complaint(cell.start); !fault.empty())
+    (robot.has("start") ? robot.at("start") : robot).fail(fault);
+  const double held = cell.tool0_T_optical.translation().norm();
+  constexpr double kFarthest = 3.0;  // m; no arm holds its camera farther ahead
+  if (held > kFarthest)
+    robot.at("tool").fail("the camera is " + format(held) +
+                          " m from the flange: is it in millimetres? Lengths have to be in metres");
 }
 
-int pixels(const YamlValue& value) {
-  constexpr long long kMost = 16384;
-  const long long n = value.integer();
-  if (n < 1 || n > kMost)
-    value.fail("must be from 1 to " + std::to_string(kMost) + " pixels, got " + std::to_string(n));
-  return static_cast<int>(n);
+/// The published figures of a camera by its name.
+const sensor::CameraModel& read_model(const YamlValue& value) {
+  const std::string name = value.text();
+  std::string known;
+  for (const sensor::CameraModel& model : sensor::kCameraModels) {
+    if (name == model.name) return model;
+    known += (known.empty() ? "" : ", ") + std::string(model.name);
+  }
+  value.fail(excerpt(name) + " is not known (known are " + known + "); any other camera by fx, fy, cx, cy or fov_deg");
 }
 
-void read_sensor(const YamlValue& value, sensor::DepthCamera& sensor) {
-  value.check_keys({"model", "width", "height", "fov_deg", "range"});
-  if (value.has("model") && value.at("model").text() != "l515") value.at("model").fail("only 'l515' is known");
-  const int width = value.has("width") ? pixels(value.at("width")) : sensor.intrinsics.width;
-  const int height = value.has("height") ? pixels(value.at("height")) : sensor.intrinsics.height;
-  Eigen::Vector2d fov(70.0, 55.0);
+/// A pinhole by its focal lengths, or by its opening angles.
+sensor::Intrinsics read_intrinsics(const YamlValue& value, const sensor::CameraModel& model) {
+  const int width = value.has("width") ? pixels(value.at("width")) : model.width;
+  const int height = value.has("height") ? pixels(value.at("height")) : model.height;
+  Eigen::Vector2d fov(model.fov_x_deg, model.fov_y_deg);
   if (value.has("fov_deg")) {
     fov = value.at("fov_deg").numbers<2>();
     if (!(fov.minCoeff() > 0.0 && fov.maxCoeff() < 180.0))
       value.at("fov_deg").fail("must be between 0 and 180 degrees");
   }
-  sensor.intrinsics = sensor::intrinsics_from_fov(width, height, deg(fov.x()), deg(fov.y()));
+  sensor::Intrinsics k = sensor::intrinsics_from_fov(width, height, deg(fov.x()), deg(fov.y()));
+  if (!value.has("fx") && !value.has("fy") && !value.has("cx") && !value.has("cy")) return k;
+  if (value.has("fov_deg")) value.fail("expected either 'fov_deg', or 'fx', 'fy', 'cx' and 'cy'");
+  if (!value.has("width") || !value.has("height"))
+    value.fail("'fx' and 'fy' are in pixels, so 'width' and 'height' of the image are needed, too");
+  k.fx = positive(value.at("fx"));
+  k.fy = positive(value.at("fy"));
+  if (value.has("cx")) k.cx = value.at("cx").number();
+  if (value.has("cy")) k.cy = value.at("cy").number();
+  return k;
+}
+
+void read_sensor(const YamlValue& value, sensor::DepthCamera& sensor) {
+  value.check_keys({"model", "width", "height", "fov_deg", "fx", "fy", "cx", "cy", "range", "housing"});
+  const sensor::CameraModel& model = value.has("model") ? read_model(value.at("model")) : sensor::kCameraModels[0];
+  sensor = model.camera();
+  sensor.intrinsics = read_intrinsics(value, model);
   if (value.has("range")) {
-    const Eigen::Vector2d range = value.at("range").numbers<2>();
-    if (!(range[0] >= 0.0 && range[0] < range[1])) value.at("range").fail("expected 0 <= minimum < maximum");
+    const Eigen::Vector2d range = read_range(value.at("range"));
     sensor.range_min = range[0];
     sensor.range_max = range[1];
   }
-}
-
-Aabb read_volume(const YamlValue& value) {
-  value.check_keys({"min", "max"});
-  Aabb volume;
-  volume.min = value.at("min").numbers<3>();
-  volume.max = value.at("max").numbers<3>();
-  for (int a = 0; a < 3; ++a)
-    if (!(volume.min[a] < volume.max[a]))
-      value.fail(std::string("min must be below max, but along ") + "xyz"[a] + " min is " + format(volume.min[a]) +
-                 " and max " + format(volume.max[a]));
-  return volume;
+  if (value.has("housing")) {
+    const YamlValue housing = value.at("housing");
+    housing.check_keys({"radius", "depth"});
+    sensor.housing_radius = positive(housing.at("radius"));
+    sensor.housing_depth = positive(housing.at("depth"));
+  }
 }
 
 KeepOut read_keep_out(const YamlValue& value) {
@@ -141,7 +161,7 @@ study::Object read_object(const YamlValue& value, MeshCache& meshes, std::set<in
   const Eigen::Vector3d zero = Eigen::Vector3d::Zero();
   const bool moved = value.has("xyz") || value.has("rpy") || value.has("scale");
   const Pose pose = pose_from_xyz_rpy(value.has("xyz") ? value.at("xyz").numbers<3>() : zero,
-                                      value.has("rpy") ? value.at("rpy").numbers<3>() : zero);
+                                      value.has("rpy") ? read_rpy(value.at("rpy")) : zero);
   const double scale = value.has("scale") ? positive(value.at("scale")) : 1.0;
   const Mesh& mesh = meshes.get(value.at("mesh"));
   object.mesh = moved ? transformed(mesh, pose, scale) : mesh;
@@ -155,7 +175,7 @@ SceneFile read_scene(const fs::path& path) {
   top.check_keys({"name", "robot", "sensor", "scan_volume", "keep_out", "objects"});
   SceneFile file;
   file.workcell.name = top.at("name").text();
-  read_robot(top.at("robot"), file.workcell);
+  read_robot(top.at("robot"), file.workcell, file.warnings);
   if (top.has("sensor")) read_sensor(top.at("sensor"), file.workcell.sensor);
   file.workcell.scan_volume = read_volume(top.at("scan_volume"));
   if (top.has("keep_out")) {

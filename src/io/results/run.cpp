@@ -29,6 +29,8 @@ std::string run_text(const ScanResult& result, const Workcell& workcell, const R
   j["format_version"] = kFormatVersion;
   j["scene"] = info.scene;
   j["version"] = info.version;
+  if (!info.time.empty()) j["time"] = info.time;
+  j["frame_id"] = info.frame_id;
   j["seed"] = info.seed;
   j["threads"] = info.threads;
   j["noise"] = info.noise;
@@ -38,11 +40,28 @@ std::string run_text(const ScanResult& result, const Workcell& workcell, const R
   j["views"] = result.views.size();
   j["views_discarded"] =
       std::count_if(result.views.begin(), result.views.end(), [](const View& v) { return v.discarded; });
+  j["discarded_views"] = Json::array();
+  for (std::size_t v = 0; v < result.views.size(); ++v)
+    if (result.views[v].discarded)
+      j["discarded_views"].push_back({{"view", v}, {"reason", to_string(result.views[v].discard_reason)}});
   j["stop_reason"] = to_string(result.stop_reason);
+  if (!result.warnings.empty()) j["warnings"] = result.warnings;
   const auto labelled = std::count_if(result.labels.begin(), result.labels.end(), [](int label) { return label > 0; });
   j["points"]["merged"] = result.raw.size();
   j["points"]["filtered"] = result.cloud.size();
   j["points"]["labelled"] = labelled;
+  j["trusses"] = Json::array();
+  for (const FoundTruss& truss : result.trusses) {
+    const Pose& pose = truss.world_T_truss;
+    j["trusses"].push_back({{"id", truss.id},
+                            {"fruits", truss.fruits},
+                            {"position_world", json_list(pose.translation(), "truss: position_world is not finite")},
+                            {"orientation_world",
+                             json_list(quaternion(pose.linear()).coeffs(), "truss: orientation_world is not finite")}});
+  }
+  Json& bodies = j["bodies"];
+  BodyCounts::fields(result.bodies, [&](const char* name, std::size_t count) { bodies[name] = count; });
+  if (result.fruits.empty()) j["no_fruit"] = why_no_fruit(result);
   if (result.completeness) {
     j["completeness"]["seen"] = result.completeness->seen;
     j["completeness"]["observable"] = result.completeness->observable;
@@ -99,6 +118,8 @@ RunFile read_run(const std::filesystem::path& path) {
   RunFile run;
   run.info.scene = top.at("scene").text();
   run.info.version = top.at("version").text();
+  if (top.has("time")) run.info.time = top.at("time").text();
+  if (top.has("frame_id")) run.info.frame_id = top.at("frame_id").text();
   run.info.seed = top.at("seed").count();
   run.info.threads = static_cast<int>(std::min<std::uint64_t>(top.at("threads").count(), 1 << 20));
   run.info.noise = top.at("noise").text();

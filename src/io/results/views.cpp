@@ -2,8 +2,10 @@
 #include <agrisee/io/files.hpp>
 #include <agrisee/io/results.hpp>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
 
 #include "io/formats/csv.hpp"
 #include "io/results/result_texts.hpp"
@@ -54,54 +56,99 @@ void write_views(const std::filesystem::path& path, const std::vector<View>& vie
   write_file(path, views_text(views));
 }
 
-std::vector<View> read_views(const std::filesystem::path& path) {
-  const Bytes bytes = read_bytes(path);
-  Lines lines(bytes.view());
-  std::string_view line;
-  std::vector<std::string> cells;
-  if (!lines.next_filled(line)) fail(path, "is empty");
-  split_csv(line, cells);
-  std::array<std::size_t, kColumns.size()> where{};
-  for (std::size_t c = 0; c < kColumns.size(); ++c) {
-    const auto found = std::find(cells.begin(), cells.end(), kColumns[c]);
-    if (found == cells.end()) fail(path, lines.number(), std::string("no column '") + kColumns[c] + "'");
-    where[c] = static_cast<std::size_t>(found - cells.begin());
-  }
-  const std::size_t width = cells.size();
-  std::vector<View> views;
-  while (lines.next_filled(line)) {
-    if (!split_csv(line, cells) || cells.size() != width)
-      fail(path, lines.number(), "expected " + std::to_string(width) + " cells, got " + std::to_string(cells.size()));
-    const auto number = [&](std::size_t c) {
-      const auto value = to_number(trimmed(cells[where[c]]));
-      if (!value || !std::isfinite(*value))
-        fail(path, lines.number(), std::string(kColumns[c]) + ": " + excerpt(cells[where[c]]) + " is not a number");
-      return *value;
-    };
-    const auto count = [&](std::size_t c) {
-      const auto value = to_integer(trimmed(cells[where[c]]));
-      if (!value || *value < 0)
-        fail(path, lines.number(), std::string(kColumns[c]) + ": " + excerpt(cells[where[c]]) + " is not a count");
-      return static_cast<std::size_t>(*value);
-    };
-    const auto vector = [&](std::size_t c) { return Eigen::Vector3d(number(c), number(c + 1), number(c + 2)); };
-    if (count(kView) != views.size()) fail(path, lines.number(), "view: expected " + std::to_string(views.size()));
-    View view;
-    Eigen::Quaterniond q(number(kRotation + 3), number(kRotation), number(kRotation + 1), number(kRotation + 2));
-    if (std::abs(q.norm() - 1.0) > 1e-3) fail(path, lines.number(), "the quaternion is not of unit length");
-    view.world_T_optical.linear() = q.normalized().toRotationMatrix();
-    view.world_T_optical.translation() = vector(kPosition);
-    view.target = vector(kTarget);
-    std::size_t empty = 0;
-    for (std::size_t j = 0; j < 6; ++j) empty += cells[where[kJoints + j]].empty() ? 1 : 0;
-    if (empty < 6) {  // all six must be numbers then; number() rejects empty cells
-      view.joints.emplace();
-      for (std::size_t j = 0; j < 6; ++j) (*view.joints)[static_cast<Eigen::Index>(j)] = number(kJoints + j);
+namespace {
+
+/// The rows of a views.csv, with the values that its columns have.
+class ViewTable {
+ public:
+  explicit ViewTable(const std::filesystem::path& path) : path_(path), bytes_(read_bytes(path)), lines_(bytes_.view()) {
+    std::string_view line;
+    if (!lines_.next_filled(line)) fail(path, "is empty");
+    split_csv(line, cells_);
+    for (std::string& cell : cells_) cell = std::string(trimmed(cell));
+    width_ = cells_.size();
+    for (std::size_t c = 0; c < kColumns.size(); ++c) {
+      const auto found = std::find(cells_.begin(), cells_.end(), kColumns[c]);
+      if (found != cells_.end()) where_[c] = static_cast<std::size_t>(found - cells_.begin());
     }
-    view.points_in = count(kIn);
-    view.points_new = count(kNew);
-    view.plan_seconds = number(kPlan);
-    views.push_back(view);
+    require(kView, 1);
+    require(kPosition, 3);
+    for (const auto& [first, count] : {std::pair{kTarget, 3}, {kRotation, 4}, {kJoints, 6}})
+      if (has(first, count)) require(first, count);
+  }
+
+  /// Go to the next row. @return false at the end
+  bool next() {
+    std::string_view line;
+    if (!lines_.next_filled(line)) return false;
+    if (!split_csv(line, cells_) || cells_.size() != width_)
+      bad("expected " + std::to_string(width_) + " cells, got " + std::to_string(cells_.size()));
+    return true;
+  }
+  /// Whether any of `count` columns from `first` on is there.
+  bool has(int first, int count = 1) const {
+    return std::any_of(where_.begin() + first, where_.begin() + first + count, [](const auto& w) { return !!w; });
+  }
+  bool is_empty(int column) const { return trimmed(text(column)).empty(); }
+  double number(int column) const {
+    const auto value = to_number(trimmed(text(column)));
+    if (!value || !std::isfinite(*value)) bad(name(column) + ": " + excerpt(text(column)) + " is not a number");
+    return *value;
+  }
+  std::size_t count(int column) const {
+    const auto value = to_integer(trimmed(text(column)));
+    if (!value || *value < 0) bad(name(column) + ": " + excerpt(text(column)) + " is not a count");
+    return static_cast<std::size_t>(*value);
+  }
+  Eigen::Vector3d vector(int first) const { return {number(first), number(first + 1), number(first + 2)}; }
+  [[noreturn]] void bad(const std::string& message) const { fail(path_, lines_.number(), message); }
+
+ private:
+  static std::string name(int column) { return kColumns[static_cast<std::size_t>(column)]; }
+  const std::string& text(int column) const { return cells_[*where_[static_cast<std::size_t>(column)]]; }
+  void require(int first, int count) const {
+    for (int c = first; c < first + count; ++c)
+      if (!has(c)) bad("no column '" + name(c) + "'");
+  }
+
+  const std::filesystem::path path_;
+  const Bytes bytes_;
+  Lines lines_;
+  std::vector<std::string> cells_;
+  std::size_t width_ = 0;
+  std::array<std::optional<std::size_t>, kColumns.size()> where_;  // of each column in a row, where it is there
+};
+
+View view_of(const ViewTable& row) {
+  View view;
+  if (row.has(kRotation)) {
+    const Eigen::Quaterniond q(row.number(kRotation + 3), row.number(kRotation), row.number(kRotation + 1),
+                               row.number(kRotation + 2));
+    if (std::abs(q.norm() - 1.0) > 1e-3) row.bad("the quaternion is not of unit length");
+    view.world_T_optical.linear() = q.normalized().toRotationMatrix();
+  }
+  view.world_T_optical.translation() = row.vector(kPosition);
+  if (row.has(kTarget)) view.target = row.vector(kTarget);
+  int empty = 0;
+  for (int j = 0; j < 6 && row.has(kJoints); ++j) empty += row.is_empty(kJoints + j) ? 1 : 0;
+  if (row.has(kJoints) && empty < 6) {  // all six must be numbers then; number() rejects empty cells
+    view.joints.emplace();
+    for (int j = 0; j < 6; ++j) (*view.joints)[j] = row.number(kJoints + j);
+  }
+  if (row.has(kIn)) view.points_in = row.count(kIn);
+  if (row.has(kNew)) view.points_new = row.count(kNew);
+  if (row.has(kPlan)) view.plan_seconds = row.number(kPlan);
+  return view;
+}
+
+}  // namespace
+
+std::vector<View> read_views(const std::filesystem::path& path) {
+  ViewTable table(path);
+  std::vector<View> views;
+  while (table.next()) {
+    if (table.count(kView) != views.size()) table.bad("view: expected " + std::to_string(views.size()));
+    views.push_back(view_of(table));
   }
   return views;
 }

@@ -7,6 +7,7 @@
 #include <set>
 
 #include "io/formats/text.hpp"
+#include "io/formats/yaml_list.hpp"
 
 namespace agrisee::io {
 namespace {
@@ -27,20 +28,9 @@ Eigen::Vector3d rpy_of(const Eigen::Matrix3d& r) {
   return (rpy * 1e14).array().round() / 1e14;
 }
 
-/// A YAML list of numbers.
-template <typename V>
-std::string list(const V& values) {
-  std::string out = "[";
-  for (Eigen::Index i = 0; i < values.size(); ++i) {
-    check_input(std::isfinite(values[i]), "write_scene: a value is not finite");
-    out += (i ? ", " : "") + format(static_cast<double>(values[i]));
-  }
-  return out + "]";
-}
-
 std::string pose(const Pose& pose) {
   check_input(is_rigid(pose), "write_scene: a pose is not rigid");
-  return "{xyz: " + list(Eigen::Vector3d(pose.translation())) + ", rpy: " + list(rpy_of(pose.linear())) + "}";
+  return "{xyz: " + yaml_list(Eigen::Vector3d(pose.translation())) + ", rpy: " + yaml_list(rpy_of(pose.linear())) + "}";
 }
 
 /// A text as a YAML scalar: plain if that is safe, otherwise in double quotes.
@@ -69,25 +59,37 @@ std::string sensor_map(const sensor::DepthCamera& sensor) {
   const auto fov = [](int pixels, double f) {
     return std::round(2.0 * std::atan(0.5 * pixels / f) / deg(1) * 1e9) * 1e-9;
   };
+  try {
+    sensor.check();
+  } catch (const ParameterError& e) {
+    throw InputError(std::string("write_scene: ") + e.what());
+  }
   const Eigen::Vector2d degrees(fov(k.width, k.fx), fov(k.height, k.fy));
-  check_input(k.width > 0 && k.height > 0 && degrees.minCoeff() > 0.0 && degrees.maxCoeff() < 180.0 &&
-                  k.cx == 0.5 * (k.width - 1) && k.cy == 0.5 * (k.height - 1),
-              "write_scene: the sensor's intrinsics do not follow from fields of view");
-  check_input(sensor.range_min >= 0.0 && sensor.range_min < sensor.range_max, "write_scene: bad sensor range");
-  return "{model: l515, width: " + std::to_string(k.width) + ", height: " + std::to_string(k.height) +
-         ", fov_deg: " + list(degrees) + ", range: " + list(Eigen::Vector2d(sensor.range_min, sensor.range_max)) + "}";
+  const sensor::Intrinsics by_fov = sensor::intrinsics_from_fov(k.width, k.height, deg(degrees.x()), deg(degrees.y()));
+  const auto near = [](double a, double b) { return std::abs(a - b) <= 1e-9 * b; };
+  const bool centered = k.cx == by_fov.cx && k.cy == by_fov.cy && near(k.fx, by_fov.fx) && near(k.fy, by_fov.fy);
+  std::string out = "{model: l515, width: " + std::to_string(k.width) + ", height: " + std::to_string(k.height);
+  if (centered)
+    out += ", fov_deg: " + yaml_list(degrees);
+  else
+    out += ", fx: " + format(k.fx) + ", fy: " + format(k.fy) + ", cx: " + format(k.cx) + ", cy: " + format(k.cy);
+  out += ", range: " + yaml_list(Eigen::Vector2d(sensor.range_min, sensor.range_max));
+  const sensor::DepthCamera usual;  // with the housing of an L515
+  if (sensor.housing_radius != usual.housing_radius || sensor.housing_depth != usual.housing_depth)
+    out += ", housing: {radius: " + format(sensor.housing_radius) + ", depth: " + format(sensor.housing_depth) + "}";
+  return out + "}";
 }
 
 std::string solid(const KeepOut& k) {
   std::string out = "{name: " + scalar(k.name) + ", ";
   if (const Box* box = std::get_if<Box>(&k.shape)) {
     check_input(box->size.minCoeff() > 0.0, "write_scene: a keep-out box without size");
-    out += "box: {center: " + list(box->center) + ", size: " + list(box->size) + "}";
+    out += "box: {center: " + yaml_list(box->center) + ", size: " + yaml_list(box->size) + "}";
   } else {
     const Cylinder& c = std::get<Cylinder>(k.shape);
     check_input(c.radius > 0.0 && c.height > 0.0, "write_scene: a keep-out cylinder without size");
-    out += "cylinder: {center: " + list(c.center) + ", radius: " + format(c.radius) + ", height: " + format(c.height) +
-           "}";
+    out += "cylinder: {center: " + yaml_list(c.center) + ", radius: " + format(c.radius) +
+           ", height: " + format(c.height) + "}";
   }
   return out + "}";
 }
@@ -123,10 +125,13 @@ void write_scene(const fs::path& path, const SceneFile& file) {
   check_ids(file.scene);
   check_input((cell.scan_volume.min.array() < cell.scan_volume.max.array()).all(),
               "write_scene: the scan volume is empty");
-  std::string out = "name: " + scalar(cell.name) + "\nrobot:\n  base: " + pose(cell.world_T_base) +
-                    "\n  tool: " + pose(cell.tool0_T_optical) + "\n  start: " + list(cell.start) +
-                    "\nsensor: " + sensor_map(cell.sensor) + "\nscan_volume: {min: " + list(cell.scan_volume.min) +
-                    ", max: " + list(cell.scan_volume.max) + "}\n";
+  const std::string arm = cell.arm.name == arm::UrModel().name ? "" : "  arm: " + std::string(cell.arm.name) + "\n";
+  std::string out = "name: " + scalar(cell.name) + "\nrobot:\n" + arm + "  base: " + pose(cell.world_T_base) +
+                    "\n  tool: " + pose(cell.tool0_T_optical) +
+                    (cell.tool0_T_tool ? "\n  gripper: " + pose(*cell.tool0_T_tool) : "") +
+                    "\n  start: " + yaml_list(cell.start) + "\nsensor: " + sensor_map(cell.sensor) +
+                    "\nscan_volume: {min: " + yaml_list(cell.scan_volume.min) +
+                    ", max: " + yaml_list(cell.scan_volume.max) + "}\n";
   if (!cell.keep_out.empty()) out += "keep_out:\n";
   for (const KeepOut& k : cell.keep_out) out += "  - " + solid(k) + "\n";
   out += file.scene.objects.empty() ? "objects: []\n" : "objects:\n";

@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// @file
+/// PNG images with one channel of 16 bits, as depth cameras store them.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace agrisee::io {
+
+/// An image with one channel of 16 bits, row by row from the top left.
+struct GreyImage {
+  int width = 0, height = 0;
+  std::vector<std::uint16_t> pixels;
+};
+
+/// Whether a file begins like a PNG file.
+bool is_png(std::string_view bytes);
+
+/// Decode a PNG image (by stb_image). The checksum of every chunk is tested. @param path for messages
+/// @throws FileError for bytes that are no PNG or damaged, a colour image, and one of fewer than 16 bits
+GreyImage decode_png16(const std::filesystem::path& path, std::string_view bytes);
+
+/// The bytes of a PNG image.
+std::string encode_png16(const GreyImage& image);
+
+}  // namespace agrisee::io

@@ -1,0 +1,166 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <agrisee/io/depth_image.hpp>
+#include <agrisee/io/files.hpp>
+#include <agrisee/io/recorded_views.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+#include "io/formats/text.hpp"
+#include "io/formats/yaml_camera.hpp"
+#include "io/formats/yaml_list.hpp"
+#include "io/formats/yaml_map.hpp"
+#include "io/formats/yaml_pose.hpp"
+
+namespace agrisee::io {
+namespace {
+
+namespace fs = std::filesystem;
+
+void read_camera(const YamlValue& value, RecordedViews& recorded) {
+  value.check_keys({"width", "height", "fx", "fy", "cx", "cy", "depth_scale", "range"});
+  sensor::DepthCamera& camera = recorded.workcell.sensor;
+  camera = sensor::DepthCamera();
+  sensor::Intrinsics& k = camera.intrinsics;
+  k.width = pixels(value.at("width"));
+  k.height = pixels(value.at("height"));
+  k.fx = positive(value.at("fx"));
+  k.fy = positive(value.at("fy"));
+  k.cx = value.at("cx").number();
+  k.cy = value.at("cy").number();
+  const auto inside = [](double c, int size) { return c >= -0.5 && c <= size - 0.5; };
+  if (!inside(k.cx, k.width)) value.at("cx").fail("is outside of the image, got " + format(k.cx));
+  if (!inside(k.cy, k.height)) value.at("cy").fail("is outside of the image, got " + format(k.cy));
+  if (value.has("depth_scale")) recorded.depth_scale = positive(value.at("depth_scale"));
+  camera.range_max = 1e6;  // no limit
+  if (!value.has("range")) return;
+  const Eigen::Vector2d range = read_range(value.at("range"));
+  camera.range_min = range[0];
+  camera.range_max = range[1];
+}
+
+RecordedView read_view(const YamlValue& value, RecordedViews& recorded) {
+  value.check_keys({"depth", "pose"});
+  RecordedView view;
+  const YamlValue depth = value.at("depth");
+  view.depth = depth.text();
+  view.place = depth.place();
+  std::error_code error;
+  if (!fs::exists(recorded.folder / view.depth, error))
+    depth.fail("no such file: " + (recorded.folder / view.depth).string());
+  view.world_T_optical = read_pose(value.at("pose"), recorded.warnings);
+  return view;
+}
+
+/// The median of the depths that are returns; none without any.
+std::optional<double> median_depth(const sensor::DepthFrame& frame) {
+  std::vector<float> depths;
+  std::copy_if(frame.depth.begin(), frame.depth.end(), std::back_inserter(depths), sensor::DepthFrame::valid);
+  if (depths.empty()) return std::nullopt;
+  const auto middle = depths.begin() + static_cast<std::ptrdiff_t>(depths.size() / 2);
+  std::nth_element(depths.begin(), middle, depths.end());
+  return double(*middle);
+}
+
+void check_scale(const std::string& place, const sensor::DepthFrame& frame, double scale) {
+  const std::optional<double> median = median_depth(frame);
+  if (!median || (*median >= 0.02 && *median <= 50.0)) return;
+  throw FileError(place + ": the median depth is " + format(static_cast<float>(*median)) +
+                  " m: is camera.depth_scale right? It is " + format(scale) +
+                  " (metres per unit; for an image in millimetres 0.001)");
+}
+
+/// A text as a YAML scalar in double quotes.
+std::string quoted(const std::string& text) {
+  std::string out = "\"";
+  for (const char c : text) {
+    if (c == '"' || c == '\\') out += '\\';
+    if (static_cast<unsigned char>(c) < ' ' || c == 127) {
+      char escape[8];
+      std::snprintf(escape, sizeof escape, "\\x%02x", static_cast<unsigned>(c));
+      out += escape;
+    } else {
+      out += c;
+    }
+  }
+  return out + "\"";
+}
+
+std::string rows_of(const Pose& pose) {
+  check_input(is_rigid(pose), "write_recorded_views: a pose is not rigid");
+  std::string out;
+  for (int r = 0; r < 4; ++r) out += (r ? ", " : "[") + yaml_list(Eigen::RowVector4d(pose.matrix().row(r)));
+  return out + "]";
+}
+
+}  // namespace
+
+RecordedViews read_recorded_views(const fs::path& path) {
+  const YamlValue top(path, load_yaml(path), "");
+  top.check_keys({"name", "camera", "base", "scan_volume", "views"});
+  RecordedViews recorded;
+  recorded.folder = path.parent_path();
+  recorded.workcell.name = top.has("name") ? top.at("name").text() : path.filename().string();
+  read_camera(top.at("camera"), recorded);
+  if (top.has("base")) recorded.workcell.world_T_base = read_pose(top.at("base"), recorded.warnings);
+  if (top.has("scan_volume")) recorded.workcell.scan_volume = read_volume(top.at("scan_volume"));
+  const YamlValue views = top.at("views");
+  if (views.list_size() == 0) views.fail("expected at least one view");
+  for (std::size_t i = 0; i < views.list_size(); ++i) recorded.views.push_back(read_view(views.at(i), recorded));
+  return recorded;
+}
+
+sensor::DepthFrame read_frame(const RecordedViews& recorded, std::size_t number) {
+  const RecordedView& view = recorded.views[number];
+  const sensor::DepthCamera& camera = recorded.workcell.sensor;
+  const sensor::Intrinsics& k = camera.intrinsics;
+  try {
+    const DepthImage image = read_depth_image(recorded.folder / view.depth);
+    if (image.width != k.width || image.height != k.height)
+      throw FileError((recorded.folder / view.depth).string() + ": has " + std::to_string(image.width) + " x " +
+                      std::to_string(image.height) + " pixels, but the camera " + std::to_string(k.width) + " x " +
+                      std::to_string(k.height));
+    const double scale = recorded.depth_scale.value_or(default_depth_scale(image));
+    sensor::DepthFrame frame = to_frame(image, k, scale);
+    check_scale((recorded.folder / view.depth).string(), frame, scale);
+    for (float& z : frame.depth)
+      if (!(double(z) >= camera.range_min && double(z) <= camera.range_max)) z = 0.0f;
+    return frame;
+  } catch (const FileError& e) {
+    throw FileError(view.place + ": " + e.what());
+  }
+}
+
+Aabb extent_of(const sensor::DepthFrame& frame, const Pose& world_T_optical) {
+  Aabb box;
+  for (int v = 0; v < frame.intrinsics.height; ++v)
+    for (int u = 0; u < frame.intrinsics.width; ++u)
+      if (sensor::DepthFrame::valid(frame.at(u, v))) box.extend(world_T_optical * frame.point(u, v).cast<double>());
+  return box;
+}
+
+void write_recorded_views(const fs::path& path, const RecordedViews& recorded) {
+  const Workcell& cell = recorded.workcell;
+  const sensor::Intrinsics& k = cell.sensor.intrinsics;
+  std::string out;
+  if (!cell.name.empty()) out += "name: " + quoted(cell.name) + "\n";
+  out += "camera:\n  width: " + std::to_string(k.width) + "\n  height: " + std::to_string(k.height) + "\n";
+  for (const auto& [key, value] : {std::pair{"fx", k.fx}, {"fy", k.fy}, {"cx", k.cx}, {"cy", k.cy}}) {
+    check_input(std::isfinite(value), "write_recorded_views: the intrinsics are not finite");
+    out += std::string("  ") + key + ": " + format(value) + "\n";
+  }
+  if (recorded.depth_scale) out += "  depth_scale: " + format(*recorded.depth_scale) + "\n";
+  if (cell.sensor.range_max < 1e6)
+    out += "  range: " + yaml_list(Eigen::Vector2d(cell.sensor.range_min, cell.sensor.range_max)) + "\n";
+  out += "base: " + rows_of(cell.world_T_base) + "\n";
+  if (!cell.scan_volume.empty())
+    out +=
+        "scan_volume: {min: " + yaml_list(cell.scan_volume.min) + ", max: " + yaml_list(cell.scan_volume.max) + "}\n";
+  out += "views:\n";
+  for (const RecordedView& view : recorded.views)
+    out += "  - depth: " + quoted(view.depth.string()) + "\n    pose: " + rows_of(view.world_T_optical) + "\n";
+  write_file(path, out);
+}
+
+}  // namespace agrisee::io
