@@ -70,7 +70,7 @@ TEST_CASE("values out of their range are named with file, line and the whole key
   };
   refused("max_views: 0\n", ":1: 'max_views' must be at least 1, got 0");
   refused("planner: best\n", ":1: 'planner' must be gain, see, fixed or random, got best");
-  refused("max_views: 3\npreset: other\n", ":2: 'preset' must be default or paper, got other");
+  refused("max_views: 3\npreset: other\n", ":2: 'preset' must be default, paper or see, got other");
   refused("max_views: 3\n\ngain:\n  dwell: 2\n  min_gain: -0.5\n",
           ":5: 'gain.min_gain' must be zero or more, got -0.5");
   refused("gain:\n  expected: {voxel: 0}\n", ":2: 'gain.expected.voxel' must be positive, got 0");
@@ -110,7 +110,16 @@ TEST_CASE("a whole struct is checked by whole keys") {
   refused([](Parameters& p) { p.see.psi = 1000; }, "see.upsilon must be at least psi / 100000 (0.01), got 0.005");
   refused([](Parameters& p) { p.see.radius = 10; },
           "see.radius must be above 0 and below (1e8 / rho)^(1/3) (3.6840315), got 10");
+  refused([](Parameters& p) { p.split.growing.smoothness = 12.0; },
+          "split.growing.smoothness must be from 0 to pi (3.14159265), got 12: angles are in radians; 12 degrees are "
+          "0.20943951");
+  refused([](Parameters& p) { p.surfels.separation = 2.4; },
+          "surfels.separation must be below 20 times split.bodies.radius_max (1), got 2.4: lengths are in metres; 2.4 "
+          "mm are 0.0024");
   Parameters p;
+  CHECK_THROWS_WITH(p.expect_radii(20, 50),
+                    "split.bodies.radius_min must be above 0 and at most 1, got 20: lengths are in metres; 20 mm are "
+                    "0.02");
   CHECK_THROWS_WITH(p.expect_radii(0.03, 0.02),
                     "split.bodies.radius_max must be from radius_min (0.03) to 20 times radius_min (0.6), got 0.02");
   CHECK_THROWS_WITH(NormalParameters({0.0, 25}).check(), "radius must be positive, got 0");
@@ -131,6 +140,12 @@ TEST_CASE("what fusion needs is gathered from its stages") {
   CHECK(f.icp.min_matches == 7);
   CHECK(f.free_space.margin == 0.125);
   CHECK_FALSE(f.register_views);
+}
+
+TEST_CASE("a radius in millimetres is refused with line and key") {
+  const std::string error = error_of("split:\n  bodies:\n    radius_min: 25\n    radius_max: 45\n");
+  CHECK(error.find(":3: 'split.bodies.radius_min' must be") != std::string::npos);
+  CHECK(error.find("25 mm are 0.025") != std::string::npos);
 }
 
 TEST_CASE("parameter files that hold more, or other things, than parameters are refused") {

@@ -217,7 +217,7 @@ TEST_CASE("PLY files that are not right are refused by name") {
   require_file_error(folder / "missing.ply", "no such file", reader);
   require_file_error(folder.path(), "directory", reader);
   require_file_error(folder / "missing.xyz", "no such file", [](const auto& p) { io::read_cloud(p); });
-  require_file_error(folder.file("a.xyz", "1 2 3\n"), "neither", [](const auto& p) { io::read_cloud(p); });
+  require_file_error(folder.file("a.txt", "no cloud\n"), "neither", [](const auto& p) { io::read_cloud(p); });
   refuse("", "empty");
   refuse("plx\n", "does not begin");
   refuse("ply\nformat ascii 1.0\n", "before 'end_header'");

@@ -86,11 +86,42 @@ TEST_CASE("a picture shows every fruit in its colour, from both sides") {
   CHECK(mean_column(2) < mean_column(3));
 }
 
+TEST_CASE("the number of a fruit behind another stays readable") {
+  // Two fruit in one line of sight: with both numbers in one place, the ring of the first would be hidden.
+  ScanResult r = spheres(2);
+  r.fruits[0].id = 3;  // orange, unlike the axes of the frames
+  r.fruits[1].id = 4;
+  const auto ring = [&](int behind) {
+    r.fruits[0].body->center = r.fruits[1].body->center + Eigen::Vector3d(0.0, 0.08 * behind, 0.0);
+    r.fruits[0].centroid = r.fruits[0].body->center;
+    Cloud only;  // of the second fruit, so that the colour of the first is seen in its number's ring alone
+    for (std::size_t i = 0; i < r.cloud.size(); ++i)
+      if (r.labels[i] == 2) only.points.push_back(r.cloud.points[i]);
+    ScanResult shown = r;
+    shown.cloud = only;
+    shown.labels.assign(only.size(), 4);
+    io::Image image = io::render(shown, cell(), 1600, 900);
+    image.height -= 80;  // without the legend
+    return count_like(image, io::fruit_color(3), 0, 800);
+  };
+  const std::size_t apart = ring(0) > 0 ? ring(1) : 0;
+  CHECK(apart > 40);
+  CHECK(2 * ring(0) > apart);
+}
+
 TEST_CASE("pictures are the same every time, and of the size asked for") {
   const io::Image a = io::render(spheres(2), cell(), 640, 360), b = io::render(spheres(2), cell(), 640, 360);
   CHECK(a.pixels == b.pixels);
   CHECK_THROWS_AS(io::render(spheres(1), cell(), 100, 360), ParameterError);
   CHECK_THROWS_AS(io::render(spheres(1), cell(), 640, 0), ParameterError);
+}
+
+TEST_CASE("a picture shows where the fruit are, not the centroids of their points") {
+  ScanResult other = spheres(2);
+  for (Fruit& f : other.fruits) f.centroid.y() -= 0.02;
+  CHECK(io::render(other, cell(), 640, 360).pixels == io::render(spheres(2), cell(), 640, 360).pixels);
+  for (Fruit& f : other.fruits) f.body->center.y() += 0.02;
+  CHECK(io::render(other, cell(), 640, 360).pixels != io::render(spheres(2), cell(), 640, 360).pixels);
 }
 
 TEST_CASE("any result can be drawn") {

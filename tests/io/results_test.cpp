@@ -31,6 +31,9 @@ ScanResult some_result() {
     v.plan_seconds = 0.01 * i;
     r.views.push_back(v);
   }
+  r.views[2].discarded = true;
+  r.views[2].discard_reason = DiscardReason::contradicts_others;
+  r.bodies.too_small = 5;
   r.stop_reason = StopReason::low_gain;
   Rng rng(3);
   for (int i = 0; i < 50; ++i) {
@@ -45,6 +48,7 @@ ScanResult some_result() {
     Fruit f;
     f.id = i + 1;
     f.points = static_cast<std::size_t>(100 + i);
+    f.truss = i + 1;
     f.found_by = i ? "dbscan" : "region_growing";
     f.centroid = {0.1 / 3.0, -0.5, 0.2 + i};
     f.centroid_cluster = {1e-9, 2.0, 3.0};
@@ -81,6 +85,10 @@ ScanResult some_result() {
     }
     r.fruits.push_back(f);
   }
+  r.trusses.resize(2);
+  r.trusses[1].id = 2;
+  r.trusses[1].fruits = {2};
+  r.trusses[1].world_T_truss.translation() = Eigen::Vector3d(0.25, 0.5, 0.125);
   r.seconds.capture = 1.5;
   r.seconds.plan = 0.1;
   r.seconds.total = 2.25;
@@ -99,6 +107,7 @@ io::RunInfo some_info() {
   io::RunInfo info;
   info.scene = "truss \"7\" \xC3\xA9";
   info.version = "0.1.0";
+  info.time = "2026-03-21T13:07:55Z";
   info.seed = 18446744073709551615ull;
   info.threads = 2;
   info.noise = "gaussian:0.01";
@@ -141,6 +150,7 @@ TEST_CASE("a result folder holds every file of the contract and reads back") {
     const Fruit &a = fruits[i], &b = result.fruits[i];
     CHECK(a.id == b.id);
     CHECK(a.points == b.points);
+    CHECK(a.truss == b.truss);
     CHECK(a.found_by == b.found_by);
     CHECK(a.centroid == b.centroid);
     CHECK(a.centroid_cluster == b.centroid_cluster);
@@ -180,6 +190,8 @@ TEST_CASE("a result folder holds every file of the contract and reads back") {
   CHECK(run.info.scene == some_info().scene);
   CHECK(run.info.seed == some_info().seed);
   CHECK(run.info.threads == 2);
+  CHECK(run.info.time == "2026-03-21T13:07:55Z");
+  CHECK(run.info.frame_id == "world");
   CHECK(run.info.noise == "gaussian:0.01");
   CHECK(run.info.planner == "gain");
   CHECK(nlohmann::json::parse(run.info.parameters_json) == nlohmann::json::parse(some_info().parameters_json));
@@ -213,6 +225,15 @@ TEST_CASE("the text files have the contract's keys and columns") {
     CHECK(fruits[0].contains(key));
     CHECK_FALSE(fruits[1].contains(key));
   }
+  // One position: that of the body where there is one, else the centroid.
+  const auto is = [](const nlohmann::json& list, double x, double y, double z) {
+    for (int a = 0; a < 3; ++a)
+      CHECK(list[std::size_t(a)].get<double>() == Approx(a == 0 ? x : a == 1 ? y : z).margin(1e-8));
+  };
+  is(fruits[0]["position_world"], 0.03, -0.49, 0.21);
+  is(fruits[0]["position_cluster"], 0.03 - 0.1 / 3.0, 2.01, 3.01);
+  is(fruits[1]["position_world"], 0.1 / 3.0, -0.5, 1.2);
+  is(fruits[1]["position_cluster"], 0.0, 2.0, 3.0);
   const Eigen::Quaterniond q = quaternion(some_result().fruits[0].orientation);
   CHECK(fruits[0]["orientation_world"][0].get<double>() == Approx(q.x()));
   CHECK(fruits[0]["orientation_world"][3].get<double>() == Approx(q.w()));
@@ -224,6 +245,17 @@ TEST_CASE("the text files have the contract's keys and columns") {
   for (const char* key : {"capture", "plan", "fuse", "filter", "normals", "segment", "locate", "total"})
     CHECK(run["seconds"].contains(key));
   CHECK(run["parameters"]["sor"]["mean_k"] == 20);
+  CHECK(run["time"] == "2026-03-21T13:07:55Z");
+  CHECK(run["frame_id"] == "world");
+  REQUIRE(run["trusses"].size() == 2);
+  CHECK(
+      run["trusses"][1] ==
+      nlohmann::json::parse(
+          R"({"id": 2, "fruits": [2], "position_world": [0.25, 0.5, 0.125], "orientation_world": [0.0, 0.0, 0.0, 1.0]})"));
+  CHECK(run["views_discarded"] == 1);
+  CHECK(run["discarded_views"] == nlohmann::json::parse(R"([{"view": 2, "reason": "contradicts_others"}])"));
+  CHECK(run["bodies"]["too_small"] == 5);
+  CHECK_FALSE(run.contains("no_fruit"));
   CHECK(run["cluster_origin_world"] == nlohmann::json({-0.17, 0.72, -0.02}));
   const std::string table = slurp(folder / "fruits.csv");
   const std::string head = table.substr(0, table.find('\n'));
@@ -259,6 +291,8 @@ TEST_CASE("the text files have the contract's keys and columns") {
   CHECK(cell("reachable") == "true");
   CHECK(cell("picking_reason") == "reachable");
   CHECK(cell("pre_grasp_position_world_y") == "-0.64");
+  CHECK(cell("position_world_y") == "-0.49");
+  CHECK(cell("truss") == "1");
   CHECK(cell("pre_grasp_q6") == "0.14285714285714285");
 }
 
@@ -271,6 +305,18 @@ TEST_CASE("equal results leave equal bytes") {
   CHECK(a.files() == 6);
 }
 
+TEST_CASE("the time is that of the clock, or the one that SOURCE_DATE_EPOCH gives") {
+  const std::string now = io::utc_now();
+  REQUIRE(now.size() == 20);
+  CHECK(now > "2024");
+  CHECK(now.back() == 'Z');
+  setenv("SOURCE_DATE_EPOCH", "1774098475", 1);
+  CHECK(io::utc_now() == "2026-03-21T13:07:55Z");
+  setenv("SOURCE_DATE_EPOCH", "soon", 1);
+  CHECK(io::utc_now() > "2024");
+  unsetenv("SOURCE_DATE_EPOCH");
+}
+
 TEST_CASE("an empty result is a result") {
   const TempFolder folder;
   io::write_result(folder.path(), ScanResult{}, Workcell{}, io::RunInfo{});
@@ -278,6 +324,8 @@ TEST_CASE("an empty result is a result") {
   CHECK(io::read_fruits(folder / "fruits.json").empty());
   CHECK(io::read_cloud(folder / "cloud.ply").cloud.empty());
   CHECK(io::read_run(folder / "run.json").stop_reason == "not_stopped");
+  CHECK(io::read_run(folder / "run.json").info.time.empty());
+  CHECK(nlohmann::json::parse(slurp(folder / "run.json"))["no_fruit"] == "there are no points");
 }
 
 TEST_CASE("a scan in progress leaves its views and points") {

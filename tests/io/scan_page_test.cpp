@@ -214,6 +214,50 @@ TEST_CASE("every valid result has a page") {
                      [&](const auto& p) { io::write_scan_page(p, {}, {}, {}); });
 }
 
+TEST_CASE("the page shows a depth image of each view, and whether the scan runs") {
+  sensor::DepthFrame frame;
+  frame.intrinsics.width = 640;
+  frame.intrinsics.height = 480;
+  frame.intrinsics.fx = frame.intrinsics.fy = 500.0;
+  frame.depth.assign(frame.intrinsics.size(), 3.0f);
+  for (std::size_t i = 0; i < 640 * 30; ++i) frame.depth[i] = 0.3f;
+  for (std::size_t u = 300; u < 309; ++u)
+    for (std::size_t v = 0; v < 480; ++v) frame.depth[640 * v + u] = kNan;
+  io::ScanHistory history;
+  history.depth.push_back(io::depth_picture(frame));
+  history.depth.push_back({});
+  CHECK(history.depth[0].nearest == double(0.3f));
+  CHECK(history.depth[0].farthest == 3.0);
+  CHECK((history.depth[0].width == 214 && history.depth[0].height == 160));  // blocks of 3 by 3 pixels
+
+  auto data = data_of(io::scan_page(scanned(10, 3), cell(), {}, history));
+  REQUIRE(data["depth"].size() == 2);
+  CHECK(data["depth"][0]["near"].get<float>() == 0.3f);
+  CHECK(data["depth"][0]["far"] == 3.0);
+  CHECK(data["depth"][1].is_null());
+  CHECK(decoded(data["depth"][0]["png"]) == history.depth[0].png);
+  CHECK_FALSE(data.contains("running"));
+  history.running = true;
+  CHECK(data_of(io::scan_page(scanned(10, 3), cell(), {}, history))["running"] == true);
+
+  // Far more than a page should hold: every k-th view.
+  history.depth.assign(100, {1, 1, 0.5, 1.0, std::string(100000, 'x')});
+  const std::string page = io::scan_page(scanned(10, 100), cell(), {}, history);
+  CHECK(page.size() < 5000000);
+  data = data_of(page);
+  REQUIRE(data["depth"].size() == 100);
+  CHECK(decoded(data["depth"][0]["png"]) == history.depth[0].png);
+  CHECK(data["depth"][1].is_null());
+  CHECK(decoded(data["depth"][4]["png"]) == history.depth[0].png);
+}
+
+TEST_CASE("the page holds the table of the fruit as fruits.csv") {
+  const ScanResult result = scanned(10, 1);
+  const TempFolder folder;
+  io::write_fruits_csv(folder / "fruits.csv", result.fruits);
+  CHECK(data_of(io::scan_page(result, cell(), {}))["fruits_csv"] == slurp(folder / "fruits.csv"));
+}
+
 TEST_CASE("the page of a scan stays small") {
   CHECK(io::scan_page({}, {}, {}).size() < 800000);
   CHECK(io::scan_page(scanned(10000, 20), cell(), {}).size() < 1500000);  // 20000 points, and as many merged

@@ -113,6 +113,7 @@ TEST_CASE("scenes round trip") {
   file.workcell.world_T_base = pose_from_xyz_rpy({0.1, 1.0 / 3.0, -0.3}, {0.5, -0.6, 2.7});
   file.workcell.tool0_T_optical = pose_from_xyz_rpy({0, 0, 0.03}, {0.2, kPi / 2, -0.4});  // at the singularity
   file.workcell.start[2] = 0.1 + 0.2;
+  file.workcell.arm = arm::ur_model("ur5e");
   file.workcell.sensor.intrinsics = sensor::intrinsics_from_fov(320, 200, deg(69.5), deg(41));
   file.workcell.keep_out = {{"null", Box{{0, 1, 2}, {0.1, 0.2, 0.3}}}, {"pot 1", Cylinder{{3, 2, 1}, 0.25, 0.5}}};
   file.scene.objects.push_back({0, study::ObjectClass::leaf, tetrahedron(0.02f)});
@@ -126,6 +127,7 @@ TEST_CASE("scenes round trip") {
   CHECK((back.workcell.world_T_base.matrix() - file.workcell.world_T_base.matrix()).norm() < 1e-14);
   CHECK((back.workcell.tool0_T_optical.matrix() - file.workcell.tool0_T_optical.matrix()).norm() < 1e-14);
   CHECK(back.workcell.start == file.workcell.start);
+  CHECK(back.workcell.arm.name == "ur5e");
   CHECK(back.workcell.sensor.intrinsics.fx == Approx(file.workcell.sensor.intrinsics.fx).epsilon(1e-9));
   CHECK(back.workcell.sensor.intrinsics.fy == Approx(file.workcell.sensor.intrinsics.fy).epsilon(1e-9));
   CHECK(back.workcell.scan_volume.min == file.workcell.scan_volume.min);
@@ -192,7 +194,8 @@ TEST_CASE("values out of range are named") {
   refuse(kObjects, "objects: [3]\n", "objects[0]: expected keys and values");
   refuse(kRobot, kRobot + "  start: [0, 0, 0]\n", "robot.start: expected a list of 6 numbers");
   folder.refuse(kScene + "  - {id: 1, class: fruit, mesh: fruit.stl}\n", ":7: objects[1].id: two fruits have the id 1");
-  folder.refuse(kScene + "sensor: {model: kinect}\n", "sensor.model: only 'l515' is known");
+  folder.refuse(kScene + "sensor: {model: kinect}\n",
+                "sensor.model: 'kinect' is not known (known are l515, d405, azure_kinect)");
   folder.refuse(kScene + "sensor: {width: 0}\n", "sensor.width");
   folder.refuse(kScene + "sensor: {height: 1000000}\n", "sensor.height");
   folder.refuse(kScene + "sensor: {fov_deg: [70, 180]}\n", "sensor.fov_deg");
@@ -201,6 +204,100 @@ TEST_CASE("values out of range are named") {
   folder.refuse(kScene + "keep_out: [{name: a, box: {center: [0, 0, 0], size: [1, 0, 1]}}]\n", "keep_out[0].box.size");
   folder.refuse(kScene + "keep_out: [{name: a, cylinder: {center: [0, 0, 0], radius: -1, height: 1}}]\n",
                 "keep_out[0].cylinder.radius: must be positive, got -1");
+}
+
+TEST_CASE("any pinhole camera can be described, by name, opening angles or focal lengths") {
+  const SceneFolder folder;
+  const auto camera = [&](const std::string& sensor) {
+    return folder.read(kScene + "sensor: " + sensor + "\n").workcell.sensor;
+  };
+  const sensor::DepthCamera d405 = camera("{model: d405}");
+  CHECK(d405.intrinsics.width == 1280);
+  CHECK(d405.intrinsics.fx == sensor::intrinsics_from_fov(1280, 720, deg(84), deg(58)).fx);
+  CHECK(d405.range_min == 0.1);
+  CHECK(d405.range_max == 0.5);
+  CHECK(d405.housing_radius == 0.03);
+  const sensor::DepthCamera small = camera("{model: d405, width: 640, height: 360, range: [0.06, 0.4]}");
+  CHECK(small.intrinsics.fx == Approx(0.5 * d405.intrinsics.fx));
+  CHECK(small.range_min == 0.06);
+  CHECK(camera("{model: azure_kinect}").intrinsics.height == 576);
+  const sensor::DepthCamera own = camera(
+      "{width: 848, height: 480, fx: 421.5, fy: 422.25, cx: 430.125, cy: 238, range: [0.07, 2], "
+      "housing: {radius: 0.05, depth: 0.03}}");
+  CHECK(own.intrinsics.width == 848);
+  CHECK(own.intrinsics.fx == 421.5);
+  CHECK(own.intrinsics.fy == 422.25);
+  CHECK(own.intrinsics.cx == 430.125);
+  CHECK(own.intrinsics.cy == 238.0);
+  CHECK(own.housing_radius == 0.05);
+  CHECK(camera("{width: 100, height: 80, fx: 90, fy: 90}").intrinsics.cx == 49.5);
+  // It is written as it was read.
+  io::SceneFile file = folder.read(kScene);
+  file.workcell.sensor = own;
+  file.workcell.tool0_T_tool = pose_from_xyz_rpy({0.05, 0, 0.12}, {0, 0.3, 0});
+  io::write_scene(folder / "out.yaml", file);
+  const Workcell back = io::read_scene(folder / "out.yaml").workcell;
+  CHECK(back.sensor.intrinsics.fx == 421.5);
+  CHECK(back.sensor.intrinsics.cx == 430.125);
+  CHECK(back.sensor.housing_depth == 0.03);
+  REQUIRE(back.tool0_T_tool);
+  CHECK(back.tool0_T_tool->isApprox(*file.workcell.tool0_T_tool, 1e-12));
+  CHECK_FALSE(folder.read(kScene).workcell.tool0_T_tool);
+  folder.refuse(kScene + "sensor: {fx: 400, fy: 400}\n", "sensor: 'fx' and 'fy' are in pixels, so 'width'");
+  folder.refuse(kScene + "sensor: {width: 10, height: 10, fx: 400}\n", "sensor: missing key 'fy'");
+  folder.refuse(kScene + "sensor: {width: 10, height: 10, fx: 0, fy: 1}\n", "sensor.fx: must be positive, got 0");
+  folder.refuse(kScene + "sensor: {width: 10, height: 10, fx: 9, fy: 9, fov_deg: [9, 9]}\n",
+                "expected either 'fov_deg'");
+}
+
+TEST_CASE("a pose may be given by angles, a quaternion or a matrix") {
+  const SceneFolder folder;
+  const auto tool = [&](const std::string& pose) {
+    return folder.read(replaced(kScene, kRobot, kRobot + "  tool: " + pose + "\n"));
+  };
+  const Pose wanted = pose_from_xyz_rpy({0.01, 0.02, 0.05}, {0.0, 0.0, deg(30)});
+  for (const char* pose : {"{xyz: [0.01, 0.02, 0.05], rpy: [0, 0, 0.5235987755982988]}",
+                           "{xyz: [0.01, 0.02, 0.05], quaternion: [0, 0, 0.2588190451025207, 0.9659258262890683]}",
+                           "{matrix: [[0.8660254037844387, -0.5, 0, 0.01], [0.5, 0.8660254037844387, 0, 0.02], "
+                           "[0, 0, 1, 0.05], [0, 0, 0, 1]]}",
+                           "{matrix: [0.8660254037844387, -0.5, 0, 0.01, 0.5, 0.8660254037844387, 0, 0.02, "
+                           "0, 0, 1, 0.05, 0, 0, 0, 1]}"}) {
+    const io::SceneFile file = tool(pose);
+    CHECK(file.workcell.tool0_T_optical.isApprox(wanted, 1e-12));
+    CHECK(file.warnings.empty());
+  }
+  const io::SceneFile rounded = tool("{matrix: [[0.866, -0.5, 0, 0.01], [0.5, 0.866, 0, 0.02], [0, 0, 1, 0.05]]}");
+  CHECK(is_rigid(rounded.workcell.tool0_T_optical));
+  CHECK(rounded.workcell.tool0_T_optical.isApprox(wanted, 1e-4));
+  REQUIRE(rounded.warnings.size() == 1);
+  CHECK(rounded.warnings[0].find("robot.tool: its rotation matrix was off by ") == 0);
+  const auto refuse = [&](const std::string& pose, const std::string& error) {
+    folder.refuse(replaced(kScene, kRobot, kRobot + "  tool: " + pose + "\n"), error);
+  };
+  refuse("{matrix: [[0.8, -0.5, 0, 0], [0.5, 0.8, 0, 0], [0, 0, 1, 0]]}",
+         ":4: robot.tool: is not a rigid transform: its rotation matrix is off by 0.048");
+  refuse("{matrix: [1, 0, 0]}", "robot.tool.matrix[0]: expected a list");
+  refuse("{matrix: [1, 0]}", "robot.tool.matrix: expected four rows of four numbers");
+  refuse("{xyz: [0, 0, 0], matrix: [1, 0]}", "robot.tool: expected either 'matrix', or");
+  refuse("{xyz: [0, 0, 0], rpy: [0, 0, 0], quaternion: [0, 0, 0, 1]}", "expected one of 'rpy' and 'quaternion'");
+  refuse("{xyz: [0, 0, 0], quaternion: [0, 0, 0, 2]}", "the length of its quaternion is off by 1");
+  refuse("{xyz: [0, 0, 0]}", "robot.tool: missing key 'rpy'");
+}
+
+TEST_CASE("degrees and millimetres in a scene are refused, and the likely cause is named") {
+  const SceneFolder folder;
+  folder.refuse(replaced(kScene, "rpy: [0, 0, 0]", "rpy: [0, 0, 180]"),
+                ":3: robot.base.rpy: an angle of 180 rad is more than a full turn: are the angles in degrees?");
+  folder.refuse(
+      replaced(kScene, kRobot, kRobot + "  start: [0, -90, 90, -90, -90, 0]\n"),
+      ":4: robot.start: joint 2 is -90 rad, outside of its limits, -6.283 to 6.283: are the angles in degrees?");
+  folder.refuse(replaced(kScene, kRobot, kRobot + "  start: [0, -1.57, 3.5, 0, 0, 0]\n"),
+                "robot.start: joint 3 is 3.5 rad, outside of its limits, -3.142 to 3.142");
+  folder.refuse(replaced(kScene, kRobot, kRobot + "  tool: {xyz: [0, 0, 30], rpy: [0, 0, 0]}\n"),
+                "robot.tool: the camera is 30 m from the flange: is it in millimetres?");
+  folder.refuse(replaced(kScene, kVolume, "scan_volume: {min: [-100, 400, 0], max: [100, 600, 300]}\n"),
+                "scan_volume: is 300 m long: is it in millimetres?");
+  folder.refuse(kScene + "sensor: {range: [250, 9000]}\n", "sensor.range: begins at 250 m: is it in millimetres?");
 }
 
 TEST_CASE("what is no scene at all is refused") {
@@ -257,7 +354,7 @@ TEST_CASE("scenes that the format cannot express are not written") {
   refuse("no mesh", [](auto& f) { f.scene.objects[0].mesh = {}; });
   refuse("empty volume", [](auto& f) { f.workcell.scan_volume = Aabb(); });
   refuse("no name", [](auto& f) { f.workcell.name.clear(); });
-  refuse("odd camera", [](auto& f) { f.workcell.sensor.intrinsics.cx += 3.0; });
+  refuse("camera without intrinsics", [](auto& f) { f.workcell.sensor = sensor::DepthCamera(); });
   refuse("pose that scales", [](auto& f) { f.workcell.world_T_base.linear() *= 2.0; });
   refuse("no number", [](auto& f) { f.workcell.start[0] = std::nan(""); });
   CHECK(folder.files() == files);

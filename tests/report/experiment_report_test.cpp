@@ -38,7 +38,7 @@ study::CellRecord cell(const std::string& scene, int total, int hidden, int tria
   r.metrics.counting_error = total - r.metrics.n_det;
   r.metrics.object_precision = 1.0;
   r.metrics.object_recall = static_cast<double>(r.metrics.n_true) / total;
-  r.recall_after = {0.5, 0.95, 0.97};
+  r.recall_after = r.scanned_after = {0.5, 0.95, 0.97};
   r.true_after = {1, r.metrics.n_true, r.metrics.n_true};
   for (int id = 1; id <= total; ++id) {
     study::FruitMetrics f;
@@ -140,7 +140,7 @@ TEST_CASE("means, worst rows and repeatability are what they are by hand") {
   cells[2].metrics.recall = 0.9;
   cells[3].metrics.recall = 0.8;                                    // mean 85; of both scenes 70
   cells[1].fruits[0].centroid += Eigen::Vector3d(0.0, 0.004, 0.0);  // 2 mm from the mean of two: RMSE 2 mm
-  cells[3].recall_after = {0.5, 0.9, 0.94};
+  cells[3].scanned_after = {0.5, 0.9, 0.94};
   report::write_experiment_report(folder / "report.md", cells, {scene("a", 6, 2)}, kInfo);
   const std::string document = slurp(folder / "report.md");
 
@@ -227,6 +227,7 @@ TEST_CASE("the truss of the paper's localisation table is compared with it, a fr
     r.metrics = {};
     r.metrics.fruits.resize(7);
     r.recall_after.clear();
+    r.scanned_after.clear();
     r.filtered = r.merged = 0;
     r.seconds.total = std::numeric_limits<double>::quiet_NaN();
   }

@@ -33,18 +33,43 @@ writeFileSync(join(work, 'three.ply'), ply(['0 0 0', '1 1 1', '1e30 0 0']));
 writeFileSync(join(work, 'none.ply'), ply([]));
 run('process', 'three.ply', '-o', 'three');
 run('process', 'none.ply', '-o', 'none');
+/** A copy of a page with other data. */
+function changed(from, to, change) {
+  mkdirSync(join(work, to), { recursive: true });
+  const page = readFileSync(join(work, from, 'report.html'), 'utf8');
+  writeFileSync(join(work, to, 'report.html'), page.replace(/(<script id="data"[^>]*>)(.*?)(<\/script>)/s, (_, a, json, c) => {
+    const data = JSON.parse(json);
+    change(data);
+    return a + JSON.stringify(data).replaceAll('<', '\\u003c') + c;
+  }));
+}
+// What a scan rarely shows: views that were discarded, two trusses, a colour image, a crowd of fruit in one line of sight.
+changed('scan', 'rare', (data) => {
+  data.run.discarded_views = [{ view: 1, reason: 'repeated_frame' }, { view: 2, reason: 'contradicts_others' }];
+  data.run.warnings = ['a matrix was rounded'];
+  data.fruits.forEach((f, i) => (f.truss = i < 3 ? 1 : 2));
+  data.views[0].color = 'data:image/png;base64,' + data.depth[0].png;
+  data.views[3].color = 'https://example.com/a.png';
+});
+changed('scan', 'crowd', (data) => {
+  for (let id = 5; id <= 40; ++id) {
+    const f = JSON.parse(JSON.stringify(data.fruits[id % 4]));
+    data.fruits.push({ ...f, id, position_world: f.position_world.map((x) => x + 0.0007 * (id - 5)) });
+    data.colors[id] = data.colors[1 + (id % 4)];
+  }
+});
+changed('three', 'why', (data) => { data.run.no_fruit = 'none of 2 bodies was accepted: 2 were too small'; });
 // Texts that try to be markup, in every place that shows one.
 const hostile = '</script><img src=x onerror="window.hacked=1"><b>&';
-mkdirSync(join(work, 'hostile'));
-const spoil = (page) => page.replace(/(<script id="data"[^>]*>)(.*?)(<\/script>)/s, (_, a, json, c) => {
-  const data = JSON.parse(json);
+changed('scan', 'hostile', (data) => {
   Object.assign(data.run, { scene: hostile, noise: hostile, planner: hostile, version: hostile, preset: hostile, stop_reason: hostile });
+  data.run.discarded_views = [{ view: 0, reason: hostile }];
+  Object.assign(data.run, { time: hostile, frame_id: hostile, warnings: [hostile] });
   data.run.parameters = { [hostile]: hostile };
-  for (const f of data.fruits) f.found_by = hostile;
+  for (const f of data.fruits) Object.assign(f, { found_by: hostile, truss: hostile + f.id });
   for (const curve of data.curves) curve.name = hostile;
-  return a + JSON.stringify(data).replaceAll('<', '\\u003c') + c;
+  data.views[0].color = data.depth[0].png = hostile;
 });
-writeFileSync(join(work, 'hostile/report.html'), spoil(readFileSync(join(work, 'scan/report.html'), 'utf8')));
 
 const browser = await chromium.launch({
   executablePath,
@@ -53,21 +78,21 @@ const browser = await chromium.launch({
 });
 
 /** Opens a report; afterwards, nothing may have been loaded and nothing complained of. */
-async function reading(name, size, read) {
-  const page = await browser.newPage({ viewport: size });
+async function reading(name, size, read, options = {}) {
+  const page = await browser.newPage({ viewport: size, ...options });
   const complaints = [], requests = [];
   page.on('console', (m) => { if (['error', 'warning'].includes(m.type()) && !/GPU stall|GL Driver Message/.test(m.text())) complaints.push(m.text()); });
   page.on('pageerror', (e) => complaints.push(e.message));
-  page.on('request', (r) => requests.push(r.url()));
+  page.on('request', (r) => { if (!/^(data|blob):/.test(r.url())) requests.push(r.url()); });
   const address = pathToFileURL(join(work, name, 'report.html')).href;
   await page.goto(address);
   await page.waitForSelector('body[data-ready=true]');
   await page.waitForFunction(() => Number(document.getElementById('canvas').dataset.frames) > 0);
   await page.waitForTimeout(100);
   await read(page);
-  await page.screenshot({ path: join(work, `${name}_${size.width}.png`) });
+  await page.screenshot({ path: join(work, `${name}_${size.width}${options.colorScheme ?? ''}.png`) });
   assert.deepEqual(complaints, [], `${name}: complaints`);
-  assert.deepEqual(requests, [address], `${name}: loads`);
+  assert.deepEqual([...new Set(requests)], [address], `${name}: loads`);
   assert.equal(await page.evaluate(() => window.hacked), undefined);
   const wide = await page.evaluate(() => document.documentElement.scrollWidth - document.documentElement.clientWidth);
   assert.ok(wide <= 0, `${name}: ${wide} pixels wider than a window of ${size.width}`);
@@ -95,6 +120,27 @@ const pixels = (page, colors) => page.evaluate(async (wanted) => {
   }
   return { counts, drawn };
 }, colors);
+
+/** That no number of a fruit covers another one, or the controls and legends of the view. */
+async function checkBadges(page, name) {
+  const boxes = await page.evaluate(() => {
+    const box = (e) => { const b = e.getBoundingClientRect(); return { name: e.id || e.textContent, left: b.left, right: b.right, top: b.top, bottom: b.bottom }; };
+    return { badges: [...document.querySelectorAll('#labels b:not([hidden])')].map(box),
+      rest: ['cameras', 'layers', 'scale', 'triad', 'measured'].map((id) => document.getElementById(id)).filter((e) => !e.hidden).map(box), view: box(document.getElementById('viewport')) };
+  });
+  const { badges, rest, view } = boxes, slack = 0.6;
+  const covers = (a, b) => a.left < b.right - slack && b.left < a.right - slack && a.top < b.bottom - slack && b.top < a.bottom - slack;
+  const round = (a) => ({ x: (a.left + a.right) / 2, y: (a.top + a.bottom) / 2, r: (a.bottom - a.top) / 2 });
+  badges.forEach((a, i) => {
+    for (const b of rest) assert.ok(!covers(a, b), `${name}: number ${a.name} covers ${b.name}`);
+    for (const b of badges.slice(0, i)) {
+      const [p, q] = [round(a), round(b)];
+      assert.ok(Math.hypot(p.x - q.x, p.y - q.y) >= p.r + q.r - slack, `${name}: number ${a.name} covers number ${b.name}`);
+    }
+    assert.ok(a.left >= view.left - slack && a.right <= view.right + slack && a.top >= view.top - slack && a.bottom <= view.bottom + slack, `${name}: number ${a.name} leaves the view`);
+  });
+  return badges.length;
+}
 const wide = { width: 1600, height: 1000 }, narrow = { width: 420, height: 900 };
 
 for (const size of [wide, narrow])
@@ -121,6 +167,7 @@ for (const size of [wide, narrow])
     await slide(views.length);
     const again = await pixels(page, hues);
     assert.deepEqual(again, all);
+    await checkBadges(page, `scan, ${size.width}`);
     await page.focus('#slider');
     await page.keyboard.press('ArrowLeft');
     assert.equal(await page.getAttribute('body', 'data-view'), String(views.length - 1));
@@ -178,6 +225,137 @@ for (const size of [wide, narrow])
     await page.evaluate(() => window.scrollTo(0, 0));
   });
 
+// The table: sorted from the keyboard, downloaded, poses copied; distances; images; as print; dark.
+await reading('scan', wide, async (page) => {
+  const { fruits, depth, views } = JSON.parse(await page.textContent('#data'));
+  const order = () => page.$$eval('#fruits tbody tr', (rows) => rows.map((r) => Number(r.dataset.fruit)));
+  const head = page.locator('#fruits th', { hasText: 'z, mm' });
+  await page.focus('#fruits th button');
+  for (let i = 0; i < 3; ++i) await page.keyboard.press('Tab');
+  await page.keyboard.press('Enter');
+  assert.equal(await head.getAttribute('aria-sort'), 'ascending');
+  const byHeight = [...fruits].sort((a, b) => a.center_world[2] - b.center_world[2]).map((f) => f.id);
+  assert.deepEqual(await order(), byHeight);
+  await page.keyboard.press(' ');
+  assert.equal(await head.getAttribute('aria-sort'), 'descending');
+  assert.deepEqual(await order(), byHeight.reverse());
+
+  const [download] = await Promise.all([page.waitForEvent('download'), page.click('#csv')]);
+  assert.equal(download.suggestedFilename(), 'truss_4_1_s3_fruits.csv');
+  assert.equal(readFileSync(await download.path(), 'utf8'), readFileSync(join(work, 'scan/fruits.csv'), 'utf8'));
+
+  await page.click('#fruits tr[data-fruit="2"]');
+  await page.click('#detail button:text("Copy pose")');
+  await page.waitForSelector('#detail button:text("Copied")');
+  const two = fruits.find((f) => f.id === 2);
+  assert.deepEqual(JSON.parse(await page.evaluate(() => navigator.clipboard.readText())), { frame: 'world', position: two.position_world, orientation: two.orientation_world });
+
+  // Between two centres, and two points of the surface.
+  await page.click('[data-camera=fruit]');
+  await page.click('#measure');
+  await checkBadges(page, 'measuring');
+  await page.click('#labels [data-fruit="1"]');
+  await page.click('#labels [data-fruit="3"]');
+  const between = Math.hypot(...[0, 1, 2].map((a) => fruits[0].center_world[a] - fruits[2].center_world[a]));
+  assert.ok((await page.textContent('#measured')).startsWith(`${(1000 * between).toFixed(1)}\u00a0mm`), await page.textContent('#measured'));
+  const at = (id) => page.$eval(`#labels [data-fruit="${id}"]`, (e) => ({ x: Number(e.dataset.x), y: Number(e.dataset.y) }));
+  const one = await at(1);
+  await page.click('#canvas', { position: one });
+  await page.click('#canvas', { position: { x: one.x + 12, y: one.y } });
+  await page.click('#measured button');
+  const line = JSON.parse(await page.evaluate(() => navigator.clipboard.readText()));
+  const off = (p) => Math.min(...fruits.map((f) => Math.abs(Math.hypot(...[0, 1, 2].map((a) => p[a] - f.center_world[a])) - f.radii[1])));
+  for (const p of [line.from, line.to]) assert.ok(off(p) < 0.006, `a point ${off(p)} m from the surface of the nearest fruit`);
+  assert.ok(line.distance > 0.001 && line.distance < 0.03, `${line.distance} m between neighbours on the surface`);
+  await page.click('#canvas', { position: { x: 5, y: 200 } });
+  assert.match(await page.textContent('#measured'), /no point/);
+  await page.keyboard.press('Escape');
+  assert.ok(await page.isHidden('#measured'));
+  assert.equal(await page.getAttribute('body', 'data-fruit'), '2', 'measuring changed the selection');
+
+  // The depth image follows the slider, and says what it shows.
+  assert.equal(depth.length, views.length);
+  for (const k of [views.length, 1]) {
+    await page.$eval('#slider', (e, value) => { e.value = value; e.dispatchEvent(new Event('input')); }, k);
+    await page.waitForSelector(`#images canvas[data-view="${k}"]`);
+  }
+  const middle = await page.$eval('#images canvas', (c) => {
+    const { data } = c.getContext('2d').getImageData(0, 0, c.width, c.height);
+    const near = [];
+    for (let i = 0; i < data.length; i += 4) if (data[i + 3] === 255 && data[i] > 200 && data[i + 1] > 200 && data[i + 2] < 90) near.push(i / 4);
+    return { near: near.length, first: near[0], width: c.width, height: c.height };
+  });
+  assert.ok(middle.near > 0, 'nothing is yellow, so nothing is near');
+  await page.hover('#images canvas', { position: await page.$eval('#images canvas', (c, i) => ({ x: ((i % c.width) + 0.5) * (c.clientWidth / c.width), y: (Math.floor(i / c.width) + 0.5) * (c.clientHeight / c.height) }), middle.first) });
+  const shown = Number((await page.textContent('#images p')).replace(/\D/g, '')) / 1000;
+  assert.ok(shown >= depth[0].near - 0.001 && shown < depth[0].near + 0.05, `${shown} m at the nearest place, of ${depth[0].near} m`);
+  await page.mouse.move(300, 500);
+
+  await page.emulateMedia({ media: 'print' });
+  for (const id of ['cameras', 'layers', 'theme', 'slider', 'csv']) assert.ok(await page.isHidden('#' + id), `${id} is printed`);
+  const print = await page.evaluate(() => ({ body: document.body.getBoundingClientRect(), aside: document.getElementById('aside').getBoundingClientRect(),
+    table: document.getElementById('fruits').getBoundingClientRect(), stage: document.getElementById('stage').getBoundingClientRect(), ink: getComputedStyle(document.body).color }));
+  assert.ok(print.aside.top >= print.stage.bottom - 1 && print.aside.width > 0.95 * print.body.width, 'the print has columns');
+  await checkBadges(page, 'print');
+  await page.emulateMedia({ media: 'screen' });
+}, { permissions: ['clipboard-read', 'clipboard-write'] });
+
+// Dark where the system is, light where the reader wants it.
+await reading('scan', wide, async (page) => {
+  const paper = () => page.$eval('aside', (e) => getComputedStyle(e).backgroundColor.match(/\d+/g).map(Number)[0]);
+  assert.ok((await paper()) < 60, 'not dark');
+  await page.click('#theme');
+  assert.ok((await paper()) > 200, 'not light');
+  await page.reload();
+  await page.waitForSelector('body[data-ready=true]');
+  assert.ok((await paper()) > 200, 'the choice is forgotten');
+  await page.click('#theme');
+  await page.emulateMedia({ media: 'print' });
+  assert.ok((await paper()) > 200, 'the print is dark');
+  await page.emulateMedia({ media: 'screen' });
+}, { colorScheme: 'dark' });
+
+await reading('rare', wide, async (page) => {
+  assert.match(await page.textContent('#warnings'), /^2 of 5 views were discarded: view 2 \(.*repeats.*\); view 3 \(.*pose is wrong\)\.a matrix was rounded$/);
+  assert.match(await page.textContent('#summary'), /5views2discarded|views.*discarded/);
+  assert.equal(await page.locator('#curves .discarded').count(), 2);
+  assert.equal(await page.locator('#fruits th', { hasText: 'Truss' }).count(), 1);
+  const slide = (k) => page.$eval('#slider', (e, value) => { e.value = value; e.dispatchEvent(new Event('input')); }, k);
+  await slide(2);
+  assert.match(await page.textContent('#view-text'), /discarded/);
+  await slide(4);
+  assert.equal(await page.locator('#images img:visible').count(), 0, 'an image from elsewhere');
+  await slide(1);
+  assert.equal(await page.locator('#images img:visible').count(), 1, 'no colour image');
+});
+for (const size of [wide, narrow])
+  await reading('crowd', size, async (page) => {
+    for (const camera of ['fruit', 'scene', 'top']) {
+      await page.click(`[data-camera=${camera}]`);
+      await pixels(page, []);
+      assert.ok((await checkBadges(page, `crowd, ${camera}, ${size.width}`)) >= 30, `${camera}: numbers are missing`);
+    }
+  });
+
+// While a scan runs, its page follows, and looks as before.
+const final = readFileSync(join(work, 'scan/report.html'), 'utf8');
+changed('scan', 'live', (data) => {
+  data.running = true;
+  data.views.pop();
+});
+await reading('live', wide, async (page) => {
+  assert.match(await page.textContent('#live'), /running/);
+  await page.click('#labels [data-fruit="3"]');
+  await page.click('[data-camera=top]');
+  const scale = await page.textContent('#scale');
+  writeFileSync(join(work, 'live/report.html'), final);
+  await page.waitForFunction(() => document.getElementById('live')?.hidden && document.body.dataset.ready, null, { timeout: 60000 });
+  assert.equal(await page.getAttribute('body', 'data-view'), '5', 'the new view is not shown');
+  assert.equal(await page.getAttribute('body', 'data-fruit'), '3');
+  await pixels(page, []);
+  assert.equal(await page.textContent('#scale'), scale, 'the camera has moved');
+});
+
 await reading('one', wide, async (page) => {
   assert.ok(await page.isHidden('#replay'));
   assert.ok((await pixels(page, [])).drawn > 2000);
@@ -192,14 +370,17 @@ await reading('processed', wide, async (page) => {
   assert.equal(await page.locator('[data-layer=sensors], [data-layer=arm]').count(), 0);
   assert.ok((await pixels(page, [])).drawn > 20000);
 });
-for (const name of ['three', 'none'])
+for (const name of ['three', 'none', 'why'])
   await reading(name, wide, async (page) => {
     assert.ok(await page.isVisible('#no-fruit'));
+    assert.ok(await page.isHidden('#csv'));
+    if (name === 'why') assert.equal(await page.textContent('#no-fruit'), 'No fruit was found: none of 2 bodies was accepted: 2 were too small.');
     assert.equal(await page.isVisible('#notice'), name === 'none');
   });
 await reading('hostile', wide, async (page) => {
   assert.equal(await page.textContent('#scene'), hostile);
-  assert.equal(await page.locator('img').count(), 0);
+  assert.equal(await page.locator('img:visible').count(), 0);
+  assert.ok((await page.textContent('#warnings')).includes('<img'));
   await page.click('#fruits tbody tr');
   assert.ok((await page.textContent('#detail')).includes('<img'));
   await page.click('#parameters summary');

@@ -16,21 +16,41 @@ namespace {
 
 constexpr std::string_view kMark = "@REPORT_DATA@";
 
-/// Numbers as base64 (RFC 4648) of their little-endian bytes.
-template <typename T>
-std::string base64(const std::vector<T>& values) {
+/// Bytes as base64 (RFC 4648).
+std::string base64(const unsigned char* bytes, std::size_t size) {
   constexpr char kDigits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-  std::vector<unsigned char> bytes(values.size() * sizeof(T));
-  if (!bytes.empty()) std::memcpy(bytes.data(), values.data(), bytes.size());
-  std::string out;
-  out.reserve((bytes.size() + 2) / 3 * 4);
-  for (std::size_t i = 0; i < bytes.size(); i += 3) {
-    const std::size_t left = std::min<std::size_t>(3, bytes.size() - i);
+  std::string out((size + 2) / 3 * 4, '=');
+  char* to = out.data();
+  for (std::size_t i = 0; i < size; i += 3) {
+    const std::size_t left = std::min<std::size_t>(3, size - i);
     unsigned group = 0;
     for (std::size_t k = 0; k < 3; ++k) group = group << 8 | (k < left ? bytes[i + k] : 0u);
-    for (std::size_t k = 0; k < 4; ++k) out += k <= left ? kDigits[group >> (18 - 6 * k) & 63u] : '=';
+    for (std::size_t k = 0; k < 4; ++k, ++to)
+      if (k <= left) *to = kDigits[group >> (18 - 6 * k) & 63u];
   }
   return out;
+}
+
+/// Numbers as base64 of their little-endian bytes.
+template <typename T>
+std::string base64(const std::vector<T>& values) {
+  return base64(reinterpret_cast<const unsigned char*>(values.data()), values.size() * sizeof(T));
+}
+
+std::string text(const Json& j) { return j.dump(-1, ' ', false, Json::error_handler_t::replace); }
+
+/// Append the text of a JSON object by the members that `add` appends, each with a comma before it.
+template <typename Add>
+std::string extended(const Json& object, Add&& add) {
+  std::string out = text(object);
+  out.pop_back();
+  add(out);
+  return out += '}';
+}
+
+/// Append a member whose value is a text of base64; to make it a Json first would take longer than all else.
+void append(std::string& out, const char* key, const std::string& digits) {
+  out.append(",\"").append(key).append("\":\"").append(digits).append("\"");
 }
 
 /// A vector rounded to five decimals (10 um, or 1e-5 rad), which nobody can see; this keeps the page short.
@@ -60,7 +80,7 @@ Indices shown(const std::vector<Eigen::Vector3f>& points, std::size_t max_points
 
 /// The coordinates as base64: 16 bits each, with `origin` and `step` added to `j`; single precision if the extent is
 /// above 10 m.
-Json positions_to(Json& j, const std::vector<Eigen::Vector3f>& points) {
+std::string positions_to(Json& j, const std::vector<Eigen::Vector3f>& points) {
   constexpr double kSteps = 65535.0, kLargest = 10.0;
   Aabb box;
   for (const auto& p : points) box.extend(p.cast<double>());
@@ -80,8 +100,8 @@ Json positions_to(Json& j, const std::vector<Eigen::Vector3f>& points) {
   return base64(values);
 }
 
-/// A cloud as viewer/data.js reads it.
-Json to_json(const Cloud& cloud, const Labels& labels, std::size_t max_points) {
+/// A cloud as viewer/data.js reads it, as the text of a JSON object.
+std::string cloud_text(const Cloud& cloud, const Labels& labels, std::size_t max_points) {
   const Indices index = shown(cloud.points, max_points);
   const auto at = [](const auto& values, Index i) { return values[static_cast<std::size_t>(i)]; };
   std::vector<Eigen::Vector3f> points;
@@ -106,11 +126,34 @@ Json to_json(const Cloud& cloud, const Labels& labels, std::size_t max_points) {
   // Discs of this radius (m) close the gaps between neighbouring points, unless the cloud is sparse.
   const double spacing = points.size() > 1 ? estimate_spacing(points) : 0.0;
   j["radius"] = spacing > 0.0 ? std::clamp(0.95 * spacing, 1e-5, 0.05) : 0.002;
-  j["positions"] = positions_to(j, points);
-  j["normals"] = base64(normals);
-  j["labels"] = base64(label);
-  j["views"] = base64(view);
-  return j;
+  const std::string positions = positions_to(j, points);
+  return extended(j, [&](std::string& out) {
+    append(out, "positions", positions);
+    append(out, "normals", base64(normals));
+    append(out, "labels", base64(label));
+    append(out, "views", base64(view));
+  });
+}
+
+/// The depth pictures as the text of a JSON list, one entry a view: at most kMostPictures bytes of them, evenly spread.
+std::string pictures_text(const std::vector<DepthPicture>& pictures, std::size_t views) {
+  constexpr std::size_t kMostPictures = 3000000;
+  const std::size_t count = std::min(pictures.size(), views);
+  std::size_t bytes = 0;
+  for (std::size_t v = 0; v < count; ++v) bytes += pictures[v].png.size();
+  const std::size_t step = bytes / kMostPictures + 1;
+  std::string out = "[";
+  for (std::size_t v = 0; v < count; ++v) {
+    if (v > 0) out += ',';
+    const DepthPicture& picture = pictures[v];
+    if (v % step != 0 || picture.png.empty())
+      out += "null";
+    else
+      out += extended({{"near", picture.nearest}, {"far", picture.farthest}}, [&](std::string& entry) {
+        append(entry, "png", base64(reinterpret_cast<const unsigned char*>(picture.png.data()), picture.png.size()));
+      });
+  }
+  return out += ']';
 }
 
 Json to_json(const Aabb& box) {
@@ -149,12 +192,14 @@ Json to_json(const View& view, const arm::Mount& mount) {
   return j;
 }
 
-/// All data that the page shows, as viewer/data.js reads them.
-Json page_data(const ScanResult& result, const Workcell& workcell, const RunInfo& info, const ScanHistory& history,
-               std::size_t max_points) {
+/// All data that the page shows, as viewer/data.js reads them: the text of a JSON object.
+std::string page_data(const ScanResult& result, const Workcell& workcell, const RunInfo& info,
+                      const ScanHistory& history, std::size_t max_points) {
   Json j;
   j["run"] = Json::parse(run_text(result, workcell, info));
   j["fruits"] = Json::parse(fruits_text(result.fruits));
+  j["fruits_csv"] = fruits_csv_text(result.fruits);
+  if (history.running) j["running"] = true;
   j["colors"] = Json::object();
   for (const Fruit& fruit : result.fruits) j["colors"][std::to_string(fruit.id)] = hex(fruit_color(fruit.id));
   j["base"] = rounded(workcell.world_T_base.translation());
@@ -180,12 +225,14 @@ Json page_data(const ScanResult& result, const Workcell& workcell, const RunInfo
     j["curves"].push_back({{"name", curve.name}, {"values", values}});
   }
 
-  j["cloud"] = to_json(result.cloud, result.labels, max_points);
-  j["merged"] = to_json(result.raw, {}, max_points);
   Cloud frontier;
   frontier.points = history.frontier;
-  j["frontier"] = to_json(frontier, {}, max_points);
-  return j;
+  return extended(j, [&](std::string& out) {
+    out += ",\"cloud\":" + cloud_text(result.cloud, result.labels, max_points);
+    out += ",\"merged\":" + cloud_text(result.raw, {}, max_points);
+    out += ",\"frontier\":" + cloud_text(frontier, {}, max_points);
+    out += ",\"depth\":" + pictures_text(history.depth, result.views.size());
+  });
 }
 
 }  // namespace
@@ -195,19 +242,19 @@ std::string scan_page(const ScanResult& result, const Workcell& workcell, const 
   check_parameter(max_points > 0, "max_points", "positive", static_cast<double>(max_points));
   check_result(result);
   views_text(result.views);  // throws InputError for values that are not finite
-  const std::string data =
-      page_data(result, workcell, info, history, max_points).dump(-1, ' ', false, Json::error_handler_t::replace);
+  const std::string data = page_data(result, workcell, info, history, max_points);
   std::string page;
   for (std::size_t i = 0; i < kPageTemplatePieces; ++i) page += kPageTemplate[i];
   const std::size_t at = page.find(kMark);
   std::string out;
   out.reserve(page.size() + data.size() + 1024);
   out.append(page, 0, at);
-  for (const char c : data)  // `<` occurs only inside of strings; escaped, it cannot end the script element
-    if (c == '<')
-      out += "\\u003c";
-    else
-      out += c;
+  for (std::size_t from = 0; from < data.size();) {  // `<` occurs only in strings; escaped, it cannot end the element
+    const std::size_t to = std::min(data.find('<', from), data.size());
+    out.append(data, from, to - from);
+    if (to < data.size()) out += "\\u003c";
+    from = to + 1;
+  }
   out.append(page, at + kMark.size(), std::string::npos);
   return out;
 }

@@ -44,8 +44,7 @@ Image Canvas::image() const {
       const Color c = 0.25f * (pixels_[first] + pixels_[first + 1] + pixels_[below] + pixels_[below + 1]);
       Rgb rgb;
       for (int i = 0; i < 3; ++i)
-        rgb[static_cast<std::size_t>(i)] =
-            static_cast<std::uint8_t>(std::lround(255.0f * std::clamp(c[i], 0.0f, 1.0f)));
+        rgb[static_cast<std::size_t>(i)] = static_cast<std::uint8_t>(255.0f * std::clamp(c[i], 0.0f, 1.0f) + 0.5f);
       out.pixels.push_back(rgb);
     }
   return out;

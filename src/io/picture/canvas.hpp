@@ -20,6 +20,9 @@ using Color = Eigen::Vector3f;
 inline Color color(const Rgb& rgb) { return Color(rgb[0], rgb[1], rgb[2]) / 255.0f; }
 inline Color mix(const Color& a, const Color& b, float share) { return a + share * (b - a); }
 
+/// Colours of texts.
+inline const Color kInk(0.13f, 0.16f, 0.20f), kFaint(0.45f, 0.49f, 0.54f);
+
 /// Shape of the ends of a line.
 enum class Cap { round, butt };
 

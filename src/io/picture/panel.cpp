@@ -26,7 +26,9 @@ Panel::Panel(Canvas& canvas, const Viewport& viewport, const Eigen::Vector3d& di
   focal_ = static_cast<float>(0.5 * std::min(viewport.width, viewport.height) / std::tan(kOpening));
   cx_ = static_cast<float>(viewport.x) + 0.5f * static_cast<float>(viewport.width - 1);
   cy_ = static_cast<float>(viewport.y) + 0.5f * static_cast<float>(viewport.height - 1);
-  depth_.assign(static_cast<std::size_t>(viewport.width) * static_cast<std::size_t>(viewport.height), kFarAway);
+  columns_ = (viewport.width + Canvas::kScale - 1) / Canvas::kScale;
+  rows_ = (viewport.height + Canvas::kScale - 1) / Canvas::kScale;
+  depth_.assign(static_cast<std::size_t>(columns_) * static_cast<std::size_t>(rows_), kFarAway);
 
   // Find the nearest eye from which every subject projects into the viewport. Along each image axis the two outermost
   // planes of sight through the subjects bound the eye, and it is placed where these planes meet.
@@ -57,20 +59,25 @@ Eigen::Vector3f Panel::project(const Eigen::Vector3d& p) const {
   return {cx_ + focal_ * q.x() / z, cy_ + focal_ * q.y() / z, q.z()};
 }
 
-/// Call visit(x, y, depth, weight, point, normal, behind) for every pixel of every disc. `normal` is turned towards the
+/// Call visit(cell, depth, weight, point, normal, behind) for every cell of every disc. `normal` is turned towards the
 /// eye; `behind` says whether the disc is seen from its back.
 template <typename Visit>
 void Panel::rasterise(const Splats& splats, Visit&& visit) const {
   const Cloud& cloud = splats.cloud;
   const Eigen::Matrix3f rotation = rotation_.cast<float>();
-  constexpr float kSmallest = 1.0f, kLargest = 40.0f;  // bounds of a disc's radius (fine pixels)
+  constexpr float kSmallest = 1.0f, kLargest = 40.0f;  // bounds of a disc's radius (cells)
+  constexpr float kCell = Canvas::kScale;
+  const float focal = focal_ / kCell, inverse_focal = 1.0f / focal;  // all in cells from here on
+  const float cx = (cx_ - static_cast<float>(viewport_.x) - 0.5f * (kCell - 1.0f)) / kCell;
+  const float cy = (cy_ - static_cast<float>(viewport_.y) - 0.5f * (kCell - 1.0f)) / kCell;
   constexpr float kSteepest = 0.25f;  // discs seen more edge-on than this cosine are turned, to close gaps
-  for (std::size_t i = 0; i < cloud.size(); ++i) {
-    if (!is_finite(cloud.points[i])) continue;
-    const Eigen::Vector3f p = (rotation_ * (cloud.points[i].cast<double>() - eye_)).cast<float>();
+  for (std::size_t point = 0; point < cloud.size(); ++point) {
+    if (!is_finite(cloud.points[point])) continue;
+    const Eigen::Vector3f p = (rotation_ * (cloud.points[point].cast<double>() - eye_)).cast<float>();
     if (!(p.z() > kNear)) continue;
     const Eigen::Vector3f sight = p.normalized();
-    Eigen::Vector3f n = cloud.normals.empty() ? Eigen::Vector3f::Zero().eval() : (rotation * cloud.normals[i]).eval();
+    Eigen::Vector3f n =
+        cloud.normals.empty() ? Eigen::Vector3f::Zero().eval() : (rotation * cloud.normals[point]).eval();
     const bool known = n.squaredNorm() > 0.25f && n.allFinite();
     bool behind = false;
     Eigen::Vector3f plane = -sight;
@@ -83,74 +90,88 @@ void Panel::rasterise(const Splats& splats, Visit&& visit) const {
     } else {
       n = -sight;
     }
-    const float scale = focal_ / p.z();
-    const float on_canvas = std::clamp(splats.radius * scale, kSmallest, kLargest);
-    const float radius = on_canvas / scale, inverse_sq = 1.0f / (radius * radius);
-    const float u = cx_ + p.x() * scale, v = cy_ + p.y() * scale;
+    const float scale = focal / p.z();
+    const float drawn = std::clamp(splats.radius * scale, kSmallest, kLargest);
+    const float radius = drawn / scale, inverse_sq = 1.0f / (radius * radius);
+    const float u = cx + p.x() * scale, v = cy + p.y() * scale;
     if (!(std::abs(u) < 1e6f && std::abs(v) < 1e6f)) continue;
     const float distance = plane.dot(p);
-    // A tilted disc appears as an ellipse. Perspective shifts its edge slightly; one pixel is added for that.
-    const float half_x = on_canvas * std::sqrt(std::max(1.0f - plane.x() * plane.x(), 0.0f)) + 1.0f;
-    const float half_y = on_canvas * std::sqrt(std::max(1.0f - plane.y() * plane.y(), 0.0f)) + 1.0f;
-    const int x0 = std::max(viewport_.x, static_cast<int>(std::ceil(u - half_x)));
-    const int x1 = std::min(viewport_.x + viewport_.width - 1, static_cast<int>(std::floor(u + half_x)));
-    const int y0 = std::max(viewport_.y, static_cast<int>(std::ceil(v - half_y)));
-    const int y1 = std::min(viewport_.y + viewport_.height - 1, static_cast<int>(std::floor(v + half_y)));
-    for (int y = y0; y <= y1; ++y)
-      for (int x = x0; x <= x1; ++x) {
-        const Eigen::Vector3f ray((static_cast<float>(x) - cx_) / focal_, (static_cast<float>(y) - cy_) / focal_, 1.0f);
+    // A tilted disc appears as an ellipse. Perspective shifts its edge slightly; one cell is added for that.
+    const float half_i = drawn * std::sqrt(std::max(1.0f - plane.x() * plane.x(), 0.0f)) + 1.0f;
+    const float half_j = drawn * std::sqrt(std::max(1.0f - plane.y() * plane.y(), 0.0f)) + 1.0f;
+    const int i0 = std::max(0, static_cast<int>(std::ceil(u - half_i)));
+    const int i1 = std::min(columns_ - 1, static_cast<int>(std::floor(u + half_i)));
+    const int j0 = std::max(0, static_cast<int>(std::ceil(v - half_j)));
+    const int j1 = std::min(rows_ - 1, static_cast<int>(std::floor(v + half_j)));
+    for (int j = j0; j <= j1; ++j)
+      for (int i = i0; i <= i1; ++i) {
+        const Eigen::Vector3f ray((static_cast<float>(i) - cx) * inverse_focal,
+                                  (static_cast<float>(j) - cy) * inverse_focal, 1.0f);
         const float z = distance / plane.dot(ray);
         const float share = (z * ray - p).squaredNorm() * inverse_sq;
-        if (share < 1.0f) visit(x, y, z, (1.0f - share) * (1.0f - share) + 1e-3f, i, n, behind);
+        if (share < 1.0f) visit(cell(i, j), z, (1.0f - share) * (1.0f - share) + 1e-3f, point, n, behind);
       }
   }
 }
 
-/// A factor that darkens gaps and contacts (eye-dome lighting; Boucheny, 2009): 1 where no neighbouring pixel is nearer
+/// A factor that darkens gaps and contacts (eye-dome lighting; Boucheny, 2009): 1 where no neighbouring cell is nearer
 /// to the eye; smaller the more of them are, and the nearer, up to a difference of depth of `deep` (m).
-float Panel::openness(int x, int y, float deep) const {
-  constexpr int kReach[] = {4, 10, 22};
-  const float z = depth(x, y);
+float Panel::openness(int i, int j, float deep) const {
+  // Three rings of eight neighbours.
+  static constexpr int kNeighbors[24][2] = {{2, 0},  {1, 1}, {0, 2},  {-1, 1}, {-2, 0},  {-1, -1}, {0, -2},  {1, -1},
+                                            {5, 0},  {4, 4}, {0, 5},  {-4, 4}, {-5, 0},  {-4, -4}, {0, -5},  {4, -4},
+                                            {11, 0}, {8, 8}, {0, 11}, {-8, 8}, {-11, 0}, {-8, -8}, {0, -11}, {8, -8}};
+  const float z = depth_[cell(i, j)], inverse = 1.0f / deep;
   float sum = 0.0f;
-  for (const int r : kReach)
-    for (int k = 0; k < 8; ++k) {
-      constexpr float kX[] = {1.0f, 0.7f, 0.0f, -0.7f, -1.0f, -0.7f, 0.0f, 0.7f};
-      constexpr float kY[] = {0.0f, 0.7f, 1.0f, 0.7f, 0.0f, -0.7f, -1.0f, -0.7f};
-      const int px = x + static_cast<int>(kX[k] * static_cast<float>(r)),
-                py = y + static_cast<int>(kY[k] * static_cast<float>(r));
-      if (inside(px, py)) sum += std::clamp((z - depth(px, py)) / deep, 0.0f, 1.0f);
-    }
+  for (const auto& [di, dj] : kNeighbors)
+    if (i + di >= 0 && j + dj >= 0 && i + di < columns_ && j + dj < rows_)
+      sum += std::clamp((z - depth_[cell(i + di, j + dj)]) * inverse, 0.0f, 1.0f);
   return std::exp(-1.6f * sum / 24.0f);
 }
 
 void Panel::draw(const Splats& splats) {
-  rasterise(splats, [&](int x, int y, float z, float, std::size_t, const Eigen::Vector3f&, bool) {
-    float& nearest = depth(x, y);
-    nearest = std::min(nearest, z);
+  rasterise(splats, [&](std::size_t at, float z, float, std::size_t, const Eigen::Vector3f&, bool) {
+    depth_[at] = std::min(depth_[at], z);
   });
   // Blend the discs that are near the foremost one (Zwicker et al., "Surface Splatting", SIGGRAPH 2001).
   std::vector<Pixel> pixels(depth_.size());
   const float together = 1.5f * splats.radius;
-  rasterise(splats, [&](int x, int y, float z, float weight, std::size_t i, const Eigen::Vector3f& n, bool behind) {
-    if (z > depth(x, y) + together) return;
-    Pixel& pixel = pixels[offset(x, y)];
-    pixel.color += weight * (behind ? mix(splats.colors[i], Color(0.42f, 0.42f, 0.44f), 0.55f) : splats.colors[i]);
-    pixel.normal += weight * n;
-    pixel.weight += weight;
-  });
+  rasterise(splats,
+            [&](std::size_t at, float z, float weight, std::size_t point, const Eigen::Vector3f& n, bool behind) {
+              Pixel& pixel = pixels[at];
+              if (z > depth_[at] + together) {
+                pixel.backed = true;
+                return;
+              }
+              const Color& c = splats.colors[point];
+              pixel.color += weight * (behind ? mix(c, Color(0.42f, 0.42f, 0.44f), 0.55f) : c);
+              pixel.normal += weight * n;
+              pixel.weight += weight;
+            });
+  shade(pixels, 8.0f * splats.radius);
+}
+
+/// Light the cells and put them onto the canvas. @param deep see openness()
+void Panel::shade(const std::vector<Pixel>& pixels, float deep) {
+  constexpr float kOpaque = 0.08f;  // sum of weights; the border of a surface fades below it, where nothing is behind
   const Eigen::Vector3f light =
       Eigen::Vector3f(-0.45f, -0.60f, -0.66f).normalized();  // from behind the left shoulder of the viewer
   const Eigen::Vector3f halfway = (light + Eigen::Vector3f(0.0f, 0.0f, -1.0f)).normalized();
-  for (int y = viewport_.y; y < viewport_.y + viewport_.height; ++y)
-    for (int x = viewport_.x; x < viewport_.x + viewport_.width; ++x) {
-      const Pixel& pixel = pixels[offset(x, y)];
+  for (int j = 0; j < rows_; ++j)
+    for (int i = 0; i < columns_; ++i) {
+      const Pixel& pixel = pixels[cell(i, j)];
       if (pixel.weight <= 0.0f) continue;
       const Eigen::Vector3f n = pixel.normal.normalized();
       const float facing = n.dot(light);
       const float diffuse = 0.42f + 0.62f * std::max(facing, 0.0f) + 0.08f * std::min(facing, 0.0f);
       const float shine = 0.16f * std::pow(std::max(n.dot(halfway), 0.0f), 30.0f);
-      const Color c = pixel.color / pixel.weight * diffuse + Color::Constant(shine);
-      canvas_.at(x, y) = (c * openness(x, y, 8.0f * splats.radius)).cwiseMin(1.0f);
+      const Color lit = pixel.color / pixel.weight * diffuse + Color::Constant(shine);
+      const Color c = (lit * openness(i, j, deep)).cwiseMin(1.0f);
+      const float alpha = pixel.backed ? 1.0f : std::min(pixel.weight / kOpaque, 1.0f);
+      const int x0 = viewport_.x + Canvas::kScale * i, y0 = viewport_.y + Canvas::kScale * j;
+      for (int y = y0; y < std::min(y0 + Canvas::kScale, viewport_.y + viewport_.height); ++y)
+        for (int x = x0; x < std::min(x0 + Canvas::kScale, viewport_.x + viewport_.width); ++x)
+          canvas_.blend(x, y, c, alpha);
     }
 }
 

@@ -57,15 +57,19 @@ class Panel {
     Color color = Color::Zero();
     Eigen::Vector3f normal = Eigen::Vector3f::Zero();
     float weight = 0.0f;
+    bool backed = false;  ///< another surface is behind the foremost
   };
   template <typename Visit>
   void rasterise(const Splats& splats, Visit&& visit) const;
-  float openness(int x, int y, float deep) const;
-  float& depth(int x, int y) { return depth_[offset(x, y)]; }
-  float depth(int x, int y) const { return depth_[offset(x, y)]; }
-  std::size_t offset(int x, int y) const {
-    return static_cast<std::size_t>(y - viewport_.y) * static_cast<std::size_t>(viewport_.width) +
-           static_cast<std::size_t>(x - viewport_.x);
+  float openness(int i, int j, float deep) const;
+  void shade(const std::vector<Pixel>& pixels, float deep);
+  /// Index of the cell in column i and row j.
+  std::size_t cell(int i, int j) const {
+    return static_cast<std::size_t>(j) * static_cast<std::size_t>(columns_) + static_cast<std::size_t>(i);
+  }
+  /// Depth of the cell that holds a pixel of the canvas.
+  float depth(int x, int y) const {
+    return depth_[cell((x - viewport_.x) / Canvas::kScale, (y - viewport_.y) / Canvas::kScale)];
   }
   bool inside(int x, int y) const {
     return x >= viewport_.x && y >= viewport_.y && x < viewport_.x + viewport_.width &&
@@ -77,7 +81,9 @@ class Panel {
   Eigen::Vector3d eye_ = Eigen::Vector3d::Zero();
   Eigen::Matrix3d rotation_ = Eigen::Matrix3d::Identity();  // rows: right, down, forward
   float focal_ = 1.0f, cx_ = 0.0f, cy_ = 0.0f;
-  std::vector<float> depth_;  // depth of each pixel of the viewport (m); infinite where nothing is drawn
+  // Discs are drawn in cells of kScale x kScale fine pixels, a pixel of the image each; lines and texts finer.
+  int columns_ = 0, rows_ = 0;
+  std::vector<float> depth_;  // depth of each cell (m); infinite where nothing is drawn
 };
 
 }  // namespace agrisee::io

@@ -4,16 +4,23 @@
 #include <string>
 
 #include "io/formats/text.hpp"
+#include "io/picture/badges.hpp"
 #include "io/picture/framing.hpp"
+#include "io/picture/legend.hpp"
 #include "io/picture/panel.hpp"
 
 namespace agrisee::io {
 namespace {
 
 constexpr int kS = Canvas::kScale;
-const Color kInk(0.13f, 0.16f, 0.20f), kFaint(0.45f, 0.49f, 0.54f), kPaper(0.985f, 0.988f, 0.992f);
+const Color kPaper(0.985f, 0.988f, 0.992f);
 const Color kAxisColors[3] = {Color(0.86f, 0.15f, 0.15f), Color(0.13f, 0.62f, 0.22f), Color(0.14f, 0.33f, 0.86f)};
 const Color kUnlabelled(0.60f, 0.63f, 0.58f);
+
+Rectangle rectangle(const Viewport& v) {
+  return {Eigen::Vector2f(static_cast<float>(v.x), static_cast<float>(v.y)),
+          Eigen::Vector2f(static_cast<float>(v.x + v.width), static_cast<float>(v.y + v.height))};
+}
 
 /// The outline of an ellipsoid: the ellipse in which rays from the eye touch it. In coordinates in which the ellipsoid
 /// is the unit sphere and the eye is at e, it is a circle in the plane at the distance 1 / |e| from the centre, towards
@@ -47,25 +54,50 @@ void draw_frame(Panel& panel, const Pose& pose, double length, float width) {
                  {width + extra, 1.0f, 1.0f}, Cap::round);
 }
 
-/// Draw outlines of bodies, pose frames and ids. @param size height of the digits
-void draw_fruit(Canvas& canvas, Panel& panel, const std::vector<Fruit>& fruits, float size) {
+/// Draw what a panel shows, in its upper corner. @return what it covers
+Rectangle draw_caption(Canvas& canvas, const Panel& panel, const std::string& text, float size) {
+  const Viewport& v = panel.viewport();
+  const Eigen::Vector2f at(static_cast<float>(v.x) + 2.0f * size, static_cast<float>(v.y) + 2.6f * size);
+  canvas.text(at, 0.85f * size, text, kFaint);
+  return {at - Eigen::Vector2f(0.0f, size), at + Eigen::Vector2f(Canvas::text_width(0.85f * size, text), 0.4f * size)};
+}
+
+/// Draw outlines of bodies and pose frames; on top of everything else, the ids beside the origins of the frames.
+/// @param size height of the digits  @param taken parts of the panel that the ids must not cover
+void draw_fruit(Canvas& canvas, Panel& panel, const std::vector<Fruit>& fruits, float size,
+                const std::vector<Rectangle>& taken) {
   for (const Fruit& fruit : fruits)
     if (fruit.body) {
       const Color c = mix(color(fruit_color(fruit.id)), kInk, 0.45f);
       panel.polyline(outline(*fruit.body, panel.eye()), c, {1.6f * kS, 0.9f, 0.35f});
     }
-  for (const Fruit& fruit : fruits)
-    if (fruit.centroid.allFinite()) draw_frame(panel, fruit.pose(), 0.03, 2.2f * kS);
-  for (const Fruit& fruit : fruits) {  // ids beside the origins of the frames, on top of everything else
-    if (!fruit.centroid.allFinite()) continue;
-    const Eigen::Vector3f at = panel.project(fruit.centroid);
-    if (!(at.z() > 0.05f)) continue;
-    const std::string number = std::to_string(fruit.id);
-    const float width = Canvas::text_width(size, number), radius = std::max(0.5f * width + 0.55f * size, 1.05f * size);
-    const Eigen::Vector2f center = at.head<2>() - Eigen::Vector2f(1.9f * size, 1.3f * size);
-    canvas.disc(center, radius + 1.2f * kS, color(fruit_color(fruit.id)));
-    canvas.disc(center, radius, Color::Ones());
-    canvas.text(center + Eigen::Vector2f(-0.5f * width, 0.5f * size), size, number, kInk, 0.16f);
+  std::vector<const Fruit*> shown;
+  std::vector<Badge> wanted;
+  const float border = 1.2f * kS;
+  for (const Fruit& fruit : fruits) {
+    if (!fruit.position().allFinite()) continue;
+    draw_frame(panel, fruit.pose(), 0.03, 2.2f * kS);
+    const Eigen::Vector3f at = panel.project(fruit.position());
+    const Rectangle panel_edges = rectangle(panel.viewport());
+    if (!(at.z() > 0.05f) || !((at.head<2>().array() >= panel_edges.min.array()).all() &&
+                               (at.head<2>().array() <= panel_edges.max.array()).all()))
+      continue;
+    const float width = Canvas::text_width(size, std::to_string(fruit.id));
+    const float radius = std::max(0.5f * width + 0.55f * size, 1.05f * size);
+    shown.push_back(&fruit);
+    wanted.push_back({at.head<2>() - Eigen::Vector2f(1.9f * size, 1.3f * size), radius + border});
+  }
+  const std::vector<Badge> badges = place_badges(wanted, taken, rectangle(panel.viewport()));
+  for (std::size_t i = 0; i < badges.size(); ++i)  // a line to the fruit that a badge had to leave
+    if ((badges[i].center - wanted[i].center).norm() > badges[i].radius)
+      canvas.line(badges[i].center, panel.pixel(shown[i]->position()), border, color(fruit_color(shown[i]->id)));
+  for (std::size_t i = 0; i < badges.size(); ++i) {
+    const std::string number = std::to_string(shown[i]->id);
+    const Eigen::Vector2f& center = badges[i].center;
+    canvas.disc(center, badges[i].radius, color(fruit_color(shown[i]->id)));
+    canvas.disc(center, badges[i].radius - border, Color::Ones());
+    canvas.text(center + Eigen::Vector2f(-0.5f * Canvas::text_width(size, number), 0.5f * size), size, number, kInk,
+                0.16f);
   }
 }
 
@@ -108,7 +140,8 @@ void draw_box(Panel& panel, const Aabb& box) {
 }
 
 /// Draw a scale bar in the corner of a panel. Its length is true at the depth of `at`.
-void draw_scale(Canvas& canvas, const Panel& panel, const Eigen::Vector3d& at, float size) {
+/// @return what it covers
+Rectangle draw_scale(Canvas& canvas, const Panel& panel, const Eigen::Vector3d& at, float size) {
   const float per_metre = panel.scale(std::max(panel.project(at).z(), 0.05f));
   double length = 1e-3;
   for (const double step : {0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1.0})
@@ -119,11 +152,15 @@ void draw_scale(Canvas& canvas, const Panel& panel, const Eigen::Vector3d& at, f
   canvas.line(a, a + Eigen::Vector2f(pixels, 0.0f), 1.6f * kS, kInk, 1.0f, Cap::butt);
   for (const float x : {0.0f, pixels})
     canvas.line(a + Eigen::Vector2f(x, -0.4f * size), a + Eigen::Vector2f(x, 0.4f * size), 1.6f * kS, kInk);
-  canvas.text(a + Eigen::Vector2f(0.0f, -0.8f * size), 0.8f * size, format(length * 1000.0) + " mm", kInk);
+  const std::string text = format(length * 1000.0) + " mm";
+  canvas.text(a + Eigen::Vector2f(0.0f, -0.8f * size), 0.8f * size, text, kInk);
+  const float width = std::max(pixels, Canvas::text_width(0.8f * size, text));
+  return {a - Eigen::Vector2f(0.0f, 2.0f * size), a + Eigen::Vector2f(width, 0.5f * size)};
 }
 
 /// Draw the directions of the world axes in the other corner.
-void draw_triad(Canvas& canvas, const Panel& panel, float size) {
+/// @return what they cover
+Rectangle draw_triad(Canvas& canvas, const Panel& panel, float size) {
   const Viewport& v = panel.viewport();
   const Eigen::Vector2f o(static_cast<float>(v.x + v.width) - 5.0f * size,
                           static_cast<float>(v.y + v.height) - 3.2f * size);
@@ -136,6 +173,8 @@ void draw_triad(Canvas& canvas, const Panel& panel, float size) {
       canvas.text(o + (2.6f + 0.9f / tip.norm()) * size * tip + Eigen::Vector2f(-0.5f * width, 0.3f * size),
                   0.8f * size, name, kAxisColors[i]);
   }
+  const Eigen::Vector2f reach = Eigen::Vector2f::Constant(4.0f * size);
+  return {o - reach, o + reach};
 }
 
 /// A number with a noun; digits in groups of three.
@@ -158,35 +197,12 @@ void draw_title(Canvas& canvas, const ScanResult& result, const Workcell& workce
     std::replace(reason.begin(), reason.end(), '_', ' ');
     caption += ",  stopped: " + reason;
   }
-  canvas.text({end + 2.2f * size, base}, 0.9f * size, caption, kFaint);
+  const float used = canvas.text({end + 2.2f * size, base}, 0.9f * size, caption, kFaint);
   if (result.fruits.empty()) return;
-  constexpr std::string_view kNote = "centroids x, y, z in world below";
+  constexpr std::string_view kNote = "positions x, y, z in world below";
   const float width = Canvas::text_width(0.8f * size, kNote);
-  canvas.text({static_cast<float>(canvas.width()) - left - width, base}, 0.8f * size, kNote, kFaint);
-}
-
-/// Draw the ids and centroids of the fruit in columns, 18 entries at most.
-void draw_legend(Canvas& canvas, const std::vector<Fruit>& fruits, int top, float size) {
-  constexpr std::size_t kColumns = 6, kRows = 3;
-  const auto w = static_cast<float>(canvas.width());
-  const float left = 2.0f * size, column = (w - 2.0f * left) / static_cast<float>(kColumns), row = 2.15f * size;
-  for (std::size_t i = 0; i < fruits.size(); ++i) {
-    const Eigen::Vector2f at(left + column * static_cast<float>(i % kColumns),
-                             static_cast<float>(top) + row * (0.95f + static_cast<float>(i / kColumns)));
-    if (i + 1 == kColumns * kRows && fruits.size() > kColumns * kRows) {
-      canvas.text(at + Eigen::Vector2f(0.0f, 0.4f * size), 0.8f * size,
-                  "and " + std::to_string(fruits.size() - i) + " more", kFaint);
-      return;
-    }
-    const Fruit& fruit = fruits[i];
-    canvas.disc(at + Eigen::Vector2f(0.6f * size, 0.0f), 0.62f * size, color(fruit_color(fruit.id)));
-    const Eigen::Vector2f text = at + Eigen::Vector2f(1.8f * size, 0.4f * size);
-    const float end = canvas.text(text, 0.8f * size, std::to_string(fruit.id), kInk, 0.16f);
-    if (!fruit.centroid.allFinite()) continue;
-    std::string place;
-    for (int a = 0; a < 3; ++a) place += (a ? ", " : "") + std::to_string(std::lround(1000.0 * fruit.centroid[a]));
-    canvas.text({std::max(end, text.x() + 1.3f * size), text.y()}, 0.8f * size, place + " mm", kFaint);
-  }
+  const float start = static_cast<float>(canvas.width()) - left - width;
+  if (start > used + 2.0f * size) canvas.text({start, base}, 0.8f * size, kNote, kFaint);  // else there is no room
 }
 
 /// The parts of the picture, in fine pixels.
@@ -196,11 +212,11 @@ struct Layout {
   Viewport left, right;  ///< the two views in between
 };
 
-Layout layout_of(const Canvas& canvas, std::size_t fruits) {
+Layout layout_of(const Canvas& canvas, const std::vector<Fruit>& fruits) {
   Layout layout;
   const int w = canvas.width(), h = canvas.height();
   layout.size = static_cast<float>(h) / 75.0f;
-  const std::size_t rows = std::min<std::size_t>((fruits + 5) / 6, 3);
+  const std::size_t rows = legend_rows(fruits, static_cast<float>(w), layout.size);
   layout.title = static_cast<int>(4.4f * layout.size);
   layout.legend = static_cast<int>((rows > 0 ? 1.0f + 2.15f * static_cast<float>(rows) : 0.6f) * layout.size);
   const int middle = w / 2, gap = kS, panel_height = h - layout.title - layout.legend;
@@ -228,13 +244,15 @@ Eigen::Vector3d middle_of(const Framing& framing) {
 }
 
 /// The left view: close up, from the front and slightly from above.
-void draw_front(Canvas& canvas, const Layout& layout, const ScanResult& result, const Splats& splats,
-                const Framing& framing) {
+void draw_front(Canvas& canvas, const Layout& layout, const ScanResult& result, const Workcell& workcell,
+                const Splats& splats, const Framing& framing) {
   Panel panel(canvas, layout.left, framing.forward - 0.06 * framing.up, framing.up, framing.subjects);
   panel.draw(splats);
-  draw_fruit(canvas, panel, result.fruits, 1.15f * layout.size);
-  draw_scale(canvas, panel, middle_of(framing), layout.size);
-  draw_triad(canvas, panel, layout.size);
+  const char* const caption = workcell.scan_volume.empty() ? "from the front" : "from the front, as the robot sees it";
+  const std::vector<Rectangle> taken{draw_scale(canvas, panel, middle_of(framing), layout.size),
+                                     draw_triad(canvas, panel, layout.size),
+                                     draw_caption(canvas, panel, caption, layout.size)};
+  draw_fruit(canvas, panel, result.fruits, 1.15f * layout.size, taken);
 }
 
 /// The right view: oblique, with the scan volume and the poses of the sensor.
@@ -252,17 +270,12 @@ void draw_oblique(Canvas& canvas, const Layout& layout, const ScanResult& result
   panel.draw(splats);
   if (volume) draw_box(panel, workcell.scan_volume);
   draw_views(panel, result.views, workcell.sensor.intrinsics);
-  draw_fruit(canvas, panel, result.fruits, 0.8f * layout.size);
-  draw_scale(canvas, panel, middle_of(framing), layout.size);
-  draw_triad(canvas, panel, layout.size);
-}
-
-void draw_captions(Canvas& canvas, const Layout& layout, bool has_volume, bool has_views) {
-  const float size = layout.size, line = static_cast<float>(layout.title) + 2.6f * size;
-  canvas.text({static_cast<float>(layout.left.x) + 2.0f * size, line}, 0.85f * size,
-              has_volume ? "from the front, as the robot sees it" : "from the front", kFaint);
-  canvas.text({static_cast<float>(layout.right.x) + 2.0f * size, line}, 0.85f * size,
-              has_views ? "from the side, with the sensor's path (first view dark)" : "from the side", kFaint);
+  const char* const caption =
+      result.views.empty() ? "from the side" : "from the side, with the sensor's path (first view dark)";
+  const std::vector<Rectangle> taken{draw_scale(canvas, panel, middle_of(framing), layout.size),
+                                     draw_triad(canvas, panel, layout.size),
+                                     draw_caption(canvas, panel, caption, layout.size)};
+  draw_fruit(canvas, panel, result.fruits, 0.8f * layout.size, taken);
 }
 
 void check(const ScanResult& result) {
@@ -278,15 +291,14 @@ Image render(const ScanResult& result, const Workcell& workcell, int width, int 
   check_parameter(height >= 360, "picture height", ">= 360", height);
   check(result);
   Canvas canvas(width, height);
-  const Layout layout = layout_of(canvas, result.fruits.size());
+  const Layout layout = layout_of(canvas, result.fruits);
   canvas.fill(0, 0, canvas.width(), canvas.height(), kPaper, kPaper);
   for (const Viewport& v : {layout.left, layout.right})
     canvas.fill(v.x, v.y, v.x + v.width, v.y + v.height, Color(0.955f, 0.965f, 0.976f), Color(0.845f, 0.868f, 0.895f));
   const Splats splats = splats_of(result);
   const Framing framing = frame(result, workcell);
-  draw_front(canvas, layout, result, splats, framing);
+  draw_front(canvas, layout, result, workcell, splats, framing);
   draw_oblique(canvas, layout, result, workcell, splats, framing);
-  draw_captions(canvas, layout, !workcell.scan_volume.empty(), !result.views.empty());
   draw_title(canvas, result, workcell, layout.title, layout.size);
   draw_legend(canvas, result.fruits, canvas.height() - layout.legend, layout.size);
   return canvas.image();

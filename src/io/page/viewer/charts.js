@@ -3,7 +3,7 @@
 import { el, fixed, percent } from './data.js';
 
 const kHeight = 132, kTop = 8, kBottom = 20, kLeft = 40, kRight = 8;
-const kColors = ['#2a6fb5', '#97a3af', '#2e9d55'];
+const kColors = ['var(--accent)', '#97a3af', '#2e9d55'];
 
 export function makeCharts(data, nodes, on) {
   const n = data.views.length, curves = data.curves.filter((c) => c.values.some((v) => typeof v === 'number'));
@@ -45,14 +45,14 @@ export function makeCharts(data, nodes, on) {
           path += `${pen}${x(i).toFixed(1)},${y(v).toFixed(1)}`;
           pen = 'L';
         });
-        shares.append(el('path', { d: path, fill: 'none', stroke: kColors[k % 3], 'stroke-width': 2, 'stroke-linejoin': 'round' }));
-        if (typeof c.values[view] === 'number') shares.append(el('circle', { cx: x(view), cy: y(c.values[view]), r: 3.5, fill: kColors[k % 3], stroke: '#fff' }));
+        shares.append(el('path', { d: path, fill: 'none', style: { stroke: kColors[k % 3] }, 'stroke-width': 2, 'stroke-linejoin': 'round' }));
+        if (typeof c.values[view] === 'number') shares.append(el('circle', { cx: x(view), cy: y(c.values[view]), r: 3.5, style: { fill: kColors[k % 3] }, class: 'mark' }));
       });
     }
     axes(gain, [[0, '0'], [0.5, fixed(best / 2, best / 2 % 1 ? 1 : 0)], [1, fixed(best)]]);
     const bar = Math.max(1, Math.min(28, 0.66 * (width - kLeft - kRight) / n));
     added.forEach((v, i) => gain.append(el('rect', { x: x(i) - bar / 2, width: bar, y: y(v / best), height: Math.max(0, y(0) - y(v / best)), rx: 1.5,
-      fill: i === view ? '#2a6fb5' : i < view ? '#a9c5e2' : '#e1e7ee' })));
+      class: (i === view ? 'gain now' : i < view ? 'gain' : 'gain later') + (data.views[i].discarded ? ' discarded' : '') })));
   }
   for (const svg of [shares, gain])
     svg.addEventListener('click', (e) => {

@@ -15,10 +15,15 @@ function cloud(raw) {
   return { n, total: raw.total, positions, normals, labels, views, radius: raw.radius };
 }
 
+/** Where a fruit is (m, world): the centre of its body, or the centroid of its points where none was fitted. */
+export const place = (f) => f.position_world || f.center_world || f.centroid_world;
+
 export function readData() {
   const data = JSON.parse(document.getElementById('data').textContent);
   for (const name of ['cloud', 'merged', 'frontier']) data[name] = cloud(data[name]);
-  data.views.forEach((v, i) => (v.index = i));
+  data.views.forEach((v, i) => Object.assign(v, { index: i, depth: data.depth && data.depth[i] }));
+  for (const { view, reason } of data.run.discarded_views || []) if (data.views[view]) data.views[view].discarded = String(reason);
+  data.frame = data.run.frame_id || 'world';
   data.byId = new Map(data.fruits.map((f) => [f.id, f]));
   return data;
 }
@@ -48,4 +53,32 @@ export function fixed(x, decimals = 0) {
 export const percent = (x) => (finite(x) ? fixed(100 * x) + '\u00a0%' : dash);
 export const seconds = (s) => (!finite(s) ? dash : s >= 1 ? fixed(s, 2) + '\u00a0s' : fixed(1000 * s, s < 0.01 ? 1 : 0) + '\u00a0ms');
 export const words = (name) => String(name).replace(/_/g, ' ');
+/** A button that copies a text; it says whether that worked. */
+export function copyButton(label, text) {
+  const button = el('button', { type: 'button', class: 'small', onclick: async () => {
+    let done = false;
+    try {
+      await navigator.clipboard.writeText(text());
+      done = true;
+    } catch {  // a browser without a clipboard for pages from the disk
+      const area = el('textarea', { style: { position: 'fixed', opacity: '0' } });
+      area.value = text();
+      document.body.append(area);
+      area.select();
+      done = document.execCommand('copy');
+      area.remove();
+      button.focus();
+    }
+    button.textContent = done ? 'Copied' : 'Not copied';
+    setTimeout(() => (button.textContent = label), 1500);
+  } }, label);
+  return button;
+}
+
+/** Give the reader a file. */
+export function save(name, type, text) {
+  const url = URL.createObjectURL(new Blob([text], { type }));
+  el('a', { href: url, download: name }).click();
+  setTimeout(() => URL.revokeObjectURL(url), 10000);
+}
 export const plural = (n, one, many) => `${fixed(n)} ${n === 1 ? one : many}`;

@@ -2,19 +2,21 @@
 // What stands in the three-dimensional view, as named layers. World frame, metres, z up.
 import {
   AmbientLight, BoxGeometry, BufferAttribute, BufferGeometry, Color, CylinderGeometry, DirectionalLight, DoubleSide, EdgesGeometry,
-  FrontSide, Group, InstancedBufferAttribute, InstancedBufferGeometry, LineBasicMaterial, LineSegments, Matrix4, Mesh,
+  FrontSide, Group, InstancedBufferAttribute, InstancedBufferGeometry, LineBasicMaterial, LineSegments, Mesh,
   MeshBasicMaterial, MeshLambertMaterial, Quaternion, Scene, ShaderMaterial, SphereGeometry, Vector3,
 } from 'three';
 import { LineMaterial } from 'three/addons/lines/LineMaterial.js';
 import { LineSegments2 } from 'three/addons/lines/LineSegments2.js';
 import { LineSegmentsGeometry } from 'three/addons/lines/LineSegmentsGeometry.js';
+import { place } from './data.js';
 
-const kRest = '#989e96', kAxes = ['#db2626', '#219e38', '#2454db'], kFirst = '#1a2466', kLast = '#5ca8ed', kTool = '#8a4fbe';
+const kRest = '#989e96', kAxes = ['#db2626', '#219e38', '#2454db'], kFirst = '#1a2466', kLast = '#5ca8ed', kTool = '#8a4fbe', kDiscarded = '#c0392b';
 const vec = (a) => new Vector3(a[0], a[1], a[2]);
 const quat = (q) => new Quaternion(q[0], q[1], q[2], q[3]);
 
 const surfelVertex = `
 uniform float radius, pixel, selected, view, last;
+uniform vec3 ground;
 uniform bool facing;
 attribute vec3 offset, direction;
 attribute vec3 tint;
@@ -35,8 +37,8 @@ void main() {
   colour = tint * (flat_ ? 0.95 : 0.58 + 0.44 * light);
   if (away < 0.0) colour = mix(colour, vec3(0.62), 0.45) * 0.85;
   // While a scan is replayed, what the present view added stands out; beside a selected fruit the rest steps back.
-  if (view < last && seen >= 0.0 && seen < view) colour = mix(colour, vec3(0.90, 0.92, 0.94), 0.45);
-  if (selected > 0.0 && abs(label - selected) > 0.5) colour = mix(colour, vec3(0.88, 0.90, 0.92), 0.72);
+  if (view < last && seen >= 0.0 && seen < view) colour = mix(colour, ground, 0.45);
+  if (selected > 0.0 && abs(label - selected) > 0.5) colour = mix(colour, ground, 0.72);
 }`;
 const surfelFragment = `
 varying vec2 corner;
@@ -69,7 +71,7 @@ function surfels(cloud, keep, colorOf) {
   geometry.setAttribute('label', new InstancedBufferAttribute(label, 1));
   geometry.setAttribute('seen', new InstancedBufferAttribute(seen, 1));
   const material = new ShaderMaterial({
-    uniforms: { radius: { value: cloud.radius }, pixel: { value: 0 }, selected: { value: 0 }, view: { value: 1e9 }, last: { value: 0 }, facing: { value: !cloud.normals } },
+    uniforms: { radius: { value: cloud.radius }, pixel: { value: 0 }, selected: { value: 0 }, view: { value: 1e9 }, last: { value: 0 }, facing: { value: !cloud.normals }, ground: { value: new Color() } },
     vertexShader: surfelVertex,
     fragmentShader: surfelFragment, side: DoubleSide,
   });
@@ -85,7 +87,7 @@ const mix = (a, b, t) => rgb(a).map((x, i) => Math.round(x + t * (rgb(b)[i] - x)
 export const viewColor = (i, n) => mix(kFirst, kLast, n > 1 ? i / (n - 1) : 0);
 const css = (c) => `rgb(${c[0]},${c[1]},${c[2]})`;
 
-function thickLines(points, color, width, extra = {}) {
+export function thickLines(points, color, width, extra = {}) {
   const geometry = new LineSegmentsGeometry();
   geometry.setPositions(points.flatMap((p) => [p.x, p.y, p.z]));
   const lines = new LineSegments2(geometry, new LineMaterial({ color: color ?? 0xffffff, linewidth: width, transparent: true, ...extra }));
@@ -207,7 +209,7 @@ export function makeScene(data, resolution) {
 
   const bodies = new Group(), frames = new Group(), fitted = data.fruits.filter((f) => f.radii && Math.min(...f.radii) > 0);
   fitted.forEach((f) => bodies.add(body(f, data.colors[f.id])));
-  data.fruits.forEach((f) => { const g = frame(f.centroid_world, f.orientation_world, f.radii ? 0.85 * f.radii[0] : 0.03); g.userData.id = f.id; frames.add(g); });
+  data.fruits.forEach((f) => { const g = frame(place(f), f.orientation_world, f.radii ? 0.85 * f.radii[0] : 0.03); g.userData.id = f.id; frames.add(g); });
   add('bodies', 'Fitted bodies', bodies, fitted.length);
   add('frames', 'Pose frames', frames, data.fruits.length);
   const reach = approaches(data.fruits);
@@ -216,7 +218,7 @@ export function makeScene(data, resolution) {
   const sensors = new Group(), small = [];
   const paths = [];
   data.views.forEach((v, i) => {
-    const color = css(viewColor(i, n)), mark = thickLines(pyramid(v, data.sensor_rays, 0.03), color, 1.6);
+    const color = v.discarded ? kDiscarded : css(viewColor(i, n)), mark = thickLines(pyramid(v, data.sensor_rays, 0.03), color, 1.6);
     small.push(mark);
     sensors.add(mark);
     if (i > 0) {
@@ -270,25 +272,14 @@ export function makeScene(data, resolution) {
   /** How large a pixel is (m) at a distance of 1 m: no point is drawn smaller than it. */
   function setPixel(size) { for (const c of clouds) c.material.uniforms.pixel.value = size; }
 
+  /** What steps back takes the colour of the ground. */
+  function setDark(dark) { for (const c of clouds) c.material.uniforms.ground.value.setStyle(dark ? '#2b3138' : '#e3e8ec', ''); }
+
   function setResolution(width, height) {
     resolution.width = width;
     resolution.height = height;
     scene.traverse((o) => { if (o.material && o.material.isLineMaterial) o.material.resolution.set(width, height); });
   }
 
-  return { scene, sun, layers, fitted, showView, showFruit, setPixel, setResolution };
-}
-
-/** The fruit whose body a ray meets first, with its distance: [id, t] or null. */
-export function bodyOnRay(fitted, origin, direction) {
-  let best = null;
-  for (const f of fitted) {
-    const inverse = new Matrix4().compose(vec(f.center_world), quat(f.body_orientation_world), vec(f.radii)).invert();
-    const o = origin.clone().applyMatrix4(inverse), d = origin.clone().add(direction).applyMatrix4(inverse).sub(o);
-    const a = d.dot(d), b = o.dot(d), c = o.dot(o) - 1, h = b * b - a * c;
-    if (h < 0) continue;
-    const t = (-b - Math.sqrt(h)) / a;
-    if (t > 0 && (!best || t < best[1])) best = [f.id, t];
-  }
-  return best;
+  return { scene, sun, layers, fitted, showView, showFruit, setPixel, setResolution, setDark };
 }

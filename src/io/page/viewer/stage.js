@@ -2,10 +2,13 @@
 // The three-dimensional view: camera, labels, scale, picking. Frames are drawn only when something has changed.
 import { PerspectiveCamera, Vector2, Vector3, WebGLRenderer } from 'three';
 import { OrbitControls } from 'three/addons/controls/OrbitControls.js';
-import { el, fixed } from './data.js';
-import { bodyOnRay, makeScene } from './scene.js';
+import { makeBadges } from './badges.js';
+import { el, fixed, place } from './data.js';
+import { makeMeasure } from './measure.js';
+import { bodyOnRay, pointOnRay } from './pick.js';
+import { makeScene } from './scene.js';
 
-const kAxes = [['x', '#db2626'], ['y', '#219e38'], ['z', '#2454db']];
+const kAxes = ['x', 'y', 'z'];
 const vec = (a) => new Vector3(a[0], a[1], a[2]);
 
 /** Which way "forward" and "up" are: as the robot sees it, or, without views, against the normals of the cloud. */
@@ -107,8 +110,10 @@ export function makeStage(data, nodes, on) {
       invalidate();
     },
   };
+  let dragging = false;
   controls.addEventListener('change', invalidate);
-  controls.addEventListener('start', () => { if (atView) { atView = null; on.left(); applyLayers(); } });
+  controls.addEventListener('end', () => (dragging = false));
+  controls.addEventListener('start', () => { dragging = true; if (atView) { atView = null; on.left(); applyLayers(); } });
 
   // The arm and the sensor's own marks would stand before the eye of the sensor.
   function applyLayers() {
@@ -117,42 +122,32 @@ export function makeStage(data, nodes, on) {
     if (world.layers.arm && !(v && v.arm)) world.layers.arm.node.visible = false;
   }
 
-  const labels = data.fruits.map((f) => {
-    const node = el('b', { onclick: () => on.fruit(on.state().fruit === f.id ? 0 : f.id), 'data-fruit': f.id, style: { 'border-color': data.colors[f.id] } }, String(f.id));
-    nodes.labels.append(node);
-    return { f, node, at: vec(f.center_world || f.centroid_world), radius: f.radii ? f.radii[2] : 0 };
-  });
-
   const size = new Vector2(1, 1), point = new Vector3();
   const toScreen = (p) => { point.copy(p).project(camera); return [(0.5 + 0.5 * point.x) * size.x, (0.5 - 0.5 * point.y) * size.y, point.z]; };
 
-  function drawLabels() {
-    const chosen = on.state().fruit, x = new Vector3(), y = new Vector3();
-    camera.matrixWorld.extractBasis(x, y, new Vector3());
-    for (const { f, node, at, radius } of labels) {
-      const [cx, cy, depth] = toScreen(at), corner = at.clone().addScaledVector(x, -0.78 * radius).addScaledVector(y, 0.78 * radius);
-      const [lx, ly] = toScreen(corner), inside = depth < 1;
-      node.hidden = !inside;
-      node.style.transform = `translate(${lx.toFixed(1)}px,${ly.toFixed(1)}px)`;
-      node.style.background = chosen === f.id ? data.colors[f.id] : '';
-      node.className = chosen === f.id ? 'on' : chosen ? 'off' : '';
-      node.dataset.x = cx.toFixed(1);
-      node.dataset.y = cy.toFixed(1);
-    }
+  const measure = makeMeasure(world.scene, data.frame, nodes.measured, nodes.measure, invalidate);
+  const choose = (f) => (measure.on ? measure.take({ at: vec(place(f)), fruit: f.id }) : on.fruit(on.state().fruit === f.id ? 0 : f.id));
+  const drawBadges = makeBadges(data, nodes.labels, place, { state: on.state, pick: choose });
+  const controlsOnTop = [nodes.cameras, nodes.layers, nodes.measured, nodes.scale, nodes.triad];
+  /** The parts of the view that controls and legends cover. */
+  function covered() {
+    const view = nodes.viewport.getBoundingClientRect();
+    return controlsOnTop.filter((e) => !e.hidden).map((e) => e.getBoundingClientRect()).filter((b) => b.width > 0)
+      .map((b) => ({ left: b.left - view.left, right: b.right - view.left, top: b.top - view.top, bottom: b.bottom - view.top }));
   }
 
   function drawScale() {
     const perMetre = size.y / (2 * Math.tan((camera.fov * Math.PI) / 360) * Math.max(camera.position.distanceTo(controls.target), 1e-3));
     let length = 1e-4;
     for (let d = 1e-4; d < 1e3; d *= 10) for (const k of [1, 2, 5]) if (k * d * perMetre < Math.min(0.22 * size.x, 160)) length = k * d;
-    nodes.scale.lastElementChild.style.width = `${length * perMetre}px`;
+    nodes.scale.style.width = `${(100 * length * perMetre) / size.x}%`;  // of the view, so that a print may have another size
     nodes.scale.firstElementChild.textContent = length >= 1 ? `${fixed(length)} m` : `${fixed(1000 * length, length < 1e-3 ? 1 : 0)} mm`;
     const x = new Vector3(), y = new Vector3();
     camera.matrixWorld.extractBasis(x, y, new Vector3());
-    nodes.triad.replaceChildren(...kAxes.map(([name, color], i) => {
+    nodes.triad.replaceChildren(...kAxes.map((name, i) => {
       const a = 19 * x.getComponent(i), b = -19 * y.getComponent(i), long = Math.hypot(a, b), far = 1 + 8 / Math.max(long, 6);
-      return el('g', {}, el('line', { x2: a, y2: b, stroke: color, 'stroke-width': 2, 'stroke-linecap': 'round' }),
-        long > 5 ? el('text', { x: a * far, y: b * far, fill: color, 'text-anchor': 'middle', 'dominant-baseline': 'central' }, name) : null);
+      return el('g', { class: `axis ${name}` }, el('line', { x2: a, y2: b, 'stroke-width': 2, 'stroke-linecap': 'round' }),
+        long > 5 ? el('text', { x: a * far, y: b * far, 'text-anchor': 'middle', 'dominant-baseline': 'central' }, name) : null);
     }));
   }
 
@@ -166,39 +161,45 @@ export function makeStage(data, nodes, on) {
     world.sun.target.position.copy(controls.target);
     renderer.render(world.scene, camera);
     camera.updateMatrixWorld();
-    drawLabels();
     drawScale();
+    drawBadges(camera, toScreen, size, covered());
     nodes.canvas.dataset.frames = Number(nodes.canvas.dataset.frames || 0) + 1;
   }
 
+  const rayAt = (px, py) => new Vector3((2 * px) / size.x - 1, 1 - (2 * py) / size.y, 0.5).unproject(camera).sub(camera.position).normalize();
+  const slope = () => (5 * Math.tan((camera.fov * Math.PI) / 360)) / size.y;  // 2.5 pixels, at a distance of 1 m
+  const isOn = (name) => world.layers[name] && world.layers[name].on;
+  const { cloud, merged, frontier } = data;
+  const inView = (c, i) => c.views[i] <= on.state().view;
+  const shownOf = [[cloud, (i) => isOn(cloud.labels[i] > 0 ? 'fruit' : 'rest') && inView(cloud, i)],
+    [merged, (i) => isOn('merged') && inView(merged, i)], [frontier, () => isOn('frontier')]];
+
   /** The fruit under a place of the canvas, 0 for none: the nearest of points shown and fitted bodies. */
   function fruitAt(px, py) {
-    const ndc = new Vector3((2 * px) / size.x - 1, 1 - (2 * py) / size.y, 0.5);
-    const ray = ndc.unproject(camera).sub(camera.position).normalize();
-    const hit = world.layers.bodies && world.layers.bodies.on ? bodyOnRay(world.fitted, camera.position, ray) : null;
-    let [id, nearest] = hit || [0, Infinity];
-    const { view } = on.state(), { positions, labels: label, views } = data.cloud, p = new Vector3();
-    const reach = (2.5 * Math.tan((camera.fov * Math.PI) / 360)) / size.y;  // 5 pixels, per metre of distance
-    for (let i = 0; i < data.cloud.n; ++i) {
-      if (views[i] > view) continue;
-      const layer = world.layers[label[i] > 0 ? 'fruit' : 'rest'];
-      if (!layer || !layer.on) continue;
-      p.set(positions[3 * i], positions[3 * i + 1], positions[3 * i + 2]).sub(camera.position);
-      const t = p.dot(ray);
-      if (t <= 0 || t > nearest - 0.002) continue;
-      if (p.addScaledVector(ray, -t).length() < Math.max(data.cloud.radius, 2 * reach * t)) [id, nearest] = [label[i], t];
-    }
+    const ray = rayAt(px, py), hit = isOn('bodies') ? bodyOnRay(world.fitted, camera.position, ray) : null;
+    const point = pointOnRay(cloud, shownOf[0][1], camera.position, ray, slope());
+    const id = point && (!hit || point.distance < hit[1] - 0.002) ? cloud.labels[point.index] : hit ? hit[0] : 0;
     return data.byId.has(id) ? id : 0;
+  }
+  /** The point under a place of the canvas, of whichever cloud is on show. */
+  function pointAt(px, py) {
+    const ray = rayAt(px, py);
+    return shownOf.map(([c, shown]) => c.n > 0 && pointOnRay(c, shown, camera.position, ray, slope())).filter(Boolean)
+      .reduce((a, b) => (!a || b.distance < a.distance ? b : a), null);
   }
   let down = null;
   nodes.canvas.addEventListener('pointerdown', (e) => (down = [e.clientX, e.clientY]));
   nodes.canvas.addEventListener('click', (e) => {
     if (down && Math.hypot(e.clientX - down[0], e.clientY - down[1]) > 4) return;  // it was a drag
     const box = nodes.canvas.getBoundingClientRect();
-    on.fruit(fruitAt(e.clientX - box.left, e.clientY - box.top));
+    const place = [e.clientX - box.left, e.clientY - box.top];
+    if (!measure.on) return on.fruit(fruitAt(...place));
+    const point = pointAt(...place);
+    measure.take(point && { at: point.at });
   });
 
-  let first = true;
+  let first = true, restored = false;
+  nodes.layers.addEventListener('toggle', invalidate);
   new ResizeObserver(() => {
     const box = nodes.viewport.getBoundingClientRect();
     if (box.width < 1 || box.height < 1) return;
@@ -207,7 +208,8 @@ export function makeStage(data, nodes, on) {
     camera.aspect = box.width / box.height;
     camera.updateProjectionMatrix();
     world.setResolution(box.width, box.height);
-    if (first) cameras.scene();
+    nodes.viewport.style.setProperty('--aspect', camera.aspect);
+    if (first && !restored) cameras.scene();
     first = false;
     draw();
   }).observe(nodes.viewport);
@@ -216,6 +218,19 @@ export function makeStage(data, nodes, on) {
     layers: world.layers,
     cameras,
     look(name) { cameras[name](); applyLayers(); invalidate(); },
+    get busy() { return measure.on || dragging; },
+    /** Where the camera is, and back there. */
+    pose: () => ({ position: camera.position.toArray(), target: controls.target.toArray(), up: camera.up.toArray(), fov: camera.fov }),
+    restore(pose) {
+      restored = true;
+      camera.position.fromArray(pose.position);
+      controls.target.fromArray(pose.target);
+      camera.up.fromArray(pose.up);
+      camera.fov = pose.fov;
+      controls.update();
+      invalidate();
+    },
+    setDark(dark) { world.setDark(dark); invalidate(); },
     setLayer(name, shown) { world.layers[name].on = shown; applyLayers(); invalidate(); },
     show({ view, fruit }) {
       world.showView(view);

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The tables beside the view: fruit and what is known of the one chosen, computing times, parameters.
-import { dash, el, fixed, percent, plural, seconds, words } from './data.js';
+import { copyButton, dash, el, fixed, percent, place, plural, seconds, words } from './data.js';
 
 const mm = (x, decimals = 1) => fixed(1000 * x, decimals);
 const list = (values, text) => (values ? values.map(text).join(',\u2002') : dash);
 const error = (text, e, unit) => text + (e > 0 ? ` \u00b1 ${fixed(e, 1)}` : '') + '\u00a0' + unit;
 const diameter = (f) => (f.radii ? 2 * Math.cbrt(f.radii[0] * f.radii[1] * f.radii[2]) : undefined);
-const place = (f) => f.center_world || f.centroid_world;
+const pose = (frame, position, orientation) => JSON.stringify({ frame, position, orientation });
 
 /** How the picking order reads: its number, or why there is none. */
 function picking(f) {
@@ -18,8 +18,10 @@ function picking(f) {
 export function makeFruitTable(data, nodes, on) {
   const bar = (share) => el('span', { class: 'bar' }, el('i', { style: { width: `${Math.round(100 * Math.min(1, Math.max(0, share)))}%` } }));
   const planned = data.fruits.some((f) => f.picking_order !== undefined);
+  const trusses = new Set(data.fruits.map((f) => f.truss)).size > 1;
   const columns = [
     ['No.', (f) => f.id, (f) => [el('span', { class: 'dot', style: { background: data.colors[f.id] } }), String(f.id)], 'Number, from 1'],
+    ...(trusses ? [['Truss', (f) => f.truss, (f) => [f.truss === undefined ? dash : String(f.truss)], 'Number of its truss']] : []),
     ...['x', 'y', 'z'].map((name, a) => [`${name}, mm`, (f) => place(f)[a], (f) => [mm(place(f)[a])], 'Centre of the fitted body in world, or of the points where none was fitted']),
     ['\u2300, mm', diameter, (f) => [mm(diameter(f))], 'Diameter of the sphere of the same volume'],
     ['Seen', (f) => f.completeness, (f) => (f.completeness === undefined ? [dash] : [bar(f.completeness), percent(f.completeness)]), 'Completeness: share of the surface that was observed'],
@@ -45,20 +47,22 @@ export function makeFruitTable(data, nodes, on) {
     body.replaceChildren(...order.map((f) => rows.get(f.id)));
     heads.forEach((h, i) => (i === sorted.column ? h.setAttribute('aria-sort', sorted.up ? 'ascending' : 'descending') : h.removeAttribute('aria-sort')));
   }
-  columns.forEach(([name, , , title], i) => heads.push(el('th', { scope: 'col', title, onclick: () => { sorted = { column: i, up: sorted.column === i ? !sorted.up : true }; sort(); } }, name)));
+  columns.forEach(([name, , , title], i) => heads.push(el('th', { scope: 'col', title }, el('button', { type: 'button', onclick: () => { sorted = { column: i, up: sorted.column === i ? !sorted.up : true }; sort(); } }, name))));
   nodes.table.append(el('thead', {}, el('tr', {}, ...heads)), body);
   sort();
 
   function detail(f) {
     const entries = [
+      ['Position', list(place(f), (v) => mm(v)) + ` mm (${f.center_world ? 'centre of the fitted body' : 'centroid: no body was fitted'})`],
+      ['Orientation', list(f.orientation_world, (v) => fixed(v, 4)) + '\u2002(x\u00a0y\u00a0z\u00a0w)'],
       ['Found by', `${words(f.found_by)}, ${plural(f.points, 'point', 'points')}`],
+      ...(f.truss === undefined ? [] : [['Truss', String(f.truss)]]),
       ['Centroid, world', list(f.centroid_world, (v) => mm(v)) + ' mm'],
       ['Centroid, cluster', list(f.centroid_cluster, (v) => mm(v)) + ' mm'],
-      ['Orientation', list(f.orientation_world, (v) => fixed(v, 4)) + '\u2002(x\u00a0y\u00a0z\u00a0w)'],
     ];
     if (f.radii) {
       const sigma = f.center_covariance_world && [0, 1, 2].map((a) => Math.sqrt(Math.max(0, f.center_covariance_world[a][a])));
-      entries.push(['Body centre', list(f.center_world, (v) => mm(v)) + ' mm'], ['Standard error', list(sigma, (v) => mm(v, 2)) + ' mm'],
+      entries.push(['Standard error', list(sigma, (v) => mm(v, 2)) + ' mm'],
         ['Semi-axes', list(f.radii, (v) => mm(v)) + ' mm'], ['Body axes', list(f.body_orientation_world, (v) => fixed(v, 4)) + '\u2002(x\u00a0y\u00a0z\u00a0w)'],
         ['Fit', `${mm(f.rms, 2)} mm root mean square`], ['Volume', error(fixed(1e6 * f.volume, 1), 1e6 * f.volume_error, 'ml')],
         ['Mass', error(fixed(1000 * f.mass, 1), 1000 * f.mass_error, 'g')], ['Seen, confidence', `${percent(f.completeness)}, ${percent(f.confidence)}`]);
@@ -73,6 +77,8 @@ export function makeFruitTable(data, nodes, on) {
     }
     nodes.detail.style.setProperty('--c', data.colors[f.id]);
     nodes.detail.replaceChildren(el('h3', {}, `Fruit ${f.id}`, el('button', { type: 'button', 'aria-label': 'Close', onclick: () => on.fruit(0) }, '\u00d7')),
+      el('p', { class: 'buttons' }, copyButton('Copy pose', () => pose(data.frame, place(f), f.orientation_world)),
+        f.pre_grasp_position_world ? copyButton('Copy pre-grasp pose', () => pose(data.frame, f.pre_grasp_position_world, f.pre_grasp_orientation_world)) : null),
       el('dl', {}, ...entries.flatMap(([k, v]) => [el('dt', {}, k), el('dd', {}, v)])));
   }
 
@@ -85,6 +91,22 @@ export function makeFruitTable(data, nodes, on) {
     },
     reveal(fruit) { rows.get(fruit)?.scrollIntoView({ block: 'nearest' }); },
   };
+}
+
+const kReasons = { repeated_frame: 'the frame repeats the one before, so the camera hangs', contradicts_others: 'it contradicts what other views saw, so its pose is wrong' };
+
+/** What the reader must know first: views that are not part of the result, and why there is no fruit. */
+export function showWarnings(data, nodes) {
+  const discarded = data.views.filter((v) => v.discarded), n = data.views.length;
+  if (discarded.length) {
+    const reasons = new Map();
+    for (const v of discarded) reasons.set(v.discarded, [...(reasons.get(v.discarded) || []), v.index + 1]);
+    const list = [...reasons].map(([why, views]) => `${views.length > 1 ? 'views' : 'view'} ${views.join(', ')} (${kReasons[why] || words(why)})`);
+    nodes.warnings.append(el('p', {}, `${discarded.length} of ${plural(n, 'view', 'views')} ${discarded.length === 1 ? 'was' : 'were'} discarded: ${list.join('; ')}.`));
+  }
+  for (const warning of data.run.warnings || []) nodes.warnings.append(el('p', {}, String(warning)));
+  nodes.warnings.hidden = !nodes.warnings.childElementCount;
+  nodes.none.textContent = data.running ? 'No fruit was found so far.' : data.run.no_fruit ? `No fruit was found: ${data.run.no_fruit}.` : 'No fruit was found.';
 }
 
 const kStages = { plan: '#2a6fb5', fuse: '#17a0a8', filter: '#2e9d55', normals: '#9bb024', segment: '#e8952c', locate: '#c8508f' };
