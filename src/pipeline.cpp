@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <agrisee/core/cancellation.hpp>
+#include <agrisee/core/rigid_pose.hpp>
 #include <agrisee/core/stopwatch.hpp>
 #include <agrisee/fuse/free_space.hpp>
 #include <agrisee/fuse/fused_views.hpp>
@@ -13,6 +14,9 @@
 #include <agrisee/process.hpp>
 
 #include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <string>
 #include <utility>
 
 namespace agrisee {
@@ -24,6 +28,23 @@ std::unique_ptr<fuse::Views> make_map(const Workcell& workcell, const Parameters
     return std::make_unique<fuse::FusedViews>(workcell.scan_volume, parameters.fusion(), threads);
   const auto filter = parameters.filter_each_view ? std::optional(parameters.sor) : std::nullopt;
   return std::make_unique<fuse::MergedViews>(workcell.scan_volume, parameters.see.min_separation(), filter, threads);
+}
+
+/// @throws InputError for a volume that cannot be scanned
+void check_volume(const Aabb& volume) {
+  check_input(!volume.empty() && volume.size().allFinite(), "the scan volume is empty or infinite");
+  constexpr double kLargest = 50.0;  // m; no arm sees as much, and a truss in millimetres is larger
+  const double size = volume.size().maxCoeff();
+  if (size > kLargest)
+    throw InputError("the scan volume is " + std::to_string(std::lround(size)) +
+                     " m long: is it in millimetres? Lengths have to be in metres");
+}
+
+/// @throws InputError for joint angles outside of the limits of the workcell's arm
+/// @param slack how far they may be outside (rad)
+void check_joints(const char* name, const Workcell& workcell, const Joints& joints, double slack = 0.0) {
+  const std::string complaint = plan::mount_of(workcell).limits.complaint(joints, slack);
+  if (!complaint.empty()) throw InputError(std::string(name) + ": " + complaint);
 }
 
 /// Whether any pixel of a frame returned.
@@ -41,18 +62,23 @@ Pipeline::Pipeline(const Workcell& workcell, const Parameters& parameters, Pipel
       planner_(std::move(options.planner)),
       threads_(options.threads) {
   parameters_.check();
-  check_input(!workcell.scan_volume.empty() && workcell.scan_volume.size().allFinite(),
-              "the scan volume is empty or infinite");
-  check_input(is_rigid(workcell.world_T_base) && is_rigid(workcell.tool0_T_optical),
-              "a pose of the workcell is not rigid");
+  check_volume(workcell.scan_volume);
+  workcell_.world_T_base = made_rigid(workcell.world_T_base, "world_T_base", &warnings_);
+  workcell_.tool0_T_optical = made_rigid(workcell.tool0_T_optical, "tool0_T_optical", &warnings_);
   map_ = make_map(workcell_, parameters_, threads_);
+  own_arm_ = !reach_;
+  if (workcell.tool0_T_tool) workcell_.tool0_T_tool = made_rigid(*workcell.tool0_T_tool, "tool0_T_tool", &warnings_);
+  workcell_.sensor.check();
+  if (own_arm_) check_joints("start", workcell_, workcell_.start);
   if (!reach_ && !approach_) approach_ = pick::approach_of(workcell_, parameters_.picking);
   if (!reach_) reach_ = plan::reach_of(workcell_);
   if (!planner_) planner_ = make_planner(workcell_, parameters_, options.seed, threads_);
 }
 
-const View& Pipeline::observe(const sensor::DepthFrame& frame, const Pose& world_T_optical,
+const View& Pipeline::observe(const sensor::DepthFrame& frame, const Pose& reported,
                               const std::optional<Joints>& joints) {
+  const Pose world_T_optical =
+      made_rigid(reported, "observe: world_T_optical of view " + std::to_string(views_.size() + 1));
   const View view = begin_view(frame, world_T_optical, joints);
   const bool frozen = repeats_last_frame(frame);
 
@@ -72,7 +98,11 @@ const View& Pipeline::observe(const sensor::DepthFrame& frame, const Pose& world
   cloud_ = timed(seconds_.fuse, [&] { return map_->cloud(); });
 
   // Record the view, and tell the planner.
-  record(view, change);
+  record(view, change, frozen);
+  if (!is_rigid(reported)) {
+    ++rounded_poses_;
+    worst_rounding_ = std::max(worst_rounding_, rigid_error(reported));
+  }
   if (!frozen) remember(frame);
   timed(seconds_.plan, [&] { planner_->observe(progress(change)); });
   return views_.back();
@@ -80,6 +110,7 @@ const View& Pipeline::observe(const sensor::DepthFrame& frame, const Pose& world
 
 std::optional<plan::ReachableView> Pipeline::next_view(const Joints& current) {
   check_input(current.allFinite(), "next_view: the joints are not finite");
+  if (own_arm_) check_joints("next_view", workcell_, current, 1.0);  // a real arm may stand a little outside
   if (static_cast<int>(views_.size()) >= parameters_.max_views) {
     stop_reason_ = StopReason::max_views;
     return std::nullopt;
@@ -91,6 +122,16 @@ std::optional<plan::ReachableView> Pipeline::next_view(const Joints& current) {
   auto next = timed(seconds_.plan, [&] { return planner_->next(progress({}), current, reach_); });
   stop_reason_ = next ? StopReason::not_stopped : planner_->stop_reason();
   return next;
+}
+
+std::vector<std::string> Pipeline::warnings() const {
+  std::vector<std::string> all = warnings_;
+  if (rounded_poses_ == 0) return all;
+  char off[32];
+  std::snprintf(off, sizeof off, "%.2g", worst_rounding_);
+  all.push_back("world_T_optical of " + std::to_string(rounded_poses_) + " of " + std::to_string(views_.size()) +
+                " views: the rotation matrix was off by up to " + off + " and has been made orthonormal");
+  return all;
 }
 
 void Pipeline::refused() {
@@ -115,6 +156,7 @@ ScanResult Pipeline::result() const {
   out.views = views_;
   out.stop_reason = stop_reason_;
   out.completeness = completeness();
+  out.warnings = warnings();
   out.seconds.plan = seconds_.plan;
   out.seconds.fuse = seconds_.fuse;
   out.seconds.filter += seconds_.filter;
@@ -126,7 +168,7 @@ ScanResult Pipeline::result() const {
 View Pipeline::begin_view(const sensor::DepthFrame& frame, const Pose& world_T_optical,
                           const std::optional<Joints>& joints) const {
   check(frame);
-  check_input(is_rigid(world_T_optical), "observe: the pose of the camera is not a rigid transform");
+  sensor::check_depth_unit(frame);
   View view;
   view.world_T_optical = world_T_optical;
   // The observed point: as far ahead along the optical axis as the middle of the scan volume.
@@ -139,11 +181,20 @@ View Pipeline::begin_view(const sensor::DepthFrame& frame, const Pose& world_T_o
 }
 
 /// Add a view to the record. Planning time counts for the next view from here on.
-void Pipeline::record(View view, const fuse::Change& change) {
+/// @param repeated its frame is the one before
+void Pipeline::record(View view, const fuse::Change& change, bool repeated) {
   view.points_in = change.points_in;
   view.points_new = change.added.size();
+  if (repeated) view.discard_reason = DiscardReason::repeated_frame;
   views_.push_back(std::move(view));
-  for (std::size_t v = 0; v < views_.size(); ++v) views_[v].discarded = map_->discarded(v);
+  for (std::size_t v = 0; v < views_.size(); ++v) {  // a view can also make others part of the map, or discard them
+    View& each = views_[v];
+    each.discarded = map_->discarded(v);
+    if (!each.discarded)
+      each.discard_reason = DiscardReason::none;
+    else if (each.discard_reason == DiscardReason::none)
+      each.discard_reason = DiscardReason::contradicts_others;
+  }
   refusals_ = 0;
   planned_before_ = seconds_.plan;
 }
@@ -161,7 +212,7 @@ bool Pipeline::repeats_last_frame(const sensor::DepthFrame& frame) const {
 }
 
 plan::Progress Pipeline::progress(const fuse::Change& change) const {
-  return {cloud_, map_->images(), views_, change.added, change.kept ? &*change.kept : nullptr};
+  return {cloud_, map_->images(), views_, change.added, change.observed, change.kept ? &*change.kept : nullptr};
 }
 
 /// Move the result to where all views together, by their reported poses, put it.
@@ -177,6 +228,7 @@ void Pipeline::center_on_reported_poses(ScanResult& out) const {
     f.centroid_cluster += shift;
     if (f.body) f.body->center += shift;
   }
+  for (FoundTruss& truss : out.trusses) truss.world_T_truss.translation() += shift;
 }
 
 /// How to pick each fruit, from where the arm stood last.

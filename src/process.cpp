@@ -6,11 +6,16 @@
 #include <agrisee/cloud/split.hpp>
 #include <agrisee/cloud/voxel.hpp>
 #include <agrisee/core/stopwatch.hpp>
+#include <agrisee/geometry/aabb.hpp>
 #include <agrisee/locate.hpp>
 #include <agrisee/neighbors/grid.hpp>
 #include <agrisee/neighbors/kdtree.hpp>
 #include <agrisee/neighbors/neighbor_lists.hpp>
 #include <agrisee/process.hpp>
+
+#include <algorithm>
+#include <cstdio>
+#include <string>
 
 namespace agrisee {
 namespace {
@@ -75,16 +80,23 @@ Normals estimated_normals(const Cloud& cloud, const Parameters& parameters, cons
   return estimated;
 }
 
-/// Normals that came with the cloud are kept, except those that clearly face away from their sensor: by more than
-/// `beyond` (rad), since at grazing incidence either side is possible. These are turned. Normals that are zero or not
-/// finite are replaced by zeros.
+/// A normal faces away from its sensor beyond this angle (rad); nearer to 90 degrees either side is possible.
+constexpr double kFacingAway = deg(100);
+
+/// Whether a point came with a normal.
+bool has_normal(const Cloud& cloud, std::size_t i) {
+  return !cloud.normals.empty() && is_finite(cloud.normals[i]) && cloud.normals[i].squaredNorm() > 0.25f;
+}
+
+/// Normals that came with the cloud are kept, except those that clearly face away from their sensor. These are turned.
+/// Normals that are zero or not finite are replaced by zeros.
 /// @return indices of the points whose normals are kept
-Indices keep_given_normals(Cloud& cloud, const CloudOrigin& origin, double beyond) {
-  const double away = std::cos(beyond);
+Indices keep_given_normals(Cloud& cloud, const CloudOrigin& origin) {
+  const double away = std::cos(kFacingAway);
   Indices known;
   for (std::size_t i = 0; i < cloud.size(); ++i) {
     Eigen::Vector3f& n = cloud.normals[i];
-    if (!is_finite(n) || !(n.squaredNorm() > 0.25f)) {
+    if (!has_normal(cloud, i)) {
       n.setZero();
       continue;
     }
@@ -102,7 +114,7 @@ Indices keep_given_normals(Cloud& cloud, const CloudOrigin& origin, double beyon
 void complete_normals(Cloud& cloud, const Parameters& parameters, const CloudOrigin& origin, double& noise,
                       int threads) {
   noise = 0.0;
-  const Indices known = keep_given_normals(cloud, origin, deg(100));
+  const Indices known = keep_given_normals(cloud, origin);
   if (known.size() == cloud.size()) return;
   const Normals estimated = estimated_normals(cloud, parameters, origin, noise, threads);
   if (2 * known.size() > cloud.size()) noise = 0.0;  // a few estimates say little about the rest
@@ -131,11 +143,84 @@ double provide_normals(Cloud& cloud, const Parameters& parameters, const CloudOr
   return noise;
 }
 
+/// A length as messages show it (m).
+std::string metres(double length) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.3g m", length);
+  return text;
+}
+
+/// @throws InputError if a sensor stood farther from all points than any sensor sees
+void check_distance(const Cloud& cloud, const std::vector<Eigen::Vector3d>& sensors) {
+  constexpr double kFarthest = 20.0;  // m; depth cameras see less far, and 20 mm are nearer than any of them sees
+  Aabb box;
+  for (const auto& p : cloud.points)
+    if (is_finite(p)) box.extend(p.cast<double>());
+  if (box.empty()) return;
+  for (const Eigen::Vector3d& sensor : sensors) {
+    const double distance = (sensor - sensor.cwiseMax(box.min).cwiseMin(box.max)).norm();
+    if (!(distance <= kFarthest))
+      throw InputError("a sensor stood " + metres(distance) +
+                       " from the cloud: is its position in millimetres? Positions have to be in metres, in the "
+                       "frame of the cloud");
+  }
+}
+
 }  // namespace
+
+void check_origin(const Cloud& cloud, const CloudOrigin& origin) {
+  check_distance(cloud, origin.sensors);
+  if (origin.viewpoint) check_distance(cloud, {*origin.viewpoint});
+  if (!origin.sensors.empty() && !cloud.empty() && cloud.views.empty() && cloud.normals.empty())
+    throw InputError(
+        "positions of sensors are given, but the cloud does not say from which view each point comes "
+        "(Cloud::views)");
+  if (!origin.viewpoint || !origin.sensors.empty() || cloud.views.empty()) return;
+  int first = -1;  // of the views that are known
+  for (const int view : cloud.views) {
+    if (view < 0 || view == first) continue;
+    if (first >= 0)
+      throw InputError(
+          "its points come from several views (" + std::to_string(first) + " and " + std::to_string(view) +
+          ", for instance), so one viewpoint is not right for all: give the sensor's position of each view");
+    first = view;
+  }
+}
+
+std::size_t normals_facing_away(const Cloud& cloud, const CloudOrigin& origin) {
+  check_origin(cloud, origin);
+  const double away = std::cos(kFacingAway);
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < cloud.size(); ++i) {
+    if (!has_normal(cloud, i)) continue;
+    const auto sensor = seen_from(cloud, i, origin);
+    if (!sensor) continue;
+    const Eigen::Vector3d sight = *sensor - cloud.points[i].cast<double>(), normal = cloud.normals[i].cast<double>();
+    count += normal.dot(sight) < away * normal.norm() * sight.norm();
+  }
+  return count;
+}
+
+void check_units(const Cloud& cloud, const Parameters& parameters) {
+  constexpr double kLarge = 10.0;  // m; clouds of scanned trusses are smaller, and in millimetres they are larger
+  Aabb box;
+  for (const auto& p : cloud.points)
+    if (is_finite(p)) box.extend(p.cast<double>());
+  if (box.empty() || !(box.size().norm() > kLarge)) return;
+  const Cloud finite = select(cloud, finite_indices(cloud));
+  const double spacing = estimate_spacing(finite), largest = 2.0 * parameters.split.bodies.radius_max;
+  constexpr std::size_t kFew = 100;
+  if (finite.size() < kFew || !(spacing > largest)) return;
+  throw InputError("the cloud is " + metres(box.size().norm()) + " across and its points are " + metres(spacing) +
+                   " apart, farther than the largest expected fruit (" + metres(largest) +
+                   "): is it in millimetres? Coordinates have to be in metres");
+}
 
 ScanResult process(Cloud&& cloud, const Parameters& parameters, const CloudOrigin& origin,
                    const SeenThrough& seen_through, int threads) {
   parameters.check();
+  check_units(cloud, parameters);
+  check_origin(cloud, origin);
   ScanResult result;
   const Indices finite = finite_indices(cloud);
   result.raw = finite.size() == cloud.size() ? std::move(cloud) : select(cloud, finite);
@@ -151,10 +236,12 @@ ScanResult process(Cloud&& cloud, const Parameters& parameters, const CloudOrigi
   SplitParameters fitted = parameters.split;
   fitted.bodies.fit.noise = std::max(fitted.bodies.fit.noise, 4.0 * noise);
   const Split found = timed(t.segment, [&] { return split(result.cloud, fitted, seen_through, threads); });
+  result.bodies = found.bodies;
 
   // Locate: centroids, pose frames, fitted bodies.
   timed(t.locate,
         [&] { result.fruits = locate(result.cloud, found, origin.cluster_origin, parameters, result.labels); });
+  result.trusses = found_trusses(result.fruits);
   t.total = t.filter + t.normals + t.segment + t.locate;
   return result;
 }

@@ -2,6 +2,7 @@
 // The subcommands of `agrisee`, and what they share. Results go to stdout, progress and errors to stderr.
 #pragma once
 
+#include <agrisee/io/scan_page.hpp>
 #include <agrisee/parameters.hpp>
 #include <agrisee/result.hpp>
 #include <agrisee/study/depth_noise.hpp>
@@ -29,12 +30,15 @@ using Run = std::function<int()>;
 void add_scan(CLI::App& app, Run& run);
 void add_process(CLI::App& app, Run& run);
 void add_make_truss(CLI::App& app, Run& run);
+void add_make_plant(CLI::App& app, Run& run);
 void add_evaluate(CLI::App& app, Run& run);
 void add_paper_scenes(CLI::App& app, Run& run);
 void add_experiment(CLI::App& app, Run& run);
 void add_limit(CLI::App& app, Run& run);
 void add_merge(CLI::App& app, Run& run);
 void add_faults(CLI::App& app, Run& run);
+void add_export_views(CLI::App& app, Run& run);
+void add_parameters(CLI::App& app, Run& run);
 
 /// Values of --preset.
 std::vector<std::string> preset_choices();
@@ -43,13 +47,13 @@ std::vector<std::string> planner_choices();
 
 /// Options that scan and process have in common.
 struct CommonOptions {
-  std::string preset = "default";
+  std::string preset = kPresetNames[0];
   std::string parameter_file;  ///< value of --params
   std::string output;
   std::vector<double> radius;  ///< smallest and largest expected radius of a fruit (m), or empty
   std::uint64_t seed = 0;
   int threads = 0;  ///< 0 = one per core
-  bool force = false, json = false;
+  bool force = false, json = false, quiet = false, no_report = false, no_picture = false;
 };
 /// Add these options to a subcommand. @return the option that names the output folder
 CLI::Option* add_common_options(CLI::App& command, CommonOptions& options);
@@ -67,15 +71,30 @@ void check_scan(const Workcell& workcell, const Parameters& parameters);
 /// Create a folder. @throws UsageError if it exists and is not a folder, FileError if it cannot be created
 void make_folder(const std::string& folder);
 
-/// The files of a result, those that a result can lack included.
+/// The files that only people look at, and all files of a result, those that a result can lack included.
+constexpr const char *kPicture = "truss.png", *kReport = "report.html";
 constexpr const char* kResultFiles[] = {"run.json",    "views.csv",  "cloud.ply", "cloud_raw.ply",
-                                        "fruits.json", "fruits.csv", "truss.png", "report.html"};
+                                        "fruits.json", "fruits.csv", kPicture,    kReport};
+
+/// Check that a folder can take a new result: that it holds none, or that `force` is on.
+/// @throws UsageError, which says how to go on, if it holds a result or an unfinished scan and `force` is off
+void check_output(const std::string& folder, bool force);
 
 /// Prepare a folder for a new result. With `force`, an older result is removed, whether it is finished or not.
-/// @throws UsageError if the folder holds a result and `force` is off
+/// @throws UsageError as check_output
 void prepare_output(const std::string& folder, bool force);
 
-/// Print the summary of a result to stdout: a table of the fruit, or JSON.
-void print_summary(const ScanResult& result, const std::string& folder, bool json);
+/// Write the files of a result; of the picture and the report those that the options do not leave out.
+void write_files(const std::string& folder, const ScanResult& result, const Workcell& workcell, const io::RunInfo& info,
+                 const CommonOptions& options, const io::ScanHistory& history = {});
+
+/// Tell on stderr of the view taken last, of at most `budget`: a line, or, on a terminal, a bar drawn over the last
+/// one.
+void show_progress(const std::vector<View>& views, std::size_t budget);
+/// Call after the last view.
+void end_progress();
+
+/// Print the summary of a result to stdout: a table of the fruit unless it should be quiet, or JSON.
+void print_summary(const ScanResult& result, const std::string& folder, const CommonOptions& options);
 
 }  // namespace agrisee::cli

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <agrisee/io/files.hpp>
 #include <agrisee/io/parameters.hpp>
+#include <agrisee/io/render.hpp>
 #include <agrisee/io/scan_record.hpp>
 #include <agrisee/pipeline.hpp>
 
@@ -12,8 +13,11 @@
 #include <sstream>
 #include <system_error>
 #include <thread>
+#include <unistd.h>
 
 #include "commands.hpp"
+#include "interrupt.hpp"
+#include "words.hpp"
 
 namespace agrisee::cli {
 
@@ -29,22 +33,25 @@ std::vector<std::string> planner_choices() {
 
 CLI::Option* add_common_options(CLI::App& command, CommonOptions& options) {
   CLI::Option* output = command.add_option("-o,--output", options.output, "folder for the result");
-  command.add_option("--preset", options.preset, "initial parameter values: default, or paper")
+  command.add_option("--preset", options.preset, "initial parameter values")
       ->check(CLI::IsMember(preset_choices()))
       ->capture_default_str();
   command.add_option("--params", options.parameter_file, "YAML file with parameters to change");
   command
       .add_option("--radius", options.radius,
-                  "smallest,largest expected radius of a fruit (m; default 0.02,0.05); also sets the parameters that "
-                  "depend on it")
+                  "smallest,largest expected radius of a fruit (m, the largest at most 20 times the smallest; default "
+                  "0.02,0.05); also sets the parameters that depend on it")
       ->delimiter(',')
       ->expected(2);
-  command.add_option("--seed", options.seed, "seed of all random draws")->capture_default_str();
+  command.add_option("--seed", options.seed, "seed of all random draws")->check(not_negative())->capture_default_str();
   command.add_option("--threads", options.threads, "number of threads (0: one per core); does not change the result")
       ->check(CLI::Range(0, 1024))
       ->capture_default_str();
   command.add_flag("--force", options.force, "overwrite an existing result");
-  command.add_flag("--json", options.json, "print the summary as JSON");
+  command.add_flag("--json", options.json, "print the summary and the fruit as JSON");
+  command.add_flag("--quiet", options.quiet, "print neither progress nor the table of fruit");
+  command.add_flag("--no-picture", options.no_picture, "do not write truss.png, which takes most of the time");
+  command.add_flag("--no-report", options.no_report, "do not write report.html");
   return output;
 }
 
@@ -85,14 +92,22 @@ void make_folder(const std::string& folder) {
   if (error) throw FileError(folder + ": cannot be created: " + error.message());
 }
 
-void prepare_output(const std::string& folder, bool force) {
+void check_output(const std::string& folder, bool force) {
   std::error_code error;
-  for (const char* name : kResultFiles)
-    if (!force && fs::exists(fs::path(folder) / name, error))
-      throw UsageError(folder + ": already holds a result (" + name + "); use --force to overwrite it");
-  if (!force && fs::exists(fs::path(folder) / "scan.json", error))
+  if (force) return;
+  const bool finished = fs::exists(fs::path(folder) / "run.json", error);
+  if (!finished && fs::exists(fs::path(folder) / "scan.json", error))
     throw UsageError(folder + ": holds a scan that was not finished; continue it with `agrisee scan --resume " +
-                     folder + "`, or use --force to overwrite it");
+                     shell_word(folder) +
+                     "`, or use --force to start again, which deletes the views that it has taken");
+  for (const char* name : kResultFiles)
+    if (fs::exists(fs::path(folder) / name, error))
+      throw UsageError(folder + ": already holds a result (" + name + "); use --force to overwrite it");
+}
+
+void prepare_output(const std::string& folder, bool force) {
+  check_output(folder, force);
+  std::error_code error;
   make_folder(folder);
   io::remove_leftovers(folder);
   if (!force) return;
@@ -104,29 +119,66 @@ void prepare_output(const std::string& folder, bool force) {
   io::remove_scan_records(folder);
 }
 
+void write_files(const std::string& folder, const ScanResult& result, const Workcell& workcell, const io::RunInfo& info,
+                 const CommonOptions& options, const io::ScanHistory& history) {
+  io::write_result(folder, result, workcell, info);
+  // The picture comes last: `scan --live` may have left a page already, which does not say that a result is complete.
+  if (!options.no_report) io::write_scan_page(fs::path(folder) / kReport, result, workcell, info, history);
+  if (!options.no_picture) io::write_picture(fs::path(folder) / kPicture, result, workcell);
+}
+
+void show_progress(const std::vector<View>& views, std::size_t budget) {
+  const View& v = views.back();
+  const std::size_t n = views.size();
+  const std::string line = "view " + std::to_string(n) + "/" + std::to_string(budget) + ": " +
+                           std::to_string(v.points_in) + " points seen, " + std::to_string(v.points_new) + " new";
+  if (isatty(STDERR_FILENO)) {
+    constexpr std::size_t kWidth = 24;
+    const std::size_t done = std::min(kWidth, kWidth * n / std::max<std::size_t>(1, budget));
+    std::cerr << "\r[" << std::string(done, '#') << std::string(kWidth - done, '.') << "] " << line << "\033[K"
+              << std::flush;
+  } else {
+    std::cerr << line << "\n";
+  }
+}
+
+void end_progress() {
+  if (isatty(STDERR_FILENO)) std::cerr << "\n";
+}
+
 namespace {
 
 std::string summary_json(const ScanResult& result, const std::string& folder, std::size_t labelled) {
   nlohmann::ordered_json out;
   out["folder"] = folder;
-  out["fruits"] = result.fruits.size();
+  out["fruits"] = nlohmann::ordered_json::parse(io::fruits_to_json(result.fruits));
   out["views"] = result.views.size();
+  if (const std::string discarded = discarded_views(result.views); !discarded.empty()) out["discarded"] = discarded;
+  if (!result.warnings.empty()) out["warnings"] = result.warnings;
   out["stop_reason"] = to_string(result.stop_reason);
+  if (result.fruits.empty()) out["no_fruit"] = why_no_fruit(result);
   out["points"] = {{"merged", result.raw.size()}, {"filtered", result.cloud.size()}, {"labelled", labelled}};
   out["seconds"] = result.seconds.total;
   return out.dump(2) + "\n";
 }
 
+/// " from 7 views (low_gain)"; nothing for a cloud, of whose views nothing is known.
+std::string views_text(const ScanResult& result) {
+  if (result.views.empty() && result.stop_reason == StopReason::not_stopped) return "";
+  std::string text = " from " + std::to_string(result.views.size()) + (result.views.size() == 1 ? " view" : " views");
+  if (result.stop_reason != StopReason::not_stopped) text += std::string(" (") + to_string(result.stop_reason) + ")";
+  return text;
+}
+
 std::string summary_text(const ScanResult& result, const std::string& folder) {
   std::ostringstream text;
   text << std::fixed;
-  text << result.fruits.size() << " fruit from " << result.views.size() << " views (" << to_string(result.stop_reason)
-       << "), " << result.cloud.size() << " points, " << std::setprecision(2) << result.seconds.total
-       << " s of computing\n";
+  text << result.fruits.size() << " fruit, " << result.cloud.size() << " points" << views_text(result) << ", "
+       << std::setprecision(2) << result.seconds.total << " s of computing\n";
   if (!result.fruits.empty())
-    text << "  id   points  found by              centre x, y, z (m)          radius  seen  axis z (world)\n";
+    text << "  id   points  found by              position x, y, z (m)        radius  seen  axis z (world)\n";
   for (const Fruit& f : result.fruits) {
-    const Eigen::Vector3d c = f.body ? f.body->center : f.centroid;
+    const Eigen::Vector3d& c = f.position();
     const Eigen::Vector3d z = f.orientation.col(2);
     text << std::setw(4) << f.id << std::setw(9) << f.points << "  " << std::left << std::setw(16) << f.found_by
          << std::right << std::setprecision(4) << std::setw(10) << c.x() << std::setw(9) << c.y() << std::setw(9)
@@ -136,16 +188,21 @@ std::string summary_text(const ScanResult& result, const std::string& folder) {
            << std::setw(4) << 100.0 * f.body->completeness << " %";
     text << std::setprecision(2) << std::setw(8) << z.x() << std::setw(6) << z.y() << std::setw(6) << z.z() << "\n";
   }
+  if (result.fruits.empty()) text << "No fruit: " << why_no_fruit(result) << "\n";
+  const std::string discarded = discarded_views(result.views);
+  if (!discarded.empty()) text << "Note: " << discarded << "\n";
+  for (const std::string& warning : result.warnings) text << "Note: " << warning << "\n";
   text << "Result: " << folder << "\n";
   return text.str();
 }
 
 }  // namespace
 
-void print_summary(const ScanResult& result, const std::string& folder, bool json) {
+void print_summary(const ScanResult& result, const std::string& folder, const CommonOptions& options) {
+  if (options.quiet && !options.json) return;
   std::size_t labelled = 0;
   for (int l : result.labels) labelled += l > 0;
-  std::cout << (json ? summary_json(result, folder, labelled) : summary_text(result, folder));
+  std::cout << (options.json ? summary_json(result, folder, labelled) : summary_text(result, folder));
 }
 
 }  // namespace agrisee::cli

@@ -9,6 +9,7 @@
 #include <agrisee/study/run_cell.hpp>
 #include <agrisee/version.hpp>
 
+#include <algorithm>
 #include <chrono>
 #include <filesystem>
 #include <iomanip>
@@ -31,7 +32,8 @@ namespace fs = std::filesystem;
 struct ExperimentOptions {
   std::string output, report;
   std::string parameter_file;  ///< value of --params
-  std::vector<std::string> presets{"paper", "default"}, planners, noises{"l515"}, scenes;
+  std::vector<std::string> presets{"paper", "default"}, planners, noises{"l515"}, groups, scenes;
+  bool scanned_only = false;
   int trials = 3, paper_trials = 0, threads = 0, max_views = 0;
 
   int trials_of(const std::string& preset) const {
@@ -102,31 +104,66 @@ struct CellJob {
   std::optional<study::CellRecord> record;
 };
 
+/// Scans that have all but scene and trial in common.
+struct GroupOfCells {
+  std::string preset, planner, noise, reach = "arm";
+};
+
+/// PRESET/PLANNER/NOISE or PRESET/PLANNER/NOISE/free.
+GroupOfCells parse_group(const std::string& text) {
+  std::vector<std::string> parts;
+  std::istringstream stream(text);
+  for (std::string part; std::getline(stream, part, '/');) parts.push_back(part);
+  const auto known = [&](std::size_t i, const std::vector<std::string>& choices) {
+    return std::find(choices.begin(), choices.end(), parts[i]) != choices.end();
+  };
+  if (parts.size() < 3 || parts.size() > 4 || !known(0, preset_choices()) || !known(1, planner_choices()) ||
+      (parts.size() == 4 && parts[3] != "free"))
+    throw UsageError("--groups: expected PRESET/PLANNER/NOISE or PRESET/PLANNER/NOISE/free, got " + text);
+  noise_of(parts[2]);
+  return {parts[0], parts[1], parts[2], parts.size() == 4 ? "free" : "arm"};
+}
+
+/// The groups of --groups or, without that, all combinations of presets, planners and noise models.
+std::vector<GroupOfCells> groups_of(const ExperimentOptions& options) {
+  std::vector<GroupOfCells> groups;
+  for (const std::string& text : options.groups) groups.push_back(parse_group(text));
+  if (!groups.empty()) return groups;
+  for (const std::string& preset : options.presets) {
+    const std::vector<std::string> own{Parameters::named(preset).planner};
+    for (const std::string& planner : options.planners.empty() ? own : options.planners)
+      for (const std::string& noise : options.noises) groups.push_back({preset, planner, noise});
+  }
+  return groups;
+}
+
+Parameters parameters_of(const ExperimentOptions& options, const std::string& preset) {
+  Parameters parameters = Parameters::named(preset);
+  if (!options.parameter_file.empty()) parameters = io::read_parameters(options.parameter_file, parameters);
+  if (options.max_views > 0) parameters.max_views = options.max_views;
+  return parameters;
+}
+
 std::vector<CellJob> list_cells(const ExperimentOptions& options, const std::vector<SceneJob>& scenes) {
   std::vector<CellJob> jobs;
   std::set<std::string> names;
   for (std::size_t s = 0; s < scenes.size(); ++s)
-    for (const std::string& preset : options.presets) {
-      Parameters parameters = Parameters::named(preset);
-      if (!options.parameter_file.empty()) parameters = io::read_parameters(options.parameter_file, parameters);
-      if (options.max_views > 0) parameters.max_views = options.max_views;
-      const std::vector<std::string> own{parameters.planner};
-      for (const std::string& planner : options.planners.empty() ? own : options.planners)
-        for (const std::string& noise : options.noises)
-          for (int trial = 1; trial <= options.trials_of(preset); ++trial) {
-            CellJob job;
-            job.cell = {scenes[s].name, preset, planner, to_string(study::parse_noise(noise)), trial};
-            if (!names.insert(job.cell.name()).second) continue;
-            job.scene = s;
-            job.parameters = parameters;
-            io::Fingerprint print;
-            print.add(scenes[s].fingerprint);
-            print.add(io::parameters_to_json(parameters));
-            job.fingerprint = print.text();
-            job.path = fs::path(options.output) / "cells" / (job.cell.name() + ".json");
-            jobs.push_back(std::move(job));
-          }
-    }
+    for (const GroupOfCells& group : groups_of(options))
+      for (int trial = 1; trial <= options.trials_of(group.preset); ++trial) {
+        CellJob job;
+        job.cell = {scenes[s].name, group.preset, group.planner, to_string(study::parse_noise(group.noise)), trial};
+        job.cell.reach = group.reach;
+        if (!names.insert(job.cell.name()).second) continue;
+        job.scene = s;
+        job.parameters = parameters_of(options, group.preset);
+        io::Fingerprint print;
+        print.add(scenes[s].fingerprint);
+        print.add(io::parameters_to_json(job.parameters));
+        if (options.scanned_only) print.add("scanned only");
+        job.fingerprint = print.text();
+        job.path = fs::path(options.output) / "cells" / (job.cell.name() + ".json");
+        jobs.push_back(std::move(job));
+      }
   return jobs;
 }
 
@@ -158,9 +195,9 @@ std::string outcome_of(const study::CellRecord& record) {
 }
 
 /// Run a cell and write its record. @return one line about it, or why it failed
-std::string run_and_record(CellJob& job, SceneJob& scene) {
+std::string run_and_record(CellJob& job, SceneJob& scene, study::JudgedAfterViews judged) {
   try {
-    study::CellRecord record = study::run_cell(scene.subject(), job.cell, job.parameters);
+    study::CellRecord record = study::run_cell(scene.subject(), job.cell, job.parameters, 1, judged);
     record.fingerprint = job.fingerprint;
     report::write_record(job.path, record);
     const std::string outcome = outcome_of(record);
@@ -172,7 +209,8 @@ std::string run_and_record(CellJob& job, SceneJob& scene) {
 }
 
 /// Run the cells that have no record yet. @return messages of the cells that failed
-std::vector<std::string> run_cells(std::vector<CellJob>& cells, std::vector<SceneJob>& scenes, int threads) {
+std::vector<std::string> run_cells(std::vector<CellJob>& cells, std::vector<SceneJob>& scenes,
+                                   study::JudgedAfterViews judged, int threads) {
   std::vector<std::size_t> open;
   for (std::size_t i = 0; i < cells.size(); ++i) {
     cells[i].record = finished<study::CellRecord>(cells[i].path, cells[i].fingerprint, report::read_cell_record);
@@ -187,7 +225,7 @@ std::vector<std::string> run_cells(std::vector<CellJob>& cells, std::vector<Scen
       open.size(), threads,
       [&](std::size_t k) {
         CellJob& job = cells[open[k]];
-        const std::string outcome = run_and_record(job, scenes[job.scene]);
+        const std::string outcome = run_and_record(job, scenes[job.scene], judged);
         const std::lock_guard<std::mutex> lock(mutex);
         ++done;
         if (!job.record) failed.push_back(job.cell.name() + " " + outcome);
@@ -229,14 +267,18 @@ std::string command_of(const ExperimentOptions& options) {
     text += std::string(" ") + option + " ";
     for (std::size_t i = 0; i < values.size(); ++i) text += (i ? "," : "") + values[i];
   };
-  list("--presets", options.presets);
-  list("--planner", options.planners);
-  list("--noise", options.noises);
+  list("--groups", options.groups);
+  if (options.groups.empty()) {
+    list("--presets", options.presets);
+    list("--planner", options.planners);
+    list("--noise", options.noises);
+  }
   text += " --trials " + std::to_string(options.trials);
   if (options.paper_trials > 0) text += " --paper-trials " + std::to_string(options.paper_trials);
   list("--scenes", options.scenes);
   if (!options.parameter_file.empty()) text += " --params " + options.parameter_file;
   if (options.max_views > 0) text += " --max-views " + std::to_string(options.max_views);
+  if (options.scanned_only) text += " --scanned-only";
   return text;
 }
 
@@ -247,7 +289,8 @@ int run_experiment(const ExperimentOptions& options) {
   const int threads = threads_of(options.threads);
   std::vector<SceneJob> scenes = open_scenes(options);
   std::vector<CellJob> cells = list_cells(options, scenes);
-  const std::vector<std::string> failed = run_cells(cells, scenes, threads);
+  const std::vector<std::string> failed = run_cells(
+      cells, scenes, options.scanned_only ? study::JudgedAfterViews::scanned : study::JudgedAfterViews::all, threads);
   const std::vector<study::SceneRecord> scene_records = judge_scenes(options, scenes, threads);
   std::vector<study::CellRecord> records;
   for (CellJob& job : cells)
@@ -272,7 +315,7 @@ void add_experiment(CLI::App& app, Run& run) {
       ->add_option("-o,--output", options->output,
                    "folder for the records; cells that have a record there are not run again")
       ->required();
-  command->add_option("--presets", options->presets, "presets: paper, default")
+  command->add_option("--presets", options->presets, "presets to compare")
       ->delimiter(',')
       ->check(CLI::IsMember(preset_choices()))
       ->capture_default_str();
@@ -282,6 +325,13 @@ void add_experiment(CLI::App& app, Run& run) {
   command->add_option("--noise", options->noises, "noise models: none, gaussian:SIGMA (m), l515, rough")
       ->delimiter(',')
       ->capture_default_str();
+  command
+      ->add_option("--groups", options->groups,
+                   "what to run instead of all combinations of --presets, --planner and --noise: PRESET/PLANNER/NOISE, "
+                   "or PRESET/PLANNER/NOISE/free for a camera that flies instead of the arm")
+      ->delimiter(',');
+  command->add_flag("--scanned-only", options->scanned_only,
+                    "after each view judge only how much surface was scanned, not the fruit; much faster");
   command->add_option("--trials", options->trials, "number of trials; the seeds are 1, 2, ...")
       ->check(CLI::Range(1, 1000))
       ->capture_default_str();

@@ -23,7 +23,7 @@ namespace {
 namespace fs = std::filesystem;
 
 struct FaultOptions {
-  std::string report, noise = "l515", preset = "default";
+  std::string report, noise = "l515", preset = kPresetNames[0];
   std::vector<std::string> scenes, kinds{"any"};
   std::vector<double> rates{0.0, 0.01, 0.03, 0.1, 0.2, 0.3};
   int trials = 1, threads = 0;
@@ -53,7 +53,7 @@ struct JudgedScene {
 /// Open a scene file, or generate a truss by name.
 JudgedScene open_scene(const std::string& text) {
   const auto truss = truss_by_name(text);
-  const io::SceneFile file = truss ? io::SceneFile{truss->workcell, truss->scene} : io::read_scene(text);
+  const io::SceneFile file = truss ? io::SceneFile{truss->workcell, truss->scene, {}} : io::read_scene(text);
   const auto known =
       truss ? std::optional(truss->truth) : io::read_ground_truth(fs::path(text).parent_path() / "ground_truth.json");
   return {file.workcell.name, file.workcell, study::make_truth(file.scene, known, file.workcell.sensor)};
@@ -158,7 +158,7 @@ void add_faults(CLI::App& app, Run& run) {
       ->capture_default_str();
   command->add_option("--noise", options->noise, "noise model of the sensor: none, gaussian:SIGMA (m), l515 or rough")
       ->capture_default_str();
-  command->add_option("--preset", options->preset, "parameters: default, or paper")
+  command->add_option("--preset", options->preset, "parameter values")
       ->check(CLI::IsMember(preset_choices()))
       ->capture_default_str();
   command

@@ -253,7 +253,7 @@ void print(const LimitOptions& options, const io::SceneFile& file, const LimitRe
 }
 
 /// @throws UsageError if the folder holds a result that may not be overwritten
-void check_output(const LimitOptions& options) {
+void check_limit_output(const LimitOptions& options) {
   const fs::path folder = options.output;
   for (const char* name : {"limit.json", "observable.ply", "views.csv"})
     if (!options.force && fs::exists(folder / name))
@@ -263,7 +263,7 @@ void check_output(const LimitOptions& options) {
 }
 
 int run_limit(const LimitOptions& options) {
-  check_output(options);
+  check_limit_output(options);
   try {
     options.base.check();
   } catch (const ParameterError& e) {  // the numbers came from the command line

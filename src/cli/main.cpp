@@ -5,6 +5,7 @@
 #include <iostream>
 
 #include "commands.hpp"
+#include "words.hpp"
 
 int main(int argc, char** argv) {
   using namespace agrisee;
@@ -18,21 +19,30 @@ int main(int argc, char** argv) {
       "  agrisee scan truss/scene.yaml -o result --noise l515 --seed 1\n"
       "  agrisee evaluate truss/scene.yaml result\n"
       "  agrisee limit truss/scene.yaml -o limit --base-search\n"
-      "  agrisee process cloud.ply -o result --viewpoint 0,0,0\n"
+      "  agrisee process cloud.ply -o result --views views.csv\n"
+      "  agrisee process recorded/views.yaml -o result\n"
       "Exit codes: 0 success, 1 bad usage, 2 bad input, 3 a scan that failed midway.");
   cli::Run run;
   cli::add_scan(app, run);
   cli::add_process(app, run);
   cli::add_make_truss(app, run);
+  cli::add_make_plant(app, run);
   cli::add_evaluate(app, run);
   cli::add_paper_scenes(app, run);
   cli::add_experiment(app, run);
   cli::add_limit(app, run);
   cli::add_faults(app, run);
   cli::add_merge(app, run);
+  cli::add_export_views(app, run);
+  cli::add_parameters(app, run);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& e) {
+    if (e.get_exit_code() != 0)
+      if (const auto message = cli::wrong_word(app, {argv + 1, argv + argc})) {
+        std::cerr << "agrisee: " << *message << "\nRun with --help for more information.\n";
+        return cli::kUsage;
+      }
     return app.exit(e) == 0 ? cli::kSuccess : cli::kUsage;
   }
   try {

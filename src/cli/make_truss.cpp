@@ -7,6 +7,7 @@
 
 #include "commands.hpp"
 #include "trusses.hpp"
+#include "words.hpp"
 
 namespace agrisee::cli {
 namespace {
@@ -54,18 +55,27 @@ int run_make_truss(TrussOptions options) {
 void add_make_truss(CLI::App& app, Run& run) {
   auto* command = app.add_subcommand("make-truss", "generate a truss in the scene format, with its ground truth");
   auto options = std::make_shared<TrussOptions>();
-  command->add_option("--total", options->truss.total, "number of fruit")->capture_default_str();
-  command->add_option("--hidden", options->truss.hidden, "how many of them hang behind the others")
+  command->add_option("--total", options->truss.total, "number of fruit")
+      ->check(CLI::Range(1, 12))
+      ->capture_default_str();
+  command->add_option("--hidden", options->truss.hidden, "how many of them hang behind the others, at most half")
+      ->check(CLI::Range(0, 6))
       ->capture_default_str();
   command->add_option("--seed", options->truss.seed, "seed of the generator; each seed gives another truss")
+      ->check(not_negative())
       ->capture_default_str();
-  command->add_option("--leaflets", options->truss.leaflets, "number of leaflets")->capture_default_str();
-  command->add_option("--radius", options->radius, "smallest,largest semi-axis of a fruit, before elongation (m)")
+  command->add_option("--leaflets", options->truss.leaflets, "number of leaflets")
+      ->check(CLI::Range(0, 6))
+      ->capture_default_str();
+  command
+      ->add_option("--radius", options->radius,
+                   "smallest,largest semi-axis of a fruit, before elongation (m, from 0.005 to 0.06)")
       ->delimiter(',')
       ->expected(2);
   command
       ->add_option("--elongation", options->truss.elongation,
                    "factor on the length of the fruit along their growth axis")
+      ->check(CLI::Range(0.5, 2.0))
       ->capture_default_str();
   command->add_option("-o,--output", options->output, "folder for the scene")->required();
   command->add_flag("--force", options->force, "overwrite an existing scene");

@@ -40,8 +40,9 @@ std::vector<std::string> matches(const std::string& pattern) {
 
 /// The parts of a path that distinguish it from others, the most specific first: the name without extension, unless it
 /// is `scene`, which most scene files are called; then the folders above.
-std::vector<std::string> names_of(const fs::path& path) {
+std::vector<std::string> names_of(fs::path path) {
   std::vector<std::string> out;
+  if (!path.has_filename()) path = path.parent_path();  // a folder that is named with a slash behind it
   if (path.stem() != "scene") out.push_back(path.stem().string());
   std::error_code error;
   for (fs::path p = fs::absolute(path, error).lexically_normal().parent_path(); p.has_filename(); p = p.parent_path())

@@ -1,10 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// agrisee process: locates the fruit in a cloud from another source.
-#include <agrisee/io/cloud_file.hpp>
+// agrisee process: locates the fruit in a cloud, or in the views of a camera, from another source.
 #include <agrisee/io/parameters.hpp>
-#include <agrisee/io/render.hpp>
 #include <agrisee/io/results.hpp>
-#include <agrisee/io/scan_page.hpp>
 #include <agrisee/locate.hpp>
 #include <agrisee/process.hpp>
 #include <agrisee/version.hpp>
@@ -14,7 +11,9 @@
 #include <memory>
 
 #include "commands.hpp"
+#include "inputs.hpp"
 #include "many.hpp"
+#include "recorded.hpp"
 
 namespace agrisee::cli {
 namespace {
@@ -23,6 +22,7 @@ struct ProcessOptions : CommonOptions {
   std::vector<std::string> clouds;
   std::string cloud, views, shard;
   std::vector<double> viewpoint;
+  bool turn_normals = false;
 };
 
 /// What is known about where the points of a cloud were seen from. @throws FileError if views are missing
@@ -41,6 +41,24 @@ CloudOrigin origin_of(const ProcessOptions& options, const Cloud& cloud) {
   return origin;
 }
 
+/// Refuse a cloud that cannot be what the options say: in metres, and seen from one viewpoint.
+/// @throws FileError, UsageError
+void check_cloud(const ProcessOptions& options, const Cloud& cloud, const Parameters& parameters,
+                 const CloudOrigin& origin) {
+  std::size_t away = 0;
+  try {
+    check_units(cloud, parameters);
+    check_origin(cloud, origin);
+    if (origin.viewpoint && !options.turn_normals) away = normals_facing_away(cloud, origin);
+  } catch (const InputError& e) {
+    throw FileError(options.cloud + ": " + e.what() + (origin.viewpoint && cloud.views.size() ? " (--views)" : ""));
+  }
+  if (100 * away > cloud.size())
+    throw UsageError(options.cloud + ": " + std::to_string(away) + " of its " + std::to_string(cloud.size()) +
+                     " normals face away from --viewpoint. If the cloud was seen from several sides, leave --viewpoint "
+                     "out, which keeps the normals; if the normals are wrong, add --turn-normals");
+}
+
 /// @throws UsageError if a file of the result would overwrite the cloud
 void check_input_is_kept(const ProcessOptions& options) {
   std::error_code error;
@@ -53,6 +71,7 @@ io::RunInfo run_info(const ProcessOptions& options, const Parameters& parameters
   io::RunInfo info;
   info.scene = scene;
   info.version = AGRISEE_VERSION;
+  info.time = io::utc_now();
   info.seed = options.seed;
   info.threads = threads_of(options.threads);
   info.noise = "none";
@@ -62,56 +81,71 @@ io::RunInfo run_info(const ProcessOptions& options, const Parameters& parameters
   return info;
 }
 
-int run_process(const ProcessOptions& options) {
-  const Parameters parameters = parameters_of(options);
-  parameters.check();
-  const io::CloudFile file = io::read_cloud(options.cloud);
+Processed process_cloud(const ProcessOptions& options, const Parameters& parameters) {
+  const io::CloudFile file = read_cloud_input(options.cloud);
   if (file.dropped > 0)
     std::cerr << options.cloud << ": " << file.dropped << " points that are not finite were dropped\n";
   CloudOrigin origin = origin_of(options, file.cloud);
-  check_input_is_kept(options);
-  prepare_output(options.output, options.force);
+  check_cloud(options, file.cloud, parameters, origin);
   const Cloud cloud = parameters.fuse_surfaces ? thinned(file.cloud, parameters) : file.cloud;
-  Workcell workcell;
-  workcell.name = std::filesystem::path(options.cloud).filename().string();
-  for (const auto& p : cloud.points) workcell.scan_volume.extend(p.cast<double>());
-  if (!workcell.scan_volume.empty())
-    origin.cluster_origin = cluster_origin(workcell.scan_volume, Eigen::Vector3d::Zero());
-  const ScanResult result = process(cloud, parameters, origin, {}, threads_of(options.threads));
-  const io::RunInfo info = run_info(options, parameters, workcell.name);
-  io::write_result(options.output, result, workcell, info);
-  io::write_picture(std::filesystem::path(options.output) / "truss.png", result, workcell);
-  io::write_scan_page(std::filesystem::path(options.output) / "report.html", result, workcell, info);
-  print_summary(result, options.output, options.json);
+  Processed out;
+  out.workcell.name = name_of(options.cloud);
+  for (const auto& p : cloud.points) out.workcell.scan_volume.extend(p.cast<double>());
+  if (!out.workcell.scan_volume.empty())
+    origin.cluster_origin = cluster_origin(out.workcell.scan_volume, Eigen::Vector3d::Zero());
+  out.result = process(cloud, parameters, origin, {}, threads_of(options.threads));
+  return out;
+}
+
+int run_process(const ProcessOptions& options) {
+  const Parameters parameters = parameters_of(options);
+  parameters.check();
+  check_input_is_kept(options);
+  check_output(options.output, options.force);
+  const bool recording = is_recording(options.cloud);
+  if (recording && !(options.views.empty() && options.viewpoint.empty()))
+    throw UsageError(options.cloud + ": states where its views were seen from, so leave out --views and --viewpoint");
+  const Processed done = recording ? process_recording(file_in(options.cloud, "views.yaml"), options, parameters)
+                                   : process_cloud(options, parameters);
+  prepare_output(options.output, options.force);
+  write_files(options.output, done.result, done.workcell, run_info(options, parameters, done.workcell.name), options,
+              done.history);
+  print_summary(done.result, options.output, options);
   return kSuccess;
 }
 
 }  // namespace
 
 void add_process(CLI::App& app, Run& run) {
-  auto* command = app.add_subcommand("process", "locate the fruit in a cloud from another source (PLY or PCD)");
+  auto* command = app.add_subcommand("process", "locate the fruit in a cloud, or in recorded depth images");
   auto options = std::make_shared<ProcessOptions>();
   command
-      ->add_option(
-          "cloud", options->clouds,
-          "cloud file (PLY or PCD; metres); with several, or a pattern, each gets its own folder in the output folder")
+      ->add_option("input", options->clouds,
+                   "cloud (PLY, PCD, NPY, XYZ, CSV; metres; - for standard input), or views.yaml, or a folder with it, "
+                   "which names depth images and camera poses; with several, or a pattern, each gets its own folder in "
+                   "the output folder")
       ->required();
   add_common_options(*command, *options)->required();
   command
       ->add_option("--viewpoint", options->viewpoint,
-                   "position x,y,z of the sensor (m) from which all points were seen")
+                   "position x,y,z of the sensor (m) from which all points were seen; for a cloud of a single view")
       ->delimiter(',')
       ->expected(3);
+  command->add_flag("--turn-normals", options->turn_normals,
+                    "turn normals of the file that face away from --viewpoint, however many they are");
   command
       ->add_option("--views", options->views,
                    "views.csv with the sensor poses that the property 'view' of the points refers to")
       ->excludes("--viewpoint");
   add_shard_option(*command, options->shard);
   command->footer(
-      "Normals in the file are kept, but turned if they face away from the viewpoint or view. Missing normals are\n"
-      "estimated; without viewpoint or views they are turned so that neighbors agree.\n"
+      "Normals in the file are kept; those that face away from the view of their point are turned. Missing normals\n"
+      "are estimated; without viewpoint or views they are turned so that neighbors agree. --viewpoint is refused for\n"
+      "points of several views, and where more than 1 % of the normals face away from it.\n"
       "Examples:\n"
       "  agrisee process cloud.ply -o result\n"
+      "  agrisee process recorded/views.yaml -o result\n"
+      "  zcat cloud.ply.gz | agrisee process - -o result\n"
       "  agrisee process frame.pcd -o result --viewpoint 0,0,0 --radius 0.025,0.06\n"
       "  agrisee process 'season/*.ply' -o results --shard 2/8");
   command->callback([options, &run] {

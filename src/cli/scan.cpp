@@ -4,9 +4,7 @@
 #include <agrisee/io/fingerprint.hpp>
 #include <agrisee/io/parameters.hpp>
 #include <agrisee/io/ply.hpp>
-#include <agrisee/io/render.hpp>
 #include <agrisee/io/results.hpp>
-#include <agrisee/io/scan_page.hpp>
 #include <agrisee/io/scan_record.hpp>
 #include <agrisee/io/scene.hpp>
 #include <agrisee/see/density.hpp>
@@ -21,9 +19,10 @@
 #include <iostream>
 #include <limits>
 #include <memory>
-#include <unistd.h>
 
 #include "commands.hpp"
+#include "inputs.hpp"
+#include "interrupt.hpp"
 #include "many.hpp"
 
 namespace agrisee::cli {
@@ -35,26 +34,12 @@ struct ScanOptions : CommonOptions {
   std::vector<std::string> scenes;
   std::string shard;
   std::string scene, planner, noise = "none", resume;
+  bool live = false;
   int max_views = 0;
 };
 
-/// One line per view; on a terminal, a bar that is drawn over the one before.
-void show_progress(const Pipeline& pipeline, int budget) {
-  const View& v = pipeline.views().back();
-  const auto n = static_cast<int>(pipeline.views().size());
-  std::string line = "view " + std::to_string(n) + "/" + std::to_string(budget) + ": " + std::to_string(v.points_in) +
-                     " points seen, " + std::to_string(v.points_new) + " new";
-  if (isatty(STDERR_FILENO)) {
-    const int width = 24, done = std::min(width, width * n / std::max(1, budget));
-    std::cerr << "\r[" << std::string(static_cast<std::size_t>(done), '#')
-              << std::string(static_cast<std::size_t>(width - done), '.') << "] " << line << "\033[K" << std::flush;
-  } else {
-    std::cerr << line << "\n";
-  }
-}
-
-/// Collects what the page of a scan shows of its course: the planner's estimates, what was really seen, and the
-/// frontier of SEE++.
+/// Collects what the page of a scan shows of its course: the depth images, the planner's estimates, what was really
+/// seen, and the frontier of SEE++.
 class HistoryRecorder {
  public:
   HistoryRecorder(const study::Scene& scene, const Parameters& parameters, int threads)
@@ -64,24 +49,31 @@ class HistoryRecorder {
     } catch (const InputError&) {  // fruit without a surface: what was really seen of it is not shown
     }
   }
+  /// Call with the frame of every view.
+  void take(std::size_t view, const sensor::DepthFrame& frame) {
+    depth_.resize(view + 1);
+    depth_[view] = io::depth_picture(frame);
+  }
   /// Call after every view. The planner's estimates are those from before the view.
   void observe(const Pipeline& pipeline, const Cloud& raw) {
-    if (!scanned_.empty()) add_estimate(pipeline.completeness());
+    if (!scanned_.empty()) add_estimate(pipeline.completeness(), seen_, observable_);
     const double threshold = study::MetricParameters().threshold;
     const study::Flags covered = study::cover(samples_, raw.points, threshold, threads_).covered;
     scanned_.push_back(static_cast<double>(std::count(covered.begin(), covered.end(), 1)) /
                        static_cast<double>(std::max<std::size_t>(covered.size(), 1)));
     merged_ = pipeline.merged();
   }
-  /// The history of the scan that ended with this result.
-  io::ScanHistory history(const ScanResult& result) {
+  /// The history of the scan that has come to this result.
+  io::ScanHistory history(const ScanResult& result) const {
     io::ScanHistory history;
-    // If the scan ended because no more views were allowed, the planner made no estimate after the last one.
-    if (!scanned_.empty())
-      add_estimate(result.stop_reason == StopReason::max_views ? std::nullopt : result.completeness);
+    history.depth = depth_;
+    std::vector<double> seen = seen_, observable = observable_;
+    // After the last view the planner made an estimate only if it was asked for one more, and had the right to it.
+    const bool asked = result.stop_reason != StopReason::max_views && result.stop_reason != StopReason::not_stopped;
+    if (!scanned_.empty()) add_estimate(asked ? result.completeness : std::nullopt, seen, observable);
     const auto known = [](double value) { return std::isfinite(value); };
-    if (std::any_of(seen_.begin(), seen_.end(), known))
-      history.curves = {{"seen, as the planner believes", seen_}, {"within the arm's sight", observable_}};
+    if (std::any_of(seen.begin(), seen.end(), known))
+      history.curves = {{"seen, as the planner believes", seen}, {"within the arm's sight", observable}};
     if (samples_.size() > 0 && !scanned_.empty()) history.curves.push_back({"seen in truth", scanned_});
     if (parameters_.planner != "see" || result.views.empty()) return history;
     see::DensityMap<float> map(parameters_.see, 0.0);
@@ -92,16 +84,18 @@ class HistoryRecorder {
   }
 
  private:
-  void add_estimate(const std::optional<Completeness>& completeness) {
+  static void add_estimate(const std::optional<Completeness>& completeness, std::vector<double>& seen,
+                           std::vector<double>& observable) {
     constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
-    seen_.push_back(completeness ? completeness->seen : kUnknown);
-    observable_.push_back(completeness ? completeness->observable : kUnknown);
+    seen.push_back(completeness ? completeness->seen : kUnknown);
+    observable.push_back(completeness ? completeness->observable : kUnknown);
   }
 
   Parameters parameters_;
   int threads_;
   study::Samples samples_;
   std::vector<double> seen_, observable_, scanned_;
+  std::vector<io::DepthPicture> depth_;
   Cloud merged_;
 };
 
@@ -161,9 +155,21 @@ study::ViewTaker recorded(study::ViewTaker take_view, const fs::path& folder, co
   };
 }
 
-bool is_finished(const fs::path& folder) {
-  return std::all_of(std::begin(kResultFiles), std::end(kResultFiles),
-                     [&](const char* name) { return fs::exists(folder / name); });
+/// Wrap what takes views: the recorder gets each frame.
+study::ViewTaker observed(study::ViewTaker take_view, HistoryRecorder& recorder) {
+  return [take_view = std::move(take_view), &recorder](const plan::ReachableView& view, std::size_t number) {
+    auto capture = take_view(view, number);
+    if (capture) recorder.take(number, capture->frame);
+    return capture;
+  };
+}
+
+/// Whether a folder holds all files that are asked for.
+bool is_finished(const fs::path& folder, const CommonOptions& options) {
+  return std::all_of(std::begin(kResultFiles), std::end(kResultFiles), [&](const std::string& name) {
+    return fs::exists(folder / name) || (options.no_picture && name == kPicture) ||
+           (options.no_report && name == kReport);
+  });
 }
 
 /// The planner `greedy`; null for the planners that the pipeline makes. @throws FileError if the scene has no fruit
@@ -175,60 +181,68 @@ std::unique_ptr<plan::Planner> study_planner(const io::ScanTask& task, const io:
   return study::make_greedy_planner(traced, samples, file.workcell, {}, task.threads);
 }
 
-/// Write all files of a finished scan.
-void write_files(const fs::path& folder, const io::ScanTask& task, const Workcell& workcell, const ScanResult& result,
-                 const io::ScanHistory& history) {
+io::RunInfo run_info(const io::ScanTask& task, const Workcell& workcell) {
   io::RunInfo info;
   info.scene = workcell.name;
   info.version = task.version;
+  info.time = io::utc_now();
   info.seed = task.seed;
   info.threads = task.threads;
   info.noise = task.noise;
   info.preset = task.parameters.preset;
   info.planner = task.planner;
   info.parameters_json = io::parameters_to_json(task.parameters);
-  io::write_result(folder, result, workcell, info);
-  io::write_picture(folder / "truss.png", result, workcell);
-  io::write_scan_page(folder / "report.html", result, workcell, info, history);
+  return info;
 }
 
 /// Run a scan whose folder is prepared, and write its result. @return the exit code
 int run_task(const fs::path& folder, const io::ScanTask& task, const io::SceneFile& file,
-             const study::TracedScene& traced, std::unique_ptr<plan::Planner> planner, bool json) {
+             const study::TracedScene& traced, std::unique_ptr<plan::Planner> planner, const ScanOptions& options) {
   study::SimulationOptions simulation;
   simulation.noise = study::parse_noise(task.noise);
   simulation.seed = task.seed;
   simulation.threads = task.threads;
   simulation.planner = std::move(planner);
-  simulation.around = [&](study::ViewTaker take_view) {
-    return recorded(std::move(take_view), folder, task.fingerprint(), file.workcell.sensor.intrinsics.size());
-  };
   HistoryRecorder recorder(file.scene, task.parameters, task.threads);
+  simulation.around = [&](study::ViewTaker take_view) {
+    return observed(recorded(std::move(take_view), folder, task.fingerprint(), file.workcell.sensor.intrinsics.size()),
+                    recorder);
+  };
   std::size_t taken = 0;
   simulation.on_view = [&](const Pipeline& pipeline) {
     const Cloud raw = pipeline.raw();
     taken = pipeline.views().size();
     // While a resumed scan still reads its views from records, the files already hold more views than the pipeline.
-    if (!fs::exists(io::view_record_path(folder, taken))) {
+    const bool latest = !fs::exists(io::view_record_path(folder, taken));
+    if (latest) {
       io::write_views(folder / "views.csv", pipeline.views());
       io::write_raw_ply(folder / "cloud_raw.ply", raw);
     }
     recorder.observe(pipeline, raw);
-    show_progress(pipeline, task.parameters.max_views);
+    if (latest && options.live) {
+      const ScanResult so_far = pipeline.result();
+      io::ScanHistory history = recorder.history(so_far);
+      history.running = true;
+      io::write_scan_page(folder / "report.html", so_far, file.workcell, run_info(task, file.workcell), history);
+    }
+    if (!options.quiet) show_progress(pipeline.views(), static_cast<std::size_t>(task.parameters.max_views));
   };
+  const std::string resume = "continue with `agrisee scan --resume " + shell_word(folder.string()) + "`";
+  const StopMessage message("agrisee: the scan was interrupted; " + resume);
   ScanResult result;
   try {
     result = study::scan(file.workcell, traced, task.parameters, std::move(simulation));
-    if (isatty(STDERR_FILENO)) std::cerr << "\n";
-    write_files(folder, task, file.workcell, result, recorder.history(result));
+    result.warnings.insert(result.warnings.begin(), file.warnings.begin(), file.warnings.end());
+    if (!options.quiet) end_progress();
+    write_files(folder.string(), result, file.workcell, run_info(task, file.workcell), options,
+                recorder.history(result));
   } catch (const std::exception& e) {
     std::cerr << "\nagrisee: the scan failed midway: " << e.what() << "\n";
     if (taken > 0)
-      std::cerr << "The views taken so far are in " << (folder / "views").string()
-                << "; continue with `agrisee scan --resume " << folder.string() << "`\n";
+      std::cerr << "The views taken so far are in " << (folder / "views").string() << "; " << resume << "\n";
     return kScanFailed;
   }
-  print_summary(result, folder.string(), json);
+  print_summary(result, folder.string(), options);
   if (!result.views.empty()) return kSuccess;
   std::cerr << "agrisee: no view could be taken (" << to_string(result.stop_reason)
             << "): the scan volume is out of the arm's reach\n";
@@ -250,14 +264,14 @@ int run_scan(const ScanOptions& options) {
   if (!resuming) {
     prepare_output(folder.string(), options.force);
     io::write_scan_task(folder / "scan.json", task);
-  } else if (is_finished(folder)) {
+  } else if (is_finished(folder, options)) {
     std::cerr << folder.string() << ": the scan is finished, there is nothing to do\n";
     return kSuccess;
   } else {
     io::remove_leftovers(folder);
     io::remove_leftovers(folder / "views");
   }
-  return run_task(folder, task, file, traced, std::move(planner), options.json);
+  return run_task(folder, task, file, traced, std::move(planner), options);
 }
 
 }  // namespace
@@ -267,7 +281,8 @@ void add_scan(CLI::App& app, Run& run) {
   auto options = std::make_shared<ScanOptions>();
   auto* scene = command->add_option(
       "scene", options->scenes,
-      "scene file (YAML); with several, or a pattern, each gets its own folder in the output folder");
+      "scene file (YAML), or a folder with scene.yaml; with several, or a pattern, each gets its own folder in the "
+      "output folder");
   auto* output = add_common_options(*command, *options);
   command
       ->add_option(
@@ -278,6 +293,8 @@ void add_scan(CLI::App& app, Run& run) {
       ->capture_default_str();
   command->add_option("--max-views", options->max_views, "largest number of views (default: that of the preset)")
       ->check(CLI::Range(1, 10000));
+  command->add_flag("--live", options->live,
+                    "write report.html after every view; open in a browser, it then shows the scan as it goes on");
   add_shard_option(*command, options->shard);
   auto* resume =
       command->add_option("--resume", options->resume,
@@ -304,7 +321,7 @@ void add_scan(CLI::App& app, Run& run) {
       return run_inputs(options->scenes, options->shard, options->output,
                         [&](const std::string& input, const std::string& folder) {
                           ScanOptions one = *options;
-                          one.scene = input;
+                          one.scene = input.empty() ? input : file_in(input, "scene.yaml");
                           one.output = folder;
                           return run_scan(one);
                         });

@@ -87,7 +87,7 @@ std::optional<study::Truss> truss_by_name(const std::string& name) {
 
 void write_truss(const std::filesystem::path& folder, const study::Truss& truss) {
   io::write_ground_truth(folder / "ground_truth.json", truss.truth);
-  io::write_scene(folder / "scene.yaml", {truss.workcell, truss.scene});
+  io::write_scene(folder / "scene.yaml", {truss.workcell, truss.scene, {}});
 }
 
 void add_paper_scenes(CLI::App& app, Run& run) {

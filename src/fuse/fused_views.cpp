@@ -43,6 +43,7 @@ Change FusedViews::take(Observation seen, const Pose& world_T_optical) {
   const std::size_t id = begin(world_T_optical, seen.surface.points_in, false);
   Change change;
   change.points_in = seen.surface.points_in;
+  change.observed = seen.surface.points;
   if (seen.consistent) {
     add(std::move(seen.surface), id, change.added);
     return change;

@@ -2,6 +2,8 @@
 #include <agrisee/cloud/sor.hpp>
 #include <agrisee/fuse/merged_views.hpp>
 
+#include <utility>
+
 namespace agrisee::fuse {
 
 MergedViews::MergedViews(const Aabb& scan_volume, double separation, const std::optional<SorParameters>& filter,
@@ -34,6 +36,7 @@ Change MergedViews::take(Observation seen, const Pose&) {
     all_.points.push_back(p);
     all_.views.push_back(view);
   }
+  change.observed = std::move(seen.surface.points);
   return change;
 }
 

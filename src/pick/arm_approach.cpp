@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <agrisee/arm/collision.hpp>
-#include <agrisee/arm/ur3.hpp>
+#include <agrisee/arm/ur.hpp>
 #include <agrisee/pick/arm_approach.hpp>
 #include <agrisee/plan/arm_reach.hpp>
 
@@ -31,7 +31,7 @@ bool on_last_axis(const Pose& tool0_T_frame) {
   return std::max({std::abs(offset.x()), std::abs(offset.y()), std::abs(ahead.x()), std::abs(ahead.y())}) < 1e-9;
 }
 
-/// The straight approach of one request, for a UR3.
+/// The straight approach of one request, for an arm.
 struct StraightApproach {
   const arm::Mount& mount;  // with the keep-out spaces that apply to the fruit
   const Pose& base_T_world;
@@ -59,12 +59,12 @@ struct StraightApproach {
       const Eigen::Vector3d position = request.start + t * (request.end - request.start);
       std::optional<Joints> next;
       double least = parameters.max_joint_step;
-      arm::for_each_solution(tool0_at(position, roll), q[5], [&](const Joints& solution) {
+      for (const Joints& solution : arm::solve(tool0_at(position, roll), q[5], mount.model)) {
         const auto near = arm::nearest(solution, q, mount.limits);
-        if (!near) return;
+        if (!near) continue;
         const double turn = (*near - q).cwiseAbs().maxCoeff();
         if (turn < least) least = turn, next = near;
-      });
+      }
       if (!next) return PickingReason::approach_interrupted;
       const PickingReason here = collision(*next);
       if (here == PickingReason::arm_meets_fruit) return here;
@@ -82,10 +82,10 @@ struct StartPosture {
   int roll, group;    // all postures of a group can follow the approach, or none of them can
 };
 
-/// Answers approach requests for a mounted UR3.
-class Ur3Approach {
+/// Answers approach requests for a mounted arm.
+class ArmApproach {
  public:
-  Ur3Approach(const arm::Mount& mount, const Pose& tool0_T_tool, const PickingParameters& parameters)
+  ArmApproach(const arm::Mount& mount, const Pose& tool0_T_tool, const PickingParameters& parameters)
       : mount_(mount),
         base_T_world_(mount.world_T_base.inverse()),
         tool_T_tool0_(tool0_T_tool.inverse()),
@@ -127,19 +127,18 @@ class Ur3Approach {
     };
     const Eigen::Vector3d& start = approach.request.start;
     if (symmetric_) {
-      if (!arm::maybe_reachable(approach.tool0_at(start, 0))) return postures;
-      arm::for_each_solution(approach.tool0_at(start, 0), current[5], [&](const Joints& q) {
+      for (const Joints& q : arm::solve(approach.tool0_at(start, 0), current[5], mount_.model)) {
         for (int roll = 0; roll < parameters_.rolls; ++roll) {
           Joints rolled = q;
           rolled[5] += approach.roll_angle(roll);
           add(rolled, roll, groups);
         }
         ++groups;
-      });
+      }
     } else {
       for (int roll = 0; roll < parameters_.rolls; ++roll)
-        arm::for_each_solution(approach.tool0_at(start, roll), current[5],
-                               [&](const Joints& q) { add(q, roll, groups++); });
+        for (const Joints& q : arm::solve(approach.tool0_at(start, roll), current[5], mount_.model))
+          add(q, roll, groups++);
     }
     std::stable_sort(postures.begin(), postures.end(), [](const StartPosture& a, const StartPosture& b) {
       return a.time != b.time ? a.time < b.time : a.turn < b.turn;
@@ -162,10 +161,11 @@ ReachApproach approach_of(arm::Mount mount, const Pose& tool0_T_tool, const Pick
   parameters.check();
   check_input(is_rigid(tool0_T_tool), "approach_of: tool0_T_tool is not finite or not a rigid pose");
   mount.keep_out.clear();
-  return Ur3Approach(mount, tool0_T_tool, parameters);
+  return ArmApproach(mount, tool0_T_tool, parameters);
 }
 
 ReachApproach approach_of(const Workcell& workcell, const PickingParameters& parameters) {
+  if (workcell.tool0_T_tool) return approach_of(plan::mount_of(workcell), *workcell.tool0_T_tool, parameters);
   const Pose tool0_T_tool = workcell.tool0_T_optical * Eigen::Translation3d(0.0, 0.0, parameters.tool_length);
   return approach_of(plan::mount_of(workcell), tool0_T_tool, parameters);
 }

@@ -55,6 +55,7 @@ void cell_columns(Columns& c, const CellRecord& r) {
   c("preset", r.cell.preset);
   c("planner", r.cell.planner);
   c("noise", r.cell.noise);
+  c("reach", r.cell.reach);
   c.number("trial", r.cell.trial);
 }
 

@@ -32,6 +32,18 @@ std::vector<double> paper_values(const Group& group, const Figure& figure) {
   return values;
 }
 
+/// Mean over the scenes, and their trials, of a share after view `i` (from 0). A scan that has ended keeps its last.
+std::optional<double> mean_after(const Group& group, std::vector<double> CellRecord::*shares, std::size_t i) {
+  double sum = 0.0;
+  for (const Row& row : group.rows)
+    for (const CellRecord* cell : row.trials) {
+      const std::vector<double>& after = cell->*shares;
+      if (after.empty()) return std::nullopt;
+      sum += after[std::min(i, after.size() - 1)] / static_cast<double>(row.trials.size());
+    }
+  return group.rows.empty() ? std::nullopt : std::optional(sum / static_cast<double>(group.rows.size()));
+}
+
 }  // namespace
 
 Mean mean(const Row& row, const Figure& figure) {
@@ -94,8 +106,8 @@ std::optional<double> paper_worst(const Group& group, const Figure& figure) {
 }
 
 std::optional<double> views_to(const CellRecord& cell, double share) {
-  for (std::size_t i = 0; i < cell.recall_after.size(); ++i)
-    if (cell.recall_after[i] >= share) return static_cast<double>(i + 1);
+  for (std::size_t i = 0; i < cell.scanned_after.size(); ++i)
+    if (cell.scanned_after[i] >= share) return static_cast<double>(i + 1);
   return std::nullopt;
 }
 
@@ -105,20 +117,18 @@ std::optional<double> views_to_all(const CellRecord& cell) {
   return std::nullopt;
 }
 
-std::vector<double> recall_curve(const Group& group) {
+std::vector<double> scanned_curve(const Group& group) {
   std::size_t length = 0;
   for (const Row& row : group.rows)
-    for (const CellRecord* cell : row.trials) length = std::max(length, cell->recall_after.size());
-  std::vector<double> curve(length, 0.0);
-  for (std::size_t i = 0; i < length; ++i) {
-    for (const Row& row : group.rows) {
-      double sum = 0.0;
-      for (const CellRecord* cell : row.trials)
-        if (!cell->recall_after.empty()) sum += cell->recall_after[std::min(i, cell->recall_after.size() - 1)];
-      curve[i] += sum / static_cast<double>(row.trials.size()) / static_cast<double>(group.rows.size());
-    }
-  }
+    for (const CellRecord* cell : row.trials) length = std::max(length, cell->scanned_after.size());
+  std::vector<double> curve;
+  for (std::size_t i = 0; i < length; ++i)
+    curve.push_back(mean_after(group, &CellRecord::scanned_after, i).value_or(0.0));
   return curve;
+}
+
+std::optional<double> whole_after(const Group& group, int views) {
+  return mean_after(group, &CellRecord::whole_after, static_cast<std::size_t>(std::max(views, 1) - 1));
 }
 
 namespace figure {
@@ -189,6 +199,7 @@ const Figure f1{"F1 %", 1, kMore, percent<&M::f1>, scanning<&PaperScanning::f1>}
 const Figure precision_all{"precision, all points %", 1, kMore, percent<&M::precision_all>, nullptr};
 const Figure precision_strict{"precision at 2 mm %", 1, kMore, percent<&M::precision_strict>, nullptr};
 const Figure recall_obs{"recall, observable %", 1, kMore, percent<&M::recall_obs>, nullptr};
+const Figure scanned_obs{"scanned, observable %", 1, kMore, percent<&M::scanned_obs>, nullptr};
 const Figure observable{"observable %", 1, kMore, percent<&M::observable>, nullptr};
 const Figure views_95{"views to 95 %", 1, kLess, [](C c) { return views_to(c, 0.95); }, nullptr};
 const Figure path{"path rad", 1, kLess, [](C c) { return finite(c.path); }, nullptr};
@@ -202,6 +213,12 @@ const Figure residual{"residual %", 1, kNeither,
                       },
                       paper_residual};
 
+const Figure plan_ms{"planning ms a view", 1, kLess,
+                     [](C c) -> Value {
+                       if (c.views == 0) return std::nullopt;
+                       return finite(1e3 * c.seconds.plan / c.views);
+                     },
+                     nullptr};
 const Figure belief_seen{"believed - scanned, points", 1, kNeither,
                          [](C c) -> Value {
                            if (c.believed_observable <= 0.0) return std::nullopt;

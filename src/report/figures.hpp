@@ -43,14 +43,16 @@ std::optional<double> paper_mean(const Group& group, const Figure& figure);
 /// The worst of the values in [1] for the scenes of a group.
 std::optional<double> paper_worst(const Group& group, const Figure& figure);
 
-/// Number of views after which `recall_after` is at least `share`; none if it never is.
+/// Number of views after which `scanned_after` is at least `share`; none if it never is.
 std::optional<double> views_to(const CellRecord& cell, double share);
 /// Number of views after which every fruit was detected; none if some fruit never was.
 std::optional<double> views_to_all(const CellRecord& cell);
 
 /// Mean over the scenes of a group of the share of the observable surface (0..1) that was seen after each view. A scan
 /// that has ended keeps its last value.
-std::vector<double> recall_curve(const Group& group);
+std::vector<double> scanned_curve(const Group& group);
+/// The mean over the scenes of the share of the whole surface (0..1) that was seen after `views` views.
+std::optional<double> whole_after(const Group& group, int views);
 
 /// The value if it is finite; otherwise none.
 inline std::optional<double> finite(double x) { return std::isfinite(x) ? std::optional(x) : std::nullopt; }
@@ -62,8 +64,9 @@ inline std::optional<double> times(double factor, const std::optional<double>& x
 /// The columns of the tables, shared by the document, the CSV files and the plots.
 namespace figure {
 extern const Figure views, merged, filtered, seconds, scanned, precision, recall, f1;
-extern const Figure precision_all, precision_strict, recall_obs, observable, views_95, path, path_ratio, residual;
-extern const Figure belief_seen, belief_observable;
+extern const Figure precision_all, precision_strict, recall_obs, scanned_obs, observable, views_95, path, path_ratio,
+    residual;
+extern const Figure plan_ms, belief_seen, belief_observable;
 extern const Figure n_real, n_det, counting_error, object_precision, object_recall, miou_surface, miou_point, views_all;
 extern const Figure growing_n, growing_recall, growing_miou, clustering_n, clustering_recall, clustering_miou;
 }  // namespace figure

@@ -25,7 +25,7 @@ std::tuple<int, double, std::string> harshness(const std::string& noise) {
 }
 
 /// The planner of a preset.
-const char* own_planner(const std::string& preset) { return preset == "paper" ? "see" : "gain"; }
+const char* own_planner(const std::string& preset) { return preset == "default" ? "gain" : "see"; }
 /// The noise model under which a preset is shown in detail.
 const char* main_noise(const std::string& preset) { return preset == "paper" ? "gaussian:0.01" : "l515"; }
 
@@ -48,15 +48,16 @@ Data arrange(const std::vector<CellRecord>& cells, const std::vector<SceneRecord
   }
   const auto key = [](const CellRecord* r) {
     const study::Cell& c = r->cell;
-    return std::make_tuple(c.preset, c.planner, harshness(c.noise), c.noise, r->total, r->hidden, c.scene, c.trial);
+    return std::make_tuple(c.preset, c.planner, harshness(c.noise), c.noise, c.reach, r->total, r->hidden, c.scene,
+                           c.trial);
   };
   std::sort(sorted.begin(), sorted.end(), [&](const auto* a, const auto* b) { return key(a) < key(b); });
   Data data;
   for (const CellRecord* r : sorted) {
     const study::Cell& c = r->cell;
     if (data.groups.empty() || data.groups.back().preset != c.preset || data.groups.back().planner != c.planner ||
-        data.groups.back().noise != c.noise)
-      data.groups.push_back({c.preset, c.planner, c.noise, {}});
+        data.groups.back().noise != c.noise || data.groups.back().reach != c.reach)
+      data.groups.push_back({c.preset, c.planner, c.noise, c.reach, {}});
     std::vector<Row>& rows = data.groups.back().rows;
     if (rows.empty() || rows.back().scene != c.scene || rows.back().total != r->total ||
         rows.back().hidden != r->hidden)
@@ -84,7 +85,8 @@ std::vector<const Group*> main_groups(const Data& data) {
     int best_score = -1;
     for (const Group& group : data.groups) {
       if (group.preset != preset) continue;
-      const int score = 2 * (group.noise == main_noise(preset)) + (group.planner == own_planner(preset));
+      const int score =
+          4 * (group.reach == "arm") + 2 * (group.noise == main_noise(preset)) + (group.planner == own_planner(preset));
       if (score > best_score) best = &group, best_score = score;
     }
     main.push_back(best);
@@ -95,6 +97,7 @@ std::vector<const Group*> main_groups(const Data& data) {
 std::vector<const Group*> own_planner_groups(const Data& data) {
   std::map<std::pair<std::string, std::string>, const Group*> chosen;
   for (const Group& group : data.groups) {
+    if (group.reach != "arm") continue;
     const Group*& slot = chosen[{group.preset, group.noise}];
     if (!slot || (group.planner == own_planner(group.preset) && slot->planner != group.planner)) slot = &group;
   }
@@ -121,7 +124,7 @@ std::vector<std::string> noises(const Data& data) {
 
 std::string comparison_noise(const Data& data) {
   std::map<std::string, std::size_t> count;
-  for (const Group& group : data.groups) ++count[group.noise];
+  for (const Group& group : data.groups) count[group.noise] += group.reach == "arm";
   std::vector<std::string> names = noises(data);
   std::stable_partition(names.begin(), names.end(), [](const auto& name) { return name == "l515"; });
   return *std::max_element(names.begin(), names.end(),

@@ -21,13 +21,15 @@ struct Row {
   std::vector<const CellRecord*> trials;  ///< in the order of their numbers
 };
 
-/// All scans with the same preset, planner and noise model.
+/// All scans with the same preset, planner, noise model and reach.
 struct Group {
-  std::string preset, planner, noise;
+  std::string preset, planner, noise, reach = "arm";
   std::vector<Row> rows;  ///< sorted by number of fruit, number of hidden fruit, and name
 
-  /// "preset / planner / noise".
-  std::string name() const { return preset + " / " + planner + " / " + noise; }
+  /// "preset / planner / noise", and whether the camera flies.
+  std::string name() const {
+    return preset + " / " + planner + " / " + noise + (reach == "free" ? " / free flight" : "");
+  }
   /// The number of scans.
   std::size_t scans() const;
 };

@@ -50,7 +50,7 @@ std::string what_was_run(const Data& data, const ReportInfo& info) {
   out += "- " + counted(scenes.size(), "scene", "scenes") + ": " + joined(scenes) + "\n";
   out += "- presets: " + joined(distinct(data, &Group::preset)) +
          "; planners: " + joined(distinct(data, &Group::planner)) +
-         " (gain is the planner of the default preset, see that of the paper)\n";
+         " (gain is the planner of the default preset, see that of the others)\n";
   out += "- noise models of the sensor: " + joined(noises(data)) + "\n";
   out += "- trials, each with its own seed: " + joined(runs) + "\n";
   if (scans != data.groups.size() * scenes.size() * runs.size())
@@ -74,7 +74,9 @@ std::string how_to_read_it(const Data& data) {
       "worst value.\n";
   out += "- Seconds are computing time on the machine that ran it, without the simulated sensor.\n";
   out +=
-      "- A group is a preset, a planner and a noise model. The detailed tables show one group per preset. The other "
+      "- A group is a preset, a planner and a noise model; with `free flight` the camera flies to every view instead "
+      "of "
+      "being held by the arm. The detailed tables show one group per preset. The other "
       "groups are in the summary and in the CSV files: ";
   for (const char* name : {"scanning", "segmentation", "localization", "fruits", "curves", "scenes"})
     out +=

@@ -140,9 +140,9 @@ std::string planner_chart(const Data& data) {
   const std::string noise = comparison_noise(data);
   std::vector<svg::Line> lines;
   for (const Group& group : data.groups) {
-    if (group.noise != noise) continue;
+    if (group.noise != noise || group.reach != "arm") continue;
     svg::Line line{group.preset + " / " + group.planner, svg::color(lines.size()), {{0.0, 0.0}}};
-    const std::vector<double> curve = recall_curve(group);
+    const std::vector<double> curve = scanned_curve(group);
     for (std::size_t i = 0; i < curve.size(); ++i)
       line.points.emplace_back(static_cast<double>(i + 1), 100.0 * curve[i]);
     lines.push_back(line);

@@ -5,6 +5,7 @@
 #include <agrisee/cloud/spacing.hpp>
 #include <agrisee/cloud/split.hpp>
 #include <agrisee/study/evaluate.hpp>
+#include <agrisee/study/free_flight.hpp>
 #include <agrisee/study/greedy_planner.hpp>
 #include <agrisee/study/joint_path.hpp>
 #include <agrisee/study/run_cell.hpp>
@@ -33,17 +34,29 @@ std::unique_ptr<plan::Planner> study_planner(const Subject& subject, const std::
 }
 
 /// Simulate the scan of a cell. The record's figures after each view are filled in.
-ScanResult scan_cell(const Subject& subject, const Cell& cell, const Parameters& parameters, int threads,
-                     CellRecord& record) {
+ScanResult scan_cell(const Subject& subject, const Cell& cell, const Parameters& parameters, JudgedAfterViews judged,
+                     int threads, CellRecord& record) {
   SimulationOptions options;
   options.noise = parse_noise(cell.noise);
   options.seed = static_cast<std::uint64_t>(cell.trial);
   options.threads = threads;
   options.planner = study_planner(subject, cell.planner);
+  if (cell.reach == "free") options.reach = free_flight();
+  if (judged == JudgedAfterViews::scanned) {
+    options.on_view = [&](const Pipeline& pipeline) {
+      ScanResult now;
+      now.raw = pipeline.raw();
+      const Metrics m = evaluate(*subject.truth, now, subject.observability->observable, {}, threads);
+      record.whole_after.push_back(m.scanned);
+      record.scanned_after.push_back(m.scanned_obs);
+    };
+    return scan(subject.workcell, subject.truth->traced, parameters, std::move(options));
+  }
   options.on_view = [&](const Pipeline& pipeline) {
     ScanResult now = pipeline.result();  // a copy: its computing time is not counted
     now.views.clear();                   // what the views saw is judged only at the end
     const Metrics m = evaluate(*subject.truth, now, subject.observability->observable, {}, threads);
+    record.whole_after.push_back(m.scanned);
     record.scanned_after.push_back(m.scanned_obs);
     record.recall_after.push_back(m.recall_obs);
     record.true_after.push_back(m.n_true);
@@ -130,13 +143,16 @@ SceneRecord judge_scene(const Subject& subject) {
   return r;
 }
 
-CellRecord run_cell(const Subject& subject, const Cell& cell, Parameters parameters, int threads) {
+CellRecord run_cell(const Subject& subject, const Cell& cell, Parameters parameters, int threads,
+                    JudgedAfterViews judged) {
+  if (cell.reach != "arm" && cell.reach != "free")
+    throw ParameterError("reach: must be arm or free, got " + cell.reach);
   const Truth& truth = *subject.truth;
   CellRecord r;
   r.cell = cell;
   std::tie(r.total, r.hidden) = count_fruit(truth);
   if (cell.planner != "greedy") parameters.planner = cell.planner;
-  const ScanResult result = scan_cell(subject, cell, parameters, threads, r);
+  const ScanResult result = scan_cell(subject, cell, parameters, judged, threads, r);
   r.stop_reason = to_string(result.stop_reason);
   r.views = static_cast<int>(result.views.size());
   r.merged = result.raw.size();

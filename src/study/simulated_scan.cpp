@@ -17,6 +17,7 @@ ScanResult scan(const Workcell& workcell, const TracedScene& scene, const Parame
                 SimulationOptions options) {
   PipelineOptions pipeline_options;
   pipeline_options.planner = std::move(options.planner);
+  pipeline_options.reach = std::move(options.reach);
   pipeline_options.seed = options.seed;
   pipeline_options.threads = options.threads;
   Pipeline pipeline(workcell, parameters, std::move(pipeline_options));

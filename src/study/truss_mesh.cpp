@@ -9,11 +9,19 @@ namespace agrisee::study {
 
 double FruitShape::radius(const Eigen::Vector3d& d) const {
   const double u = d.z(), s_sq = std::max(0.0, 1.0 - u * u);
-  const double spheroid = 1.0 / std::sqrt(s_sq / (equatorial * equatorial) + u * u / (polar * polar));
+  const double across = equatorial * (1.0 + taper * u);
+  double body = 1.0 / std::sqrt(s_sq / (across * across) + u * u / (polar * polar));
+  if (blockiness != 2.0)
+    body = std::pow(std::pow(std::sqrt(s_sq) / across, blockiness) + std::pow(std::abs(u) / polar, blockiness),
+                    -1.0 / blockiness);
+  double wave = std::cos(lobes * std::atan2(d.y(), d.x()) + lobe_phase);
+  if (lobe_sharpness != 1.0) wave = 1.0 - 2.0 * std::pow(0.5 * (1.0 - wave), lobe_sharpness);
   // The lobes fade out towards both poles and are stronger at the shoulders (z > 0).
-  const double lobe = lobe_amplitude * s_sq * (0.7 + 0.3 * u) * std::cos(lobes * std::atan2(d.y(), d.x()) + lobe_phase);
+  const double fade = lobe_reach == 1.0 ? s_sq : std::pow(s_sq, lobe_reach);
+  const double lobe = lobe_amplitude * fade * (0.7 + 0.3 * u) * wave;
   const double dimple = dimple_depth * std::exp(-2.0 * (1.0 - u) / (dimple_width * dimple_width));
-  return spheroid * (1.0 + lobe) * (1.0 - dimple);
+  const double blossom = blossom_depth * std::exp(-2.0 * (1.0 + u) / (blossom_width * blossom_width));
+  return body * (1.0 + lobe) * (1.0 - dimple) * (1.0 - blossom);
 }
 
 Mesh fruit_mesh(const FruitShape& shape, int slices, int stacks) {

@@ -58,18 +58,11 @@ std::vector<Eigen::Vector3d> pedicel_path(const TrussLayout& layout, int i) {
 
 }  // namespace
 
-Mesh stem_mesh(const TrussLayout& layout, Rng& rng) {
-  std::vector<Eigen::Vector3d> path = layout.rachis;
-  const double size = layout.rachis_radius / 0.07;
-  const Eigen::Vector3d top = path.front();
-  const auto peduncle = bezier(top + Eigen::Vector3d(0.0, 1.6 * size, 0.5 * size), top + Eigen::Vector3d(0, size, size),
-                               top + Eigen::Vector3d(0, 0, 0.8 * size), top, 8);
-  path.insert(path.begin(), peduncle.begin(), peduncle.end() - 1);
-  Mesh stem = tube_mesh(path, 1.25 * layout.rachis_radius, 0.7 * layout.rachis_radius);
+void append_pedicels(Mesh& stem, const TrussLayout& layout, double radius, bool calyces, Rng& rng) {
   for (std::size_t i = 0; i < layout.fruits.size(); ++i) {
     const PlacedFruit& fruit = layout.fruits[i];
-    append(stem, tube_mesh(pedicel_path(layout, static_cast<int>(i)), 0.75 * layout.rachis_radius,
-                           0.6 * layout.rachis_radius, 8));
+    append(stem, tube_mesh(pedicel_path(layout, static_cast<int>(i)), 0.75 * radius, 0.6 * radius, 8));
+    if (!calyces) continue;
     const int sepals = 5 + static_cast<int>(rng.below(2));
     const double length = rng.uniform(0.5, 0.8) * fruit.shape.equatorial, phase = rng.uniform(0.0, kTwoPi);
     const double lift = rng.uniform(0.08, 0.25) * fruit.shape.equatorial;
@@ -80,6 +73,17 @@ Mesh stem_mesh(const TrussLayout& layout, Rng& rng) {
     }
     append(stem, calyx);
   }
+}
+
+Mesh stem_mesh(const TrussLayout& layout, Rng& rng) {
+  std::vector<Eigen::Vector3d> path = layout.rachis;
+  const double size = layout.rachis_radius / 0.07;
+  const Eigen::Vector3d top = path.front();
+  const auto peduncle = bezier(top + Eigen::Vector3d(0.0, 1.6 * size, 0.5 * size), top + Eigen::Vector3d(0, size, size),
+                               top + Eigen::Vector3d(0, 0, 0.8 * size), top, 8);
+  path.insert(path.begin(), peduncle.begin(), peduncle.end() - 1);
+  Mesh stem = tube_mesh(path, 1.25 * layout.rachis_radius, 0.7 * layout.rachis_radius);
+  append_pedicels(stem, layout, layout.rachis_radius, true, rng);
   return stem;
 }
 

@@ -11,6 +11,14 @@ namespace agrisee::study {
 /// Makes one mesh of the rachis, the peduncle that it hangs from, and all pedicels and calyces.
 Mesh stem_mesh(const TrussLayout& layout, Rng& rng);
 
+/// Appends the pedicel of every fruit, from its calyx to the rachis, and its calyx.
+/// @param stem receives them
+/// @param layout of the truss
+/// @param radius the pedicels have 0.75 of it at the fruit and 0.6 at the rachis (m)
+/// @param calyces whether the fruit have sepals
+/// @param rng random numbers
+void append_pedicels(Mesh& stem, const TrussLayout& layout, double radius, bool calyces, Rng& rng);
+
 /// Makes a leaflet with its stalk. It grows from the upper part of the rachis, in a direction that is free of fruit.
 /// @param layout of the truss
 /// @param size radius of a fruit, which scales the leaflet (m)

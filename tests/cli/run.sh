@@ -2,18 +2,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 # The command from outside: files, exit codes, messages, determinism. Usage: run.sh AGRISEE WORKDIR CASE
 set -uo pipefail
-agrisee=$1 work=$2/$3
-rm -rf "$work" && mkdir -p "$work" && cd "$work" || exit 1
-
-fail() { echo "FAILED: $*" >&2; exit 1; }
-# expect CODE PATTERN ARGS...: the command ends with CODE and its stderr matches PATTERN
-expect() {
-  local code=$1 pattern=$2; shift 2
-  "$agrisee" "$@" >out.txt 2>err.txt; local got=$?
-  [ $got = "$code" ] || { cat err.txt >&2; fail "agrisee $*: exit $got, expected $code"; }
-  [ -z "$pattern" ] || grep -qE -- "$pattern" err.txt || { cat err.txt >&2; fail "agrisee $*: stderr does not match '$pattern'"; }
-}
-small_sensor() { sed -i 's/width: *1024/width: 512/; s/height: *768/height: 384/' "$1"; }
+. "$(dirname "$0")/support.sh"
 
 case $3 in
   usage)
@@ -38,10 +27,30 @@ case $3 in
     mkdir folder && expect 2 'folder.*directory' scan t/scene.yaml -o d --params folder
     printf 'normals:\n  radius: .inf\n' >p.yaml && expect 2 'p.yaml:2.*normals.radius.*finite' scan t/scene.yaml -o d --params p.yaml
     printf 'max_views: 3\n---\nmax_views: 4\n' >p.yaml && expect 2 'p.yaml.*more than one' scan t/scene.yaml -o d --params p.yaml
+    expect 1 'radius.*20 mm are 0.02' scan t/scene.yaml -o d --radius 20,50
+    printf 'split:\n  bodies:\n    radius_min: 25\n' >p.yaml && expect 2 'p.yaml:3.*radius_min.*25 mm are 0.025' scan t/scene.yaml -o d --params p.yaml
+    sed 's/start: .*/start: [0, -90, 90, -90, -90, 0]/' t/scene.yaml >t/degrees.yaml && expect 2 'robot.start: joint 2.*degrees' scan t/degrees.yaml -o d
+    sed 's/\(base: .*rpy: \).*/\1[0, 0, 180]}/' t/scene.yaml >t/turned.yaml && expect 2 'robot.base.rpy.*degrees' scan t/turned.yaml -o d
     expect 1 'radius' scan t/scene.yaml -o d --radius 0.03,0.02 && expect 1 'radius' scan t/scene.yaml -o d --radius 0.001,0.5
     [ ! -e d ] || fail "a refused scan wrote something"
     expect 2 'no_such_folder' evaluate t/scene.yaml no_such_folder
     expect 1 'total|hidden' make-truss --total 2 --hidden 5 -o x
+    expect 1 '--kind.*banana' make-plant --kind banana -o x && expect 1 '--foliage.*0.9' make-plant --foliage 0.9 -o x
+    expect 1 'total must be .*12 for each truss' make-plant --kind cherry --total 13 -o x && expect 1 'radius_tip' make-plant --radius 0.03,0.001 -o x
+    [ ! -e x ] || fail "a refused plant wrote something"
+    ;;
+  plant)
+    for folder in p1 p2; do
+      expect 0 '' make-plant --kind cherry --total 4 --foliage 0.1 --posts 1 --seed 3 -o $folder
+      grep -q '^cherry_4_s3: 4 fruit; leaves hide [0-9.]* %' out.txt || fail "the summary: $(cat out.txt)"
+    done
+    diff -r p1 p2 || fail "the same seed gave another plant"
+    expect 1 'already holds a scene' make-plant -o p1
+    expect 0 '' make-plant --kind cherry --total 4 --foliage 0 --leaves-behind 0 --seed 4 -o p2 --force --json
+    grep -q '"foliage": 0.0' out.txt && ! cmp -s p1/fruit_1.stl p2/fruit_1.stl || fail "another seed gave the same plant"
+    grep -c 'class: fruit' p2/scene.yaml | grep -qx 4 || fail "not four fruit: $(cat p2/scene.yaml)"
+    python3 -c 'import json; f = json.load(open("p2/ground_truth.json"))["fruits"]; assert [x["id"] for x in f] == [1, 2, 3, 4]' ||
+      fail "the ground truth does not name the four fruit"
     ;;
   few_points)
     for points in '' '0 0 0' '0 0 0
@@ -50,7 +59,18 @@ case $3 in
       printf 'ply\nformat ascii 1.0\nelement vertex %s\nproperty float x\nproperty float y\nproperty float z\nend_header\n%s\n' "$n" "$points" >p.ply
       expect 0 '' process p.ply -o d --force
       grep -q '^0 fruit' out.txt || fail "found fruit in $n degenerate points"
+      grep -q '^No fruit: .' out.txt || fail "it is not said why $n points hold no fruit"
+      grep -q '"no_fruit": "' d/run.json || fail "run.json does not say why $n points hold no fruit"
     done
+    # A cloud in millimetres.
+    python3 - <<'PY'
+points = [(x, 500 + (x * x + z * z) / 100, z) for x in range(-40, 41, 3) for z in range(-40, 41, 3)]
+with open("mm.ply", "w") as f:
+    f.write("ply\nformat ascii 1.0\nelement vertex %d\n" % len(points) + "".join("property float %s\n" % a for a in "xyz") + "end_header\n")
+    f.writelines("%g %g %g\n" % p for p in points)
+PY
+    expect 2 'mm.ply: the cloud is 1[0-9][0-9] m across.*millimetres' process mm.ply -o mm
+    [ ! -e mm ] || fail "a cloud in millimetres wrote something"
     ;;
   many)
     for n in 2 3; do
@@ -98,8 +118,9 @@ case $3 in
       cmp "r1/$f" "r2/$f" || fail "$f depends on the number of threads"
     done
     cut -d, -f1-22 r1/views.csv | cmp - <(cut -d, -f1-22 r2/views.csv) || fail "views depend on the number of threads"
-    strip() { python3 -c 'import json,sys; d=json.load(open(sys.argv[1])); d.pop("seconds"); d.pop("threads"); print(d)' "$1"; }
+    strip() { python3 -c 'import json,sys; d=json.load(open(sys.argv[1])); d.pop("seconds"); d.pop("threads"); d.pop("time"); print(d)' "$1"; }
     [ "$(strip r1/run.json)" = "$(strip r2/run.json)" ] || fail "run.json depends on the number of threads"
+    grep -qE '"time": "20[0-9]{2}-[01][0-9]-[0-3][0-9]T[0-2][0-9]:[0-5][0-9]:[0-5][0-9]Z"' r1/run.json || fail "no time in run.json"
     expect 1 'force' scan t/scene.yaml -o r1
     expect 0 '' evaluate t/scene.yaml r1 --json
     python3 - out.txt <<'PY' || fail "fruit missed or invented"
@@ -107,7 +128,13 @@ import json, sys
 m = json.load(open(sys.argv[1]))
 assert m["n_real"] == 4 and m["ce"] == 0 and m["p_obj"] == 1 and m["r_obj"] == 1, m
 PY
-    expect 0 '' process r1/cloud.ply -o again --viewpoint 0,0,0.2
+    SOURCE_DATE_EPOCH=1774098475 expect 0 '' process r1/cloud.ply -o again
+    grep -q '"time": "2026-03-21T13:07:55Z"' again/run.json || fail "SOURCE_DATE_EPOCH does not set the time"
+    # One viewpoint for what several views saw would turn normals that are right.
+    expect 1 'normals face away from --viewpoint.*--turn-normals' process r1/cloud.ply -o turned --viewpoint 0,0,0.2
+    expect 2 'cloud_raw.ply: its points come from several views.*--views' process r1/cloud_raw.ply -o turned --viewpoint 0,0,0.2
+    [ ! -e turned ] || fail "a refused viewpoint wrote something"
+    expect 0 '' process r1/cloud.ply -o turned --viewpoint 0,0,0.2 --turn-normals
     expect 1 'input' process r1/cloud.ply -o r1 --force
     expect 0 '' process r1/cloud_raw.ply -o raw --views r1/views.csv --radius 0.02,0.05 && grep -qE '^[45] fruit' out.txt || fail "process of the raw points misses fruit"
     expect 1 'excludes' process r1/cloud_raw.ply -o raw2 --views r1/views.csv --viewpoint 0,0,0
@@ -118,7 +145,7 @@ PY
     for threads in 1 2; do
       expect 0 '' scan t/scene.yaml -o "r$threads" --noise l515 --seed 5 --threads $threads --max-views 2
     done
-    expect 0 '' process r1/cloud.ply -o p --viewpoint 0,0,0.2
+    expect 0 '' process r1/cloud.ply -o p
     expect 1 'report.html' process r1/cloud.ply -o "$(rm -rf only && mkdir only && cp p/report.html only && echo only)"
     python3 - <<'PY' || fail "the report is not what the result is"
 import json, os, re
@@ -136,10 +163,40 @@ truth = a["curves"][2]["values"]
 assert 0.1 < truth[0] < truth[1] < 1 and abs(a["curves"][0]["values"][0] - truth[0]) < 0.1, a["curves"]
 assert p["views"] == [] and p["curves"] == [] and p["cloud"]["count"] > 0.9 * a["cloud"]["count"]
 for d in a, b:  # what may differ: times, and the number of threads
-    d["run"].pop("seconds"), d["run"].pop("threads")
+    d["run"].pop("seconds"), d["run"].pop("threads"), d["run"].pop("time")
     for v in d["views"]:
         v.pop("plan_seconds")
 assert a == b, "depends on the number of threads"
+# Every view has its depth image, an 8-bit PNG file as wide as its image, up to 256 pixels.
+import base64
+assert len(a["depth"]) == 2
+for d in a["depth"]:
+    png = base64.b64decode(d["png"])
+    assert png[:4] == b"\x89PNG" and 100 < int.from_bytes(png[16:20], "big") <= 256 and 0.1 < d["near"] < d["far"] < 5, d
+assert a["fruits_csv"] == open("r1/fruits.csv", newline="").read()
+PY
+    # While a scan runs, its page says so; interrupted and resumed, the result is that of a scan without --live.
+    python3 - "$agrisee" <<'PY' || fail "scan --live"
+import json, os, re, subprocess, sys, time
+args = ["t/scene.yaml", "--noise", "l515", "--seed", "5", "--max-views", "6"]
+def page(folder):
+    data = json.loads(re.search(r'<script id="data" type="application/json">(.*?)</script>', open(folder + "/report.html").read(), re.S).group(1))
+    data["run"].pop("seconds"), data["run"].pop("time", None)
+    for v in data["views"]:
+        v.pop("plan_seconds")
+    return data
+subprocess.run([sys.argv[1], "scan", *args, "-o", "plain"], check=True, capture_output=True)
+scan = subprocess.Popen([sys.argv[1], "scan", *args, "-o", "live", "--live"], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+while not os.path.exists("live/report.html") and scan.poll() is None:
+    time.sleep(0.002)
+scan.kill()
+scan.wait()
+assert not os.path.exists("live/run.json"), "the scan was too fast for this test"
+first, plain = page("live"), page("plain")
+assert first["running"] and 1 <= len(first["views"]) < 6 and first["fruits"], first["run"]
+assert len(first["depth"]) == len(first["views"]) and first["depth"][0] == plain["depth"][0]
+subprocess.run([sys.argv[1], "scan", "--resume", "live", "--live"], check=True, capture_output=True)
+assert page("live") == plain and "running" not in plain, "--live changes the result"
 PY
     ;;
   paper)

@@ -1,0 +1,137 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Recorded views: `agrisee process views.yaml`, and `agrisee export-views`, which writes those of a simulated scan.
+#include "recorded.hpp"
+
+#include <agrisee/io/depth_image.hpp>
+#include <agrisee/io/depth_picture.hpp>
+#include <agrisee/io/recorded_views.hpp>
+#include <agrisee/io/scan_record.hpp>
+#include <agrisee/io/scene.hpp>
+#include <agrisee/pipeline.hpp>
+
+#include <filesystem>
+#include <iostream>
+#include <memory>
+
+namespace agrisee::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Stands for the planner of a scan whose views have already been taken.
+class NoPlanner final : public plan::Planner {
+ public:
+  void observe(const plan::Progress&) override {}
+  std::optional<plan::ReachableView> next(const plan::Progress&, const Joints&, const plan::Reach&) override {
+    return std::nullopt;
+  }
+  void refused() override {}
+  StopReason stop_reason() const override { return StopReason::not_stopped; }
+};
+
+/// Everything that the views show, and a millimetre around it. @throws FileError if they show nothing
+Aabb all_that_is_seen(const std::string& path, const io::RecordedViews& recorded) {
+  Aabb box;
+  for (std::size_t i = 0; i < recorded.views.size(); ++i) {
+    const Aabb seen = io::extent_of(io::read_frame(recorded, i), recorded.views[i].world_T_optical);
+    if (seen.empty()) continue;
+    box.extend(seen.min);
+    box.extend(seen.max);
+  }
+  if (box.empty()) throw FileError(path + ": no depth image has a single return in the camera's range");
+  box.min.array() -= 1e-3;
+  box.max.array() += 1e-3;
+  return box;
+}
+
+/// The first of many warnings, and how many more there are.
+std::vector<std::string> shortened(std::vector<std::string> warnings) {
+  constexpr std::size_t kMost = 3;
+  if (warnings.size() <= kMost) return warnings;
+  const std::size_t more = warnings.size() - kMost;
+  warnings.resize(kMost);
+  warnings.back() += "; so were " + std::to_string(more) + " more poses";
+  return warnings;
+}
+
+struct ExportOptions {
+  std::string result, output;
+  bool npy = false, force = false;
+};
+
+/// The depth image of view `i`, from the folder of views.yaml.
+fs::path image_name(std::size_t i, bool npy) {
+  char name[32];
+  std::snprintf(name, sizeof name, "%04zu.%s", i, npy ? "npy" : "png");
+  return fs::path("depth") / name;
+}
+
+int run_export(const ExportOptions& options) {
+  constexpr double kScale = 1e-4;  // m; the images then reach up to 6.5 m
+  const fs::path from = options.result, to = options.output;
+  const io::ScanTask task = io::read_scan_task(from / "scan.json");
+  io::RecordedViews recorded;
+  recorded.workcell = io::read_scene(task.scene).workcell;
+  recorded.workcell.sensor.range_min = 0.0;
+  recorded.workcell.sensor.range_max = 1e6;  // the images hold only what was in range
+  recorded.depth_scale = options.npy ? 1.0 : kScale;
+  if (!options.force && fs::exists(to / "views.yaml"))
+    throw UsageError(options.output + ": already holds recorded views; use --force to overwrite them");
+  make_folder((to / "depth").string());
+  const std::size_t pixels = recorded.workcell.sensor.intrinsics.size();
+  for (std::size_t i = 0;; ++i) {
+    const auto view = io::read_view_record(from, i, task.fingerprint(), pixels);
+    if (!view) break;
+    recorded.views.push_back({image_name(i, options.npy), view->world_T_optical, ""});
+    if (options.npy)
+      io::write_depth_npy(to / recorded.views.back().depth, view->frame);
+    else
+      io::write_depth_png(to / recorded.views.back().depth, view->frame, kScale);
+  }
+  if (recorded.views.empty()) throw FileError(options.result + ": holds no recorded view");
+  io::write_recorded_views(to / "views.yaml", recorded);
+  std::cout << recorded.views.size() << " views in " << (to / "views.yaml").string() << "\n";
+  return kSuccess;
+}
+
+}  // namespace
+
+Processed process_recording(const std::string& path, const CommonOptions& options, const Parameters& parameters) {
+  const io::RecordedViews recorded = io::read_recorded_views(path);
+  Processed out;
+  out.workcell = recorded.workcell;
+  if (out.workcell.scan_volume.empty()) out.workcell.scan_volume = all_that_is_seen(path, recorded);
+  PipelineOptions pipeline_options;
+  pipeline_options.planner = std::make_unique<NoPlanner>();
+  pipeline_options.reach = [](const plan::ViewRequest&, const Joints&) { return std::nullopt; };  // there is no arm
+  pipeline_options.seed = options.seed;
+  pipeline_options.threads = threads_of(options.threads);
+  Pipeline pipeline(out.workcell, parameters, std::move(pipeline_options));
+  for (std::size_t i = 0; i < recorded.views.size(); ++i) {
+    const sensor::DepthFrame frame = io::read_frame(recorded, i);
+    out.history.depth.push_back(io::depth_picture(frame));
+    pipeline.observe(frame, recorded.views[i].world_T_optical);
+    if (!options.quiet) show_progress(pipeline.views(), recorded.views.size());
+  }
+  if (!options.quiet) end_progress();
+  out.result = pipeline.result();
+  const std::vector<std::string> notes = shortened(recorded.warnings);
+  out.result.warnings.insert(out.result.warnings.begin(), notes.begin(), notes.end());
+  return out;
+}
+
+void add_export_views(CLI::App& app, Run& run) {
+  auto* command = app.add_subcommand("export-views", "write the frames of a simulated scan as recorded views");
+  auto options = std::make_shared<ExportOptions>();
+  command->add_option("result", options->result, "result folder of a scan")->required();
+  command->add_option("-o,--output", options->output, "folder for views.yaml and the depth images")->required();
+  command->add_flag("--npy", options->npy, "write depth as NPY with floats (exact), not as PNG in steps of 0.1 mm");
+  command->add_flag("--force", options->force, "overwrite recorded views");
+  command->footer(
+      "Example:\n"
+      "  agrisee export-views result -o recorded\n"
+      "  agrisee process recorded -o again");
+  command->callback([options, &run] { run = [options] { return run_export(*options); }; });
+}
+
+}  // namespace agrisee::cli

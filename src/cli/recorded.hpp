@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Views that a camera recorded, processed as those of a scan are.
+#pragma once
+
+#include <agrisee/result.hpp>
+#include <agrisee/workcell.hpp>
+
+#include <string>
+
+#include "commands.hpp"
+
+namespace agrisee::cli {
+
+/// A result, the cell in which it was made, and what the report shows besides.
+struct Processed {
+  Workcell workcell;
+  ScanResult result;
+  io::ScanHistory history;
+};
+
+/// Fuse, register and segment the views of a recording. Where it states no scan volume, all that the views show counts.
+/// @param path views.yaml  @throws FileError
+Processed process_recording(const std::string& path, const CommonOptions& options, const Parameters& parameters);
+
+}  // namespace agrisee::cli

@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Which word of a command line is wrong, and which one was meant.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace agrisee::cli {
+
+/// A message about the first word of a command line that names no command or no option of its command, with the nearest
+/// word that does: "unknown command 'proces'; did you mean 'process'?". None if all words are known.
+/// @param words the command line without the program's name
+std::optional<std::string> wrong_word(const CLI::App& app, const std::vector<std::string>& words);
+
+/// For an option whose value is a whole number, zero or more. (CLI11 takes -1 for the largest number.)
+CLI::Validator not_negative();
+
+}  // namespace agrisee::cli

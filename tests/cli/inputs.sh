@@ -1,0 +1,172 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: BSD-3-Clause
+# What the command takes in, and what it leaves out or says when asked. Usage: inputs.sh AGRISEE WORKDIR CASE
+set -uo pipefail
+. "$(dirname "$0")/support.sh"
+
+case $3 in
+  recorded)  # the frames of a scan, recorded, give the fruit of the scan
+    small_truss t --total 4 --hidden 1 --seed 3
+    expect 0 '' scan t -o r --noise l515 --seed 5 --max-views 6
+    expect 0 '' export-views r -o exact --npy && grep -q '^6 views' out.txt || fail "export-views: $(cat out.txt)"
+    expect 0 '' export-views r -o png
+    expect 1 'force' export-views r -o png && expect 0 '' export-views r -o png --force
+    expect 0 'view 6/6' process exact/views.yaml -o a && expect 0 '' process png -o b
+    grep -qE '^4 fruit, [0-9]+ points from 6 views, ' out.txt || fail "summary: $(head -1 out.txt)"
+    cmp r/cloud.ply a/cloud.ply || fail "the exact frames give another cloud than the scan"
+    cmp r/cloud_raw.ply a/cloud_raw.ply || fail "the exact frames give another merged cloud than the scan"
+    python3 - <<'PY' || fail "the recorded views give other fruit than the scan"
+import json
+scan, exact, png = (json.load(open(f + "/fruits.json")) for f in "rab")
+drop = lambda fruit: {k: v for k, v in fruit.items() if not k.startswith(("picking", "pre_grasp", "approach", "reachable"))}
+assert [drop(f) for f in scan] == [drop(f) for f in exact], "exact"
+assert len(scan) == len(png) == 4
+for a, b in zip(scan, png):
+    d = max(abs(p - q) for p, q in zip(a["center_world"], b["center_world"]))
+    assert 0 < d < 0.0005, d
+assert all(f["picking_reason"] == "not_tested" for f in exact if f["picking_reason"] not in ("no_body", "blocked_by_fruit"))
+runs = [json.load(open(f + "/run.json")) for f in "ra"]
+assert runs[1]["views"] == 6 and runs[1]["planner"] == "none" and runs[0]["cluster_origin_world"] == runs[1]["cluster_origin_world"]
+PY
+    # Without a scan volume all that is seen counts; poses may be stated in other forms.
+    python3 - <<'PY'
+import re
+text = open("png/views.yaml").read()
+open("png/open.yaml", "w").write(re.sub(r"scan_volume: .*\n", "", text))
+PY
+    expect 0 '' process png/open.yaml -o c
+    grep -q '^4 fruit' out.txt || fail "without a scan volume: $(head -1 out.txt)"
+    # A wrong scale, size, pose or file is told of, with the place, and nothing is written.
+    sed 's/depth_scale: .*/depth_scale: 1/' png/views.yaml >png/scale.yaml
+    expect 2 'scale.yaml:[0-9]+: views\[0\].depth: .*median depth.*depth_scale' process png/scale.yaml -o d
+    sed 's/width: .*/width: 640/' png/views.yaml >png/size.yaml
+    expect 2 'size.yaml:[0-9]+: views\[0\].depth: .*512 x 384 pixels, but the camera 640 x 384' process png/size.yaml -o d
+    sed 's/0003.png/0009.png/' png/views.yaml >png/file.yaml
+    expect 2 'file.yaml:[0-9]+: views\[3\].depth: no such file' process png/file.yaml -o d
+    sed 's/    pose: \[\[[^,]*/    pose: [[5/' png/views.yaml >png/pose.yaml
+    expect 2 'pose.yaml:[0-9]+: views\[0\].pose: is not a rigid transform' process png/pose.yaml -o d
+    sed 's/camera:/kamera:/' png/views.yaml >png/key.yaml
+    expect 2 "key.yaml:[0-9]+: unknown key 'kamera'; did you mean 'camera'" process png/key.yaml -o d
+    cp png/depth/0001.png png/depth/0002.png && truncate -s 1000 png/depth/0002.png
+    expect 2 'views.yaml:[0-9]+: views\[2\].depth: .*0002.png: is cut off' process png -o d
+    [ ! -e d ] || fail "a refused recording wrote something"
+    expect 2 'folder without views.yaml' process t -o d && expect 2 'folder without scene.yaml' scan png -o d
+    expect 1 '--viewpoint' process exact -o d --viewpoint 0,0,0
+    ;;
+  clouds)  # one cloud in every format gives the same fruit
+    small_truss t --total 3 --hidden 0 --seed 1
+    expect 0 '' scan t/scene.yaml -o r --noise l515 --seed 1 --max-views 3
+    python3 - <<'PY'
+import struct
+head, body = open("r/cloud_raw.ply", "rb").read().split(b"end_header\n", 1)
+rows = list(struct.iter_unpack("<3fi", body))
+text = [" ".join(f"{c:.9g}" for c in row[:3]) for row in rows]
+open("c.xyz", "w").write("\n".join(text) + "\n")
+open("c.csv", "w").write("x,y,z,view\n" + "".join(f"{t.replace(' ', ',')},{r[3]}\n" for t, r in zip(text, rows)))
+header = f"{{'descr': '<f4', 'fortran_order': False, 'shape': ({len(rows)}, 3), }}\n".encode()
+open("c.npy", "wb").write(b"\x93NUMPY\1\0" + struct.pack("<H", len(header)) + header + b"".join(struct.pack("<3f", *r[:3]) for r in rows))
+# --views needs no more than numbers and positions.
+lines = [line.split(",")[:4] for line in open("r/views.csv").read().splitlines()]
+open("positions.csv", "w").write("\n".join(",".join(line) for line in lines) + "\n")
+PY
+    expect 0 '' process r/cloud_raw.ply -o ply && cp out.txt ply.txt
+    grep -qE '^3 fruit, [0-9]+ points, ' out.txt || fail "summary: $(head -1 out.txt)"
+    for f in xyz npy; do
+      expect 0 '' process c.$f -o $f
+      cmp ply/fruits.json $f/fruits.json || fail "the same cloud as $f gives other fruit"
+    done
+    "$agrisee" process - -o pipe <c.npy >/dev/null || fail "standard input, redirected"
+    cat c.xyz | "$agrisee" process - -o pipe2 >/dev/null || fail "standard input, piped"
+    "$agrisee" process <(cat r/cloud_raw.ply) -o pipe3 >/dev/null || fail "a named pipe"
+    for f in pipe pipe2 pipe3; do cmp ply/fruits.json $f/fruits.json || fail "$f gives other fruit"; done
+    grep -q '"scene": "standard input"' pipe/run.json || fail "the input is not named"
+    echo '%PDF' | "$agrisee" process - -o d 2>err.txt && fail "a PDF is no cloud"
+    grep -q 'agrisee: standard input: is no point cloud' err.txt || fail "standard input is not named: $(cat err.txt)"
+    expect 0 '' process c.csv -o csv --views positions.csv && expect 0 '' process r/cloud_raw.ply -o full --views r/views.csv
+    cmp csv/fruits.json full/fruits.json || fail "positions alone give other fruit than a whole views.csv"
+    mkdir season && cp -r t season/t1 && cp -r t season/t2
+    expect 0 '' scan season/t1/ season/t2 -o many --max-views 1
+    [ -f many/t1/fruits.json ] && [ -f many/t2/fruits.json ] || fail "folders in a list: $(ls many)"
+    ;;
+  outputs)  # what is left out, and what is printed
+    small_truss t --total 3 --hidden 0 --seed 1
+    expect 0 '' scan t -o r --seed 1 --max-views 2 --json
+    python3 - <<'PY' || fail "--json does not list the fruit"
+import json
+summary = json.load(open("out.txt"))
+assert summary["fruits"] == json.load(open("r/fruits.json")) and len(summary["fruits"]) == 3, summary
+assert summary["views"] == 2 and summary["stop_reason"] == "max_views" and summary["folder"] == "r"
+PY
+    expect 0 '' process r/cloud.ply -o bare --no-report --no-picture --quiet
+    [ ! -s out.txt ] && [ ! -s err.txt ] || fail "--quiet printed something"
+    [ "$(ls bare | tr '\n' ' ')" = 'cloud.ply cloud_raw.ply fruits.csv fruits.json run.json views.csv ' ] || fail "bare: $(ls bare)"
+    expect 0 '' process r/cloud.ply -o quiet --quiet --json && python3 -m json.tool out.txt >/dev/null || fail "--quiet --json"
+    cmp bare/fruits.json quiet/fruits.json && [ -s quiet/truss.png ] && [ -s quiet/report.html ] || fail "--quiet changes the result"
+    expect 0 '' process r/cloud.ply -o bare --force --no-report && [ -s bare/truss.png ] && [ ! -e bare/report.html ] || fail "--no-report"
+    expect 0 '' process r/cloud.ply -o bare --force --no-picture && [ ! -e bare/truss.png ] && [ -s bare/report.html ] || fail "--no-picture"
+    # A scan without pictures is finished, and a later --resume adds them.
+    expect 0 '' scan t -o s --seed 1 --max-views 2 --no-picture --no-report --quiet && [ ! -s err.txt ] || fail "--quiet scan"
+    expect 0 'nothing to do' scan --resume s --no-picture --no-report
+    expect 0 '' scan --resume s && cmp s/truss.png r/truss.png && [ -s s/report.html ] || fail "the pictures of a scan without them"
+    ;;
+  words)  # a wrong word is named, with the right one
+    for words in "proces a.ply -o b:command 'proces'; did you mean 'process'" \
+      "process a.ply --out b:option '--out'; did you mean '--output'" \
+      "scan s.yaml -o b --max-veiws=3:option '--max-veiws'; did you mean '--max-views'" \
+      "scan s.yaml -o b -x:scan: unknown option '-x'" "--verzion:option '--verzion'; did you mean '--version'" \
+      "xyzzy:unknown command 'xyzzy'\$"; do
+      expect 1 "agrisee: .*${words#*:}" ${words%%:*}
+    done
+    expect 1 'must be 0 or more, got -1' scan s.yaml -o b --seed -1
+    expect 1 'must be 0 or more, got -1' make-truss -o b --seed -1
+    expect 1 'output is required' process a.ply
+    for limit in 'total.*1 - 12' 'leaflets.*0 - 6' 'elongation.*0.5 - 2' 'at most half' '0.005 to 0.06'; do
+      "$agrisee" make-truss --help | grep -q -- "$limit" || fail "make-truss --help does not state $limit"
+    done
+    printf 'gain:\n  min_gian: 1\n' >p.yaml && expect 2 "p.yaml:2: unknown key 'gain.min_gian'; did you mean 'min_gain'" scan s.yaml -o b --params p.yaml
+    [ ! -e b ] || fail "a wrong word wrote something"
+    ;;
+  parameters)  # the template is a parameter file with every key at its default
+    printf 'ply\nformat ascii 1.0\nelement vertex 0\nproperty float x\nproperty float y\nproperty float z\nend_header\n' >none.ply
+    for preset in default paper; do
+      expect 0 '' parameters --preset $preset && cp out.txt $preset.yaml
+      expect 0 '' process none.ply -o $preset --preset $preset --no-picture --no-report
+      expect 0 '' process none.ply -o again_$preset --params $preset.yaml --no-picture --no-report
+      python3 - $preset <<'PY' || fail "the template of $preset"
+import json, re, sys
+preset = sys.argv[1]
+a, b = (json.load(open(f + preset + "/run.json"))["parameters"] for f in ("", "again_"))
+assert a == b
+lines = [line for line in open(preset + ".yaml") if not line.startswith("#")]
+values = [line for line in lines if not re.fullmatch(r" *\w+:\n", line)]
+assert len(values) > 90 and all(re.search(r"  # .{4}", line) for line in values), [v for v in values if "#" not in v]
+row = next(line for line in lines if line.startswith("  min_gain:"))
+assert "(zero or more)" in row or "(" in row, row
+PY
+    done
+    ;;
+  interrupted)  # a scan that is stopped says how to go on, and keeps what it has
+    small_truss t --total 4 --hidden 1 --seed 3
+    expect 0 '' scan t -o whole --noise rough --seed 5 --max-views 8
+    for signal in INT TERM; do
+      rm -rf "r d"
+      python3 - "$agrisee" $signal <<'PY' || fail "SIG$signal"
+import os, signal, subprocess, sys, time
+number = getattr(signal, "SIG" + sys.argv[2])
+scan = subprocess.Popen([sys.argv[1], "scan", "t", "-o", "r d", "--noise", "rough", "--seed", "5", "--max-views", "8"],
+                        stderr=subprocess.PIPE, stdout=subprocess.DEVNULL, text=True,
+                        preexec_fn=lambda: signal.signal(number, signal.SIG_DFL))
+while scan.poll() is None and not os.path.exists("r d/views/0001.view"):
+    time.sleep(0.002)
+scan.send_signal(number)
+error = scan.communicate()[1]
+assert scan.returncode == -number, (scan.returncode, error)
+assert "interrupted; continue with `agrisee scan --resume 'r d'`" in error, error
+PY
+      expect 1 "not finished.*--resume 'r d'.*--force.*deletes" scan t -o "r d"
+      expect 0 '' scan --resume "r d" && cmp "r d/fruits.json" whole/fruits.json || fail "SIG$signal: another result"
+      expect 1 'already holds a result.*--force' scan t -o "r d"
+    done
+    ;;
+  *) fail "unknown case $3" ;;
+esac
