@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // A UR3 that holds an L515 before a scene, for a desk without a robot: takes joint goals, publishes joint states, the
 // mounting's transforms, and depth frames whenever the arm stands. Topics and parameters: docs/ros.md.
-#include <agrisee/arm/ur3.hpp>
+#include <agrisee/arm/ur.hpp>
 #include <agrisee/io/scene.hpp>
 #include <agrisee/study/capture.hpp>
 #include <agrisee/study/traced_scene.hpp>

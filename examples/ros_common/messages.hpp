@@ -53,7 +53,7 @@ Message point_message(const Eigen::Vector3d& p) {
 
 /// The poses that a result is published as, each list by its own order.
 struct ResultPoses {
-  std::vector<Pose> fruits;      ///< pose frames, by id
+  std::vector<Pose> fruits;      ///< poses for a gripper (Fruit::pose), by id
   std::vector<Pose> bodies;      ///< centre and semi-axes of the bodies, by id; the pose frame where none was fitted
   std::vector<Pose> pre_grasps;  ///< of the tool, in the order of picking; only of fruit that can be picked
 };
@@ -133,11 +133,11 @@ class MarkerMaker {
     for (const Fruit& f : fruits) {
       const io::Rgb color = io::fruit_color(f.id);
       double radius = 0.03;
-      Eigen::Vector3d center = f.centroid;
+      const Eigen::Vector3d center = f.position();
       if (f.body) {
         Pose pose = Pose::Identity();
         pose.linear() = f.body->axes;
-        pose.translation() = center = f.body->center;
+        pose.translation() = center;
         radius = f.body->radii.mean();
         add("bodies", Marker::SPHERE, pose, 2.0 * f.body->radii, color, 0.55);
       }

@@ -22,7 +22,18 @@ struct Split;
 /// @param robot the robot's base (m, world)
 Eigen::Vector3d cluster_origin(const Aabb& volume, const Eigen::Vector3d& robot);
 
-/// The fruit of a segmented cloud, numbered from the top of the truss down.
+/// The trusses on which some fruit hang: fruit are on one truss if the gap between their bodies is at most
+/// `truss_gap` mean radii, directly or by way of others.
+/// @param fruits located; their ids and `truss` are not used
+/// @param truss_gap see Parameters
+/// @return for each fruit the number of its truss, from 0, in the order in which the trusses' first fruit stand
+std::vector<int> trusses_of(const std::vector<Fruit>& fruits, double truss_gap);
+
+/// The trusses of located fruit, by their `truss`, with their growth frames.
+std::vector<FoundTruss> found_trusses(const std::vector<Fruit>& fruits);
+
+/// The fruit of a segmented cloud, numbered truss by truss, each from the top down; the truss with the highest fruit
+/// comes first.
 /// @param cloud points (m, world) with normals
 /// @param split what `split` found in that cloud
 /// @param cluster_origin the origin of the cluster frame {R} in world (m)

@@ -18,13 +18,13 @@
 namespace agrisee {
 
 /// Names of the presets, see Parameters::named.
-constexpr std::array<const char*, 2> kPresetNames{"default", "paper"};
+constexpr std::array<const char*, 3> kPresetNames{"default", "paper", "see"};
 
 /// Names of the planners, see make_planner.
 constexpr std::array<const char*, 4> kPlannerNames{"gain", "see", "fixed", "random"};
 
 /// Parameters of the whole pipeline. `Parameters{}` are our defaults, `Parameters::paper()` the stages and values of
-/// [1].
+/// [1], `Parameters::see_alone()` SEE++ alone.
 struct Parameters {
   std::string preset = "default";  ///< name of the preset from which these values were made
   std::string planner = "gain";    ///< one of kPlannerNames: gain, see (SEE++), fixed (a ring of views) or random
@@ -35,6 +35,7 @@ struct Parameters {
   bool adaptive_normals = true;   ///< derive the radius of the normals from the cloud's spacing
   double normal_reach = 3.0;      ///< adaptive: that radius, in spacings of the cloud
   bool growth_axis = true;  ///< z of the pose frames points to the calyx; off: to the cloud's highest point, as [1]
+  double truss_gap = 1.5;   ///< fruit hang on one truss if the gap between them is at most this many of their radii
   sensor::SurfaceParameters surface;          ///< how a surface is reconstructed from each frame
   fuse::SurfelParameters surfels;             ///< how views are fused
   IcpParameters icp;                          ///< how views are registered
@@ -68,10 +69,24 @@ struct Parameters {
     return p;
   }
 
+  /// SEE++ as published chooses the views and merges their raw points; nothing is smoothed, registered or filtered
+  /// between views. When the scan is over, the points are cleaned and split as by default.
+  static Parameters see_alone() {
+    Parameters p;
+    p.preset = "see";
+    p.planner = "see";
+    p.max_views = 50;
+    p.fuse_surfaces = false;
+    p.register_views = false;
+    p.see = see::Parameters::published();
+    return p;
+  }
+
   /// The preset of that name. @throws FieldError if there is none
   static Parameters named(const std::string& preset) {
     if (preset == kPresetNames[0]) return {};
     if (preset == kPresetNames[1]) return paper();
+    if (preset == kPresetNames[2]) return see_alone();
     throw FieldError("preset", "must be " + OneOf(kPresetNames).text() + ", got " + preset);
   }
 
@@ -97,8 +112,25 @@ struct Parameters {
   /// Those that fuse::FusedViews needs.
   fuse::FusionParameters fusion() const { return {surface, surfels, icp, free_space, register_views}; }
 
-  /// @throws FieldError for the first field that is out of its range; it names the whole key, e.g. `gain.min_gain`
-  void check() const { check_fields(*this); }
+  /// @throws FieldError for the first field that is out of its range; it names the whole key, e.g. `gain.min_gain`. The
+  /// lengths of surfaces and neighborhoods must be below 20 times the largest expected radius: else nothing can be
+  /// found.
+  void check() const {
+    check_fields(*this);
+    const Limit most{20.0 * split.bodies.radius_max, "20 times split.bodies.radius_max"};
+    const auto below_most = [&](const char* key, double length) {
+      detail::check_field("", key, length, Range::finite().below(most).in_metres());
+    };
+    below_most("surface.spacing", surface.spacing);
+    below_most("surface.smallest_radius", surface.smallest_radius);
+    below_most("surfels.separation", surfels.separation);
+    below_most("surfels.agreement", surfels.agreement);
+    below_most("icp.max_distance", icp.max_distance);
+    below_most("normals.radius", normals.radius);
+    below_most("split.growing.radius", split.growing.radius);
+    below_most("split.clustering.eps", split.clustering.eps);
+    below_most("split.bodies.fit.noise", split.bodies.fit.noise);
+  }
 
   /// f(name, field, range) for every field; without a range where there is none. Nested structs list their fields the
   /// same way.
@@ -113,6 +145,7 @@ struct Parameters {
     f("adaptive_normals", p.adaptive_normals);
     f("normal_reach", p.normal_reach, Range::positive());
     f("growth_axis", p.growth_axis);
+    f("truss_gap", p.truss_gap, Range::not_negative());
     f("surface", p.surface);
     f("surfels", p.surfels);
     f("icp", p.icp);

@@ -25,9 +25,9 @@ namespace agrisee {
 
 /// Who answers for the arm and the planner, and how to run.
 struct PipelineOptions {
-  plan::Reach reach;             ///< whether and how the arm can take a view; empty: our UR3 model answers
-  pick::ReachApproach approach;  ///< whether and how the arm can approach a fruit; empty: our UR3 model answers, or
-                                 ///< nobody if `reach` is your own, since the arm is not known then
+  plan::Reach reach;             ///< whether and how the arm can take a view; empty: our model of it answers
+  pick::ReachApproach approach;  ///< whether and how the arm can approach a fruit; empty: our model of the arm answers,
+                                 ///< or nobody if `reach` is your own, since the arm is not known then
   std::unique_ptr<plan::Planner> planner;  ///< where to look next; empty: the planner that `parameters.planner` names
   std::uint64_t seed = 0;                  ///< of the planner's random draws
   int threads = 1;                         ///< number of threads; the result does not depend on it
@@ -46,7 +46,9 @@ class Pipeline {
   /// @param workcell arm, camera, scan volume and keep-out
   /// @param parameters of all stages
   /// @param options reach, planner, seed, threads
-  /// @throws ParameterError; InputError for an empty scan volume or poses that are not rigid
+  /// @throws ParameterError; InputError for poses that are not rigid within kRigidTolerance, a scan volume that is
+  /// empty or longer than 50 m,
+  ///   or, where our model of the arm answers, a start posture outside of its limits
   explicit Pipeline(const Workcell& workcell, const Parameters& parameters = {}, PipelineOptions options = {});
 
   /// Take in a depth frame that was seen from `world_T_optical` (at `joints`, where an arm is known).
@@ -55,8 +57,9 @@ class Pipeline {
   /// marked so, if its frame repeats the last one bit for bit (the camera hangs), or if it contradicts what other views
   /// saw (fuse/fused_views.hpp), because then its pose is wrong.
   /// @return the view as recorded
-  /// @throws InputError for a frame whose size disagrees with its intrinsics, or a pose that is not rigid; Cancelled.
-  ///   The scan so far is kept.
+  /// @throws InputError for a frame whose size disagrees with its intrinsics or whose depths cannot be in metres
+  ///   (sensor::check_depth_unit), or a pose that is not rigid within kRigidTolerance; Cancelled. The scan so far is
+  ///   kept.
   const View& observe(const sensor::DepthFrame& frame, const Pose& world_T_optical,
                       const std::optional<Joints>& joints = std::nullopt);
 
@@ -69,7 +72,8 @@ class Pipeline {
 
   /// Where to look next, from where the arm stands now; empty when the scan is over, and `stop_reason` says why.
   /// @param current joints (rad)
-  /// @throws InputError when `current` is not finite; Cancelled
+  /// @throws InputError when `current` is not finite or, where our model of the arm answers, far outside of its limits;
+  ///   Cancelled
   std::optional<plan::ReachableView> next_view(const Joints& current);
 
   /// The arm could not take the view that `next_view` returned last; ask `next_view` for another one.
@@ -89,7 +93,9 @@ class Pipeline {
   const Cloud& merged() const { return cloud_; }
   /// All points merged so far, removed later or not, each with its view.
   Cloud raw() const { return map_->all(); }
-  /// The workcell of this scan.
+  /// What was put right and should be looked at, in sentences: poses whose rotation matrices are rounded.
+  std::vector<std::string> warnings() const;
+  /// The workcell of this scan; its poses are rigid.
   const Workcell& workcell() const { return workcell_; }
   /// The parameters of this scan.
   const Parameters& parameters() const { return parameters_; }
@@ -103,7 +109,7 @@ class Pipeline {
  private:
   View begin_view(const sensor::DepthFrame& frame, const Pose& world_T_optical,
                   const std::optional<Joints>& joints) const;
-  void record(View view, const fuse::Change& change);
+  void record(View view, const fuse::Change& change, bool repeated);
   void remember(const sensor::DepthFrame& frame);
   bool repeats_last_frame(const sensor::DepthFrame& frame) const;
   plan::Progress progress(const fuse::Change& change) const;
@@ -113,6 +119,7 @@ class Pipeline {
   Workcell workcell_;
   Parameters parameters_;
   plan::Reach reach_;
+  bool own_arm_ = true;  // our model of the arm answers for its reach
   pick::ReachApproach approach_;
   std::unique_ptr<plan::Planner> planner_;
   int threads_;
@@ -123,7 +130,10 @@ class Pipeline {
   int refusals_ = 0;  // since the last view
   StopReason stop_reason_ = StopReason::not_stopped;
   Timing seconds_;
-  double planned_before_ = 0.0;  // planning seconds that earlier views account for
+  std::vector<std::string> warnings_;  // about the workcell
+  int rounded_poses_ = 0;              // views whose reported pose had to be made rigid
+  double worst_rounding_ = 0.0;        // of these, see rigid_error
+  double planned_before_ = 0.0;        // planning seconds that earlier views account for
 };
 
 }  // namespace agrisee

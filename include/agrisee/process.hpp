@@ -24,6 +24,26 @@ struct CloudOrigin {
   Eigen::Vector3d cluster_origin = Eigen::Vector3d::Zero();  ///< origin of the cluster frame {R} in world (m)
 };
 
+/// Refuse what cannot be where a cloud was seen from. `process` calls it.
+/// @throws InputError when a sensor stood more than 20 m from the cloud (it must be in millimetres); when there are
+///   positions of sensors, but neither views nor normals of the points; when `origin` has a viewpoint and no sensors,
+///   but `cloud.views` names more than one view, as this would turn normals that are right
+void check_origin(const Cloud& cloud, const CloudOrigin& origin);
+
+/// Number of normals that came with a cloud and that `process` would turn with `origin.check_normals`, because they
+/// face away from where their points were seen from.
+/// @param cloud points (m), with normals or without
+/// @param origin where the points were seen from
+/// @throws InputError as check_origin, or when a point's view has no sensor position
+std::size_t normals_facing_away(const Cloud& cloud, const CloudOrigin& origin);
+
+/// Refuse a cloud that cannot be in metres: one that is more than 10 m across and whose points are farther apart than
+/// the largest expected fruit. `process` calls it.
+/// @param cloud points (m), any frame
+/// @param parameters only the expected radii are used
+/// @throws InputError that names the size and spacing of the cloud and the likely cause
+void check_units(const Cloud& cloud, const Parameters& parameters = {});
+
 /// Clean, split and locate.
 ///
 /// Points that are not finite are dropped. Normals that come with the cloud are kept; with `origin.check_normals`,
@@ -37,7 +57,8 @@ struct CloudOrigin {
 /// @param origin where the points were seen from
 /// @param seen_through evidence of free space from the views, or empty
 /// @param threads number of threads; the result does not depend on it
-/// @throws ParameterError; InputError when a point's view has no sensor position; Cancelled (core/cancellation.hpp)
+/// @throws ParameterError; InputError for a cloud that cannot be in metres (check_units), for one viewpoint of several
+///   views (check_origin), or when a point's view has no sensor position; Cancelled (core/cancellation.hpp)
 ScanResult process(const Cloud& cloud, const Parameters& parameters = {}, const CloudOrigin& origin = {},
                    const SeenThrough& seen_through = {}, int threads = 1);
 

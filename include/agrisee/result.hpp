@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// @file
-/// What a scan reports: views, stop reasons, fruit. All poses are in world (the UR3's base frame {M}) unless named
+/// What a scan reports: views, stop reasons, fruit. All poses are in world (the arm's base frame {M}) unless named
 /// otherwise.
 #pragma once
 
+#include <agrisee/core/body_counts.hpp>
 #include <agrisee/core/cloud.hpp>
 #include <agrisee/core/pose.hpp>
 #include <agrisee/core/stop_reason.hpp>
@@ -14,15 +15,36 @@
 
 namespace agrisee {
 
+/// Why a view is not part of the map.
+enum class DiscardReason {
+  none,                ///< it is part of the map
+  repeated_frame,      ///< its frame repeats the one before bit for bit: the camera hangs
+  contradicts_others,  ///< it puts surface where other views looked through, or the reverse: its pose is wrong
+};
+
+/// Its name, as in run.json.
+inline const char* to_string(DiscardReason reason) {
+  switch (reason) {
+    case DiscardReason::none:
+      return "none";
+    case DiscardReason::repeated_frame:
+      return "repeated_frame";
+    case DiscardReason::contradicts_others:
+      return "contradicts_others";
+  }
+  return "unknown";
+}
+
 /// A view that was taken.
 struct View {
-  Pose world_T_optical = Pose::Identity();           ///< as reported by the robot
-  Eigen::Vector3d target = Eigen::Vector3d::Zero();  ///< observed point on the optical axis
-  std::optional<Joints> joints;                      ///< absent without an arm
-  std::size_t points_in = 0;                         ///< points returned inside the scan volume
-  std::size_t points_new = 0;                        ///< points that the merged cloud kept
-  double plan_seconds = 0.0;                         ///< time it took to choose this view
-  bool discarded = false;                            ///< it is not part of the map; Pipeline::observe says why
+  Pose world_T_optical = Pose::Identity();             ///< as reported by the robot
+  Eigen::Vector3d target = Eigen::Vector3d::Zero();    ///< observed point on the optical axis
+  std::optional<Joints> joints;                        ///< absent without an arm
+  std::size_t points_in = 0;                           ///< points returned inside the scan volume
+  std::size_t points_new = 0;                          ///< points that the merged cloud kept
+  double plan_seconds = 0.0;                           ///< time it took to choose this view
+  bool discarded = false;                              ///< it is not part of the map
+  DiscardReason discard_reason = DiscardReason::none;  ///< why it is not
 };
 
 /// A body fitted to a fruit: an ellipsoid.
@@ -94,6 +116,7 @@ struct Picking {
 /// A located fruit.
 struct Fruit {
   int id = 0;                                          ///< from 1; the label of its points
+  int truss = 1;                                       ///< number of the truss that it hangs on, from 1
   std::size_t points = 0;                              ///< number of its points
   std::string found_by;                                ///< `region_growing`, `dbscan` or a further method's name
   Eigen::Vector3d centroid = Eigen::Vector3d::Zero();  ///< mean of its points, world
@@ -103,13 +126,33 @@ struct Fruit {
   std::optional<Body> body;                                    ///< where one was fitted
   std::optional<Picking> picking;                              ///< where it was planned (pick/picking.hpp)
 
-  /// The pose frame in world: origin at the centroid.
-  Pose pose() const {
+  /// Where the fruit is (m, world): the centre of its body where one was fitted, else the centroid of its points.
+  const Eigen::Vector3d& position() const { return body ? body->center : centroid; }
+  /// The same in the cluster frame {R} (m).
+  Eigen::Vector3d position_cluster() const { return centroid_cluster + (position() - centroid); }
+  /// The pose of the fruit in world, for a gripper: origin at position(), axes of the pose frame.
+  Pose pose() const { return pose_at(position()); }
+  /// The pose frame of [1] in world: origin at the centroid of the points that were seen, up to half a radius nearer to
+  /// the sensor than the fruit's centre; axes as those of pose().
+  Pose centroid_pose() const { return pose_at(centroid); }
+
+ private:
+  Pose pose_at(const Eigen::Vector3d& origin) const {
     Pose p = Pose::Identity();
     p.linear() = orientation;
-    p.translation() = centroid;
+    p.translation() = origin;
     return p;
   }
+};
+
+/// A truss: fruit that hang close to one another (see `truss_gap` of Parameters).
+struct FoundTruss {
+  int id = 0;               ///< from 1, from the top down by their highest fruit
+  std::vector<int> fruits;  ///< ids of its fruit, from the top down
+  /// The growth frame in world. Origin: the mean of the positions of its fruit. z: the direction in which its fruit are
+  /// strung, upwards; where no direction stands out, the mean growth axis of its fruit. x: as near to the x axis of
+  /// world as z allows.
+  Pose world_T_truss = Pose::Identity();
 };
 
 /// How much of the fruit's surface has been seen, and how much the arm can see at all, as the planner estimates it from
@@ -161,9 +204,20 @@ struct ScanResult {
   Cloud raw;                                         ///< the merged cloud before any filtering; `views` filled
   Cloud cloud;                                       ///< the consolidated cloud: points, normals, views (world)
   Labels labels;                                     ///< one per point of `cloud`: the fruit's id, or 0
-  std::vector<Fruit> fruits;                         ///< from the top of the truss down
+  std::vector<Fruit> fruits;                         ///< truss by truss, each from the top down
+  std::vector<FoundTruss> trusses;                   ///< from the top down by their highest fruit
   std::optional<Completeness> completeness;          ///< as the planner estimates; empty if it does not
   Timing seconds;                                    ///< of computing
+  std::vector<std::string> warnings;                 ///< what was put right and should be looked at, in sentences
+  BodyCounts bodies;                                 ///< what became of the round bodies that were proposed
 };
+
+/// How many of some views were discarded and why, in one sentence without a full stop; empty if none was. Defined in
+/// `agrisee::agrisee`.
+std::string discarded_views(const std::vector<View>& views);
+
+/// Why a result has no fruit, as far as it is known, in one sentence without a full stop: whether anything was seen,
+/// and by which tests the proposed bodies failed. Empty if it has fruit. Defined in `agrisee::agrisee`.
+std::string why_no_fruit(const ScanResult& result);
 
 }  // namespace agrisee

@@ -108,6 +108,17 @@ TEST_CASE("views of up to 2500 points are registered by all of their points") {
   CHECK(distance(seen.surface.world_T_optical, place(1)) < 0.0005);
 }
 
+TEST_CASE("the number of threads does not change the map") {
+  FusedViews one(kVolume, fine(), 1), three(kVolume, fine(), 3);
+  for (FusedViews* map : {&one, &three}) {
+    see(*map, 0);
+    see(*map, 1, {0.001, 0.001, 0});
+  }
+  CHECK((one.cloud().points == three.cloud().points));
+  CHECK((one.cloud().normals == three.cloud().normals));
+  CHECK(same(one.images()[1].world_T_optical, three.images()[1].world_T_optical));
+}
+
 TEST_CASE("without registration views are taken as they are reported") {
   FusionParameters parameters = fine();
   parameters.register_views = false;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The UR3's kinematics against Orocos KDL, whose chain is built from the frames of the published description.
-#include <agrisee/arm/ur3.hpp>
+#include <agrisee/arm/ur.hpp>
 #include <agrisee/core/random.hpp>
 
 #include <kdl/chain.hpp>

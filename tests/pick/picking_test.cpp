@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Approaches, pre-grasp poses and the order of picking, in cells small enough to judge by hand.
 #include <agrisee/arm/collision.hpp>
-#include <agrisee/arm/ur3.hpp>
+#include <agrisee/arm/ur.hpp>
 #include <agrisee/core/random.hpp>
 #include <agrisee/pick/arm_approach.hpp>
 #include <agrisee/pick/picking.hpp>

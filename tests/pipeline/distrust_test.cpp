@@ -62,7 +62,9 @@ void check_found(const ScanResult& result) {
 }  // namespace
 
 TEST_CASE("views that are right are believed") {
-  CHECK(discarded(look_around(8, {}, Eigen::Vector3d::Zero())).empty());
+  const ScanResult result = look_around(8, {}, Eigen::Vector3d::Zero());
+  CHECK(discarded(result).empty());
+  CHECK(discarded_views(result.views).empty());
 }
 
 TEST_CASE("a view whose reported pose is 50 mm off is discarded, in whatever direction") {
@@ -72,6 +74,10 @@ TEST_CASE("a view whose reported pose is 50 mm off is discarded, in whatever dir
     INFO(direction.transpose());
     const ScanResult result = look_around(8, {3, 6}, 0.05 * direction);
     CHECK(discarded(result) == std::set<int>{3, 6});
+    for (const View& v : result.views)
+      CHECK(v.discard_reason == (v.discarded ? DiscardReason::contradicts_others : DiscardReason::none));
+    CHECK(discarded_views(result.views) ==
+          "2 of 8 views were discarded: views 4, 7 contradict the others (are their poses wrong?)");
     for (const int v : result.raw.views) CHECK((v != 3 && v != 6));
     check_found(result);
   }
@@ -86,6 +92,9 @@ TEST_CASE("of views that contradict one another the more are believed, even when
 TEST_CASE("a frame that comes again is discarded") {
   const ScanResult result = look_around(8, {}, Eigen::Vector3d::Zero(), 4);
   CHECK(discarded(result) == std::set<int>{4});
+  CHECK(result.views[4].discard_reason == DiscardReason::repeated_frame);
+  CHECK(discarded_views(result.views) ==
+        "1 of 8 views was discarded: view 5 repeats the frame before (does the camera hang?)");
   check_found(result);
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <agrisee/arm/ur3.hpp>
+#include <agrisee/arm/ur.hpp>
 #include <agrisee/neighbors/kdtree.hpp>
 #include <agrisee/pipeline.hpp>
 #include <agrisee/plan/directions.hpp>
@@ -7,6 +7,7 @@
 
 #include "catch.hpp"
 #include "spheres.hpp"
+#include "support/says.hpp"
 
 using namespace agrisee;
 
@@ -72,6 +73,13 @@ TEST_CASE("a scan finds every fruit, the hidden one too, and stops by itself") {
     CHECK(f.orientation.determinant() == Approx(1.0));
     // The cluster frame: lower, left, far corner as seen from the base; axes parallel to world.
     CHECK((f.centroid_cluster - (f.centroid - Eigen::Vector3d(-0.17, 0.72, -0.02))).norm() < 1e-9);
+    // The pose that a gripper takes is in the middle of the fruit; the centroid of what was seen is nearer to the
+    // robot.
+    CHECK(f.pose().translation() == f.body->center);
+    CHECK(f.pose().linear() == f.orientation);
+    CHECK(f.centroid_pose().translation() == f.centroid);
+    CHECK(f.position_cluster().isApprox(f.body->center - Eigen::Vector3d(-0.17, 0.72, -0.02), 1e-9));
+    CHECK(f.centroid.y() < f.position().y() - 0.001);
     CHECK(f.body->completeness > 0.2);
     CHECK(f.body->confidence > 0.3);
     CHECK(f.body->mass == Approx(980.0 * f.body->volume));
@@ -91,6 +99,36 @@ TEST_CASE("a scan finds every fruit, the hidden one too, and stops by itself") {
   for (const Fruit& f : result.fruits) orders.push_back(f.picking->order);
   std::sort(orders.begin(), orders.end());
   CHECK(orders == std::vector<int>{1, 2, 3});
+}
+
+TEST_CASE("a gripper that is not on the camera's axis is planned for where it is") {
+  Workcell w = cell();
+  w.tool0_T_tool = pose_from_xyz_rpy({0.03, 0.0, 0.14}, {0.0, 0.0, 0.0});
+  Pipeline pipeline(w);
+  Joints joints = w.start;
+  while (const auto next = pipeline.next_view(joints)) {
+    if (pipeline.views().size() == 4) break;
+    joints = *next->joints;
+    pipeline.observe(test::render(test::kThreeFruit, w.sensor.intrinsics, next->world_T_optical), next->world_T_optical,
+                     joints);
+  }
+  const ScanResult result = pipeline.result();
+  int reachable = 0;
+  for (const Fruit& f : result.fruits) {
+    if (!f.picking || !f.picking->reachable) continue;
+    ++reachable;
+    const Pose tool = arm::forward(*f.picking->joints) * *w.tool0_T_tool;
+    CHECK(tool.isApprox(f.picking->world_T_pre_grasp, 1e-9));
+    const Eigen::Vector3d to_center = f.body->center - tool.translation();
+    CHECK(tool.linear().col(2).dot(to_center.normalized()) == Approx(1.0));
+  }
+  CHECK(reachable >= 1);
+}
+
+TEST_CASE("a camera without intrinsics is refused") {
+  Workcell w = cell();
+  w.sensor = {};
+  CHECK_THROWS_WITH(Pipeline(w), test::says("sensor.intrinsics.width"));
 }
 
 TEST_CASE("the picking can be left out") {
@@ -210,6 +248,7 @@ TEST_CASE("the paper's stages on the paper's values") {
   for (const Fruit& f : result.fruits) {
     CHECK_FALSE(f.body);
     CHECK_FALSE(f.picking);
+    CHECK(f.pose().translation() == f.centroid);
   }
 }
 
@@ -225,6 +264,7 @@ TEST_CASE("a truss out of reach and one that is not there are said to be so") {
   const ScanResult nothing = run(
       {}, [](int, sensor::DepthFrame& f) { std::fill(f.depth.begin(), f.depth.end(), 0.0f); }, never);
   CHECK(nothing.stop_reason == StopReason::nothing_seen);
+  CHECK(why_no_fruit(nothing) == "no view saw a point inside the scan volume");
   CHECK(nothing.fruits.empty());
 }
 
@@ -252,6 +292,60 @@ TEST_CASE("what cannot be observed is refused and what was seen is kept") {
   Parameters bad;
   bad.planner = "oracle";
   CHECK_THROWS_AS(Pipeline(w, bad), ParameterError);
+}
+
+TEST_CASE("poses that a calibration tool has rounded are made rigid, and the result says so") {
+  const auto rounded = [](const Pose& pose) {
+    Pose out = pose;
+    out.matrix() = (pose.matrix() * 1e4).array().round() * 1e-4;
+    return out;
+  };
+  Workcell w = cell();
+  w.tool0_T_optical = rounded(pose_from_xyz_rpy({0, 0.02, 0.04}, {0.1, -0.2, 0.3}));
+  REQUIRE_FALSE(is_rigid(w.tool0_T_optical));
+  Pipeline pipeline(w);
+  CHECK(is_rigid(pipeline.workcell().tool0_T_optical));
+  REQUIRE(pipeline.warnings().size() == 1);
+  CHECK_THAT(pipeline.warnings()[0], test::says("tool0_T_optical: its rotation matrix was off by"));
+  const auto next = pipeline.next_view(w.start);
+  REQUIRE(next);
+  const Pose reported = rounded(next->world_T_optical);
+  pipeline.observe(test::render(test::kThreeFruit, w.sensor.intrinsics, next->world_T_optical), reported);
+  CHECK(is_rigid(pipeline.views()[0].world_T_optical));
+  const ScanResult result = pipeline.result();
+  REQUIRE(result.warnings.size() == 2);
+  CHECK_THAT(result.warnings[1], test::says("world_T_optical of 1 of 1 views"));
+  w.tool0_T_optical.linear() *= 1.01;
+  CHECK_THROWS_WITH(Pipeline(w), test::says("tool0_T_optical is not a rigid transform"));
+  CHECK(Pipeline(cell()).warnings().empty());
+}
+
+TEST_CASE("millimetres and degrees are refused, and the likely cause is named") {
+  const Workcell w = cell();
+  Pipeline pipeline(w);
+  const auto next = pipeline.next_view(w.start);
+  REQUIRE(next);
+  sensor::DepthFrame frame = test::render(test::kThreeFruit, w.sensor.intrinsics, next->world_T_optical);
+  for (float& z : frame.depth) z *= 1000.0f;
+  CHECK_THROWS_WITH(pipeline.observe(frame, next->world_T_optical), test::says("is it in millimetres"));
+  for (float& z : frame.depth) z *= 1e-6f;
+  CHECK_THROWS_WITH(pipeline.observe(frame, next->world_T_optical), test::says("once more"));
+  CHECK_THROWS_AS(pipeline.observe(frame, next->world_T_optical), InputError);
+  CHECK(pipeline.views().empty());
+  for (float& z : frame.depth) z *= 1000.0f;
+  CHECK_NOTHROW(pipeline.observe(frame, next->world_T_optical));
+  const Joints degrees = w.start / deg(1);
+  CHECK_THROWS_WITH(pipeline.next_view(degrees), test::says("are the angles in degrees?"));
+  CHECK_NOTHROW(pipeline.next_view((Joints() << 6.5, -1.57, 1.57, -1.57, -1.57, 0.0).finished()));
+  Workcell turned = w;
+  turned.start = degrees;
+  CHECK_THROWS_WITH(Pipeline(turned), test::says("start: joint 2 is"));
+  PipelineOptions own;
+  own.reach = [](const plan::ViewRequest&, const Joints&) { return std::optional<plan::ReachableView>(); };
+  CHECK_NOTHROW(Pipeline(turned, {}, std::move(own)));  // only this robot knows what its joints mean
+  Workcell large = w;
+  large.scan_volume.max *= 1000.0;
+  CHECK_THROWS_WITH(Pipeline(large), test::says("is it in millimetres?"));
 }
 
 TEST_CASE("an external robot's own reach replaces ours") {

@@ -6,6 +6,7 @@
 
 #include "catch.hpp"
 #include "interop/same_result.hpp"
+#include "support/says.hpp"
 
 using namespace agrisee;
 
@@ -75,6 +76,95 @@ TEST_CASE("normals that face away from viewpoint or view are turned, the others 
   CloudOrigin unchecked = from_eye(true);
   unchecked.check_normals = false;
   CHECK(process(turned, {}, unchecked).fruits.empty());
+}
+
+TEST_CASE("positions of sensors in millimetres, or for points without views, are refused") {
+  CloudOrigin far = from_eye(true), one = from_eye(false);
+  for (auto& sensor : far.sensors) sensor *= 1000.0;
+  *one.viewpoint *= 1000.0;
+  CHECK_THROWS_WITH(process(seen(), {}, far), test::says("is its position in millimetres?"));
+  CHECK_THROWS_WITH(process(seen(), {}, one), test::says("is its position in millimetres?"));
+  Cloud bare = seen();
+  bare.normals.clear();
+  bare.views.clear();
+  CHECK_THROWS_WITH(process(bare, {}, from_eye(true)), test::says("from which view each point comes"));
+}
+
+TEST_CASE("a cloud in millimetres is refused, large clouds in metres are not") {
+  Cloud cloud = seen(), scaled = cloud;
+  for (auto& p : scaled.points) p *= 1000.0f;
+  CHECK_THROWS_WITH(process(scaled),
+                    test::says("apart, farther than the largest expected fruit (0.1 m): is it in millimetres?"));
+  CHECK_THROWS_AS(check_units(scaled), InputError);
+  std::vector<Eigen::Vector3f> foreign = scaled.points;
+  CHECK_THROWS_AS(process(foreign), InputError);
+  cloud.points.emplace_back(0.0f, 60.0f, 0.0f);  // what a sensor saw far behind
+  cloud.normals.emplace_back(0.0f, -1.0f, 0.0f);
+  cloud.views.push_back(0);
+  check_found(process(cloud));
+  scaled.points.resize(50);
+  scaled.normals.resize(50);
+  scaled.views.resize(50);
+  CHECK_NOTHROW(check_units(scaled));  // too few to tell
+}
+
+TEST_CASE("one viewpoint for points of several views is refused") {
+  Cloud cloud = seen();
+  const CloudOrigin eye = from_eye(false);
+  CHECK_NOTHROW(check_origin(cloud, eye));
+  CHECK(normals_facing_away(cloud, eye) == 0);
+  cloud.views.front() = -1;  // not known
+  CHECK_NOTHROW(check_origin(cloud, eye));
+  cloud.views.back() = 3;
+  CHECK_THROWS_WITH(process(cloud, {}, eye), test::says("several views (0 and 3, for instance)"));
+  CHECK_NOTHROW(process(cloud));
+  CloudOrigin behind;
+  behind.viewpoint = Eigen::Vector3d(0.0, 1.5, 0.2);
+  cloud.views.clear();
+  CHECK(normals_facing_away(cloud, behind) > cloud.size() / 2);
+  cloud.normals[0].setZero();
+  cloud.normals.resize(1);
+  cloud.points.resize(1);
+  CHECK(normals_facing_away(cloud, behind) == 0);
+}
+
+TEST_CASE("a result without fruit says why") {
+  CHECK(why_no_fruit(ScanResult()) == "there are no points");
+  const ScanResult found = process(seen());
+  CHECK(why_no_fruit(found).empty());
+  CHECK(found.bodies.taken == 2);
+  const auto with_radii = [](double smallest, double largest) {
+    Parameters parameters;
+    parameters.split.bodies.radius_min = smallest;
+    parameters.split.bodies.radius_max = largest;
+    return process(seen(), parameters);
+  };
+  const ScanResult small = with_radii(0.06, 0.09), large = with_radii(0.006, 0.012);
+  REQUIRE(small.fruits.empty());
+  CHECK(small.bodies.too_small >= 1);
+  CHECK(why_no_fruit(small).find("smaller than the expected radii") != std::string::npos);
+  REQUIRE(large.fruits.empty());
+  CHECK(large.bodies.too_large >= 1);
+  CHECK(why_no_fruit(large).find("larger than the expected radii") != std::string::npos);
+  Cloud inverted = seen();
+  for (auto& n : inverted.normals) n = -n;
+  const ScanResult inside_out = process(inverted);
+  REQUIRE(inside_out.fruits.empty());
+  CHECK(inside_out.bodies.inside_out >= 2);
+  CHECK(why_no_fruit(inside_out).find("face inwards") != std::string::npos);
+  // A stem: round across, straight along.
+  Cloud stem;
+  for (int i = 0; i < 60; ++i)
+    for (int j = 0; j < 40; ++j) {
+      const double a = kPi * j / 40.0;
+      const Eigen::Vector3d n(std::cos(a), -std::sin(a), 0.0);
+      stem.points.push_back((Eigen::Vector3d(0.0, 0.5, 0.0024 * i) + 0.03 * n).cast<float>());
+      stem.normals.push_back(n.cast<float>());
+    }
+  const ScanResult flat = process(stem);
+  REQUIRE(flat.fruits.empty());
+  CHECK(flat.bodies.too_flat >= 1);
+  CHECK(why_no_fruit(flat).find("too flat") != std::string::npos);
 }
 
 TEST_CASE("normals that are missing are estimated on their neighbours' side") {

@@ -31,11 +31,12 @@ see::Parameters with(double scale, double k) {
 }
 
 std::vector<see::Frontier> frames(const laws::Points<double>& cloud, const Indices& of, const Eigen::Vector3d& eye,
-                                  const see::Parameters& params) {
+                                  const see::Parameters& parameters) {
   const KdTree<double> search(cloud);
+  see::FrameScratch<double> scratch;
   std::vector<see::Frontier> out;
   for (const Index i : of) {
-    const auto frame = see::frontier_frame(cloud, search, search, i, eye, params);
+    const auto frame = see::frontier_frame(cloud, search, i, eye, see::Observation(), parameters, scratch);
     REQUIRE(frame);
     out.push_back(*frame);
   }

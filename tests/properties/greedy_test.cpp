@@ -37,7 +37,7 @@ TEST_CASE("the greedy planner: every proposed view passes an independent check")
     const std::vector<sensor::SurfaceImage> images;
     const std::vector<View> views;
     const std::vector<Eigen::Vector3f> added;
-    const plan::Progress progress{cloud, images, views, added};
+    const plan::Progress progress{cloud, images, views, added, added};
     Rng rng(seed, 2);
     Joints joints = cells::random_joints(rng);
     for (int step = 0; step < 12; ++step) {

@@ -65,23 +65,32 @@ Labels dbscan(const Points<S>& cloud, double eps, std::size_t min_points) {
   return labels;
 }
 
-/// Density and classes as defined.
+/// Density and classes of points that come in one view, as see/density.hpp defines them: one after the other, twice.
 template <typename S>
 see::Classification classify(const Points<S>& cloud, double radius, std::size_t k) {
+  using see::PointClass;
   const auto near = within(cloud, static_cast<S>(radius));
   see::Classification out;
-  for (std::size_t i = 0; i < cloud.size(); ++i) {
-    out.counts.push_back(static_cast<int>(near[i].size()));
-    const auto is_core = [&](Index j) { return near[static_cast<std::size_t>(j)].size() >= k; };
-    const auto other = [&](bool wanted) {
-      return std::any_of(near[i].begin(), near[i].end(),
-                         [&](Index j) { return j != static_cast<Index>(i) && is_core(j) == wanted; });
-    };
-    using see::PointClass;
-    out.classes.push_back(!near[i].empty() && is_core(static_cast<Index>(i)) ? PointClass::core
-                          : other(true) && other(false)                      ? PointClass::frontier
-                                                                             : PointClass::outlier);
-  }
+  for (const auto& found : near) out.counts.push_back(static_cast<int>(found.size()));
+  const auto core = [&](std::size_t i) { return !near[i].empty() && near[i].size() >= k; };
+  out.classes.assign(cloud.size(), PointClass::outlier);
+  for (std::size_t i = 0; i < cloud.size(); ++i)
+    if (core(i)) out.classes[i] = PointClass::core;
+  const auto has = [&](std::size_t i, PointClass wanted, std::size_t end) {
+    return std::any_of(near[i].begin(), near[i].end(), [&](Index j) {
+      const auto other = static_cast<std::size_t>(j);
+      return other != i && other < end && out.classes[other] == wanted;
+    });
+  };
+  for (const bool first : {true, false})
+    for (std::size_t i = 0; i < cloud.size(); ++i) {
+      if (near[i].empty() || core(i)) continue;
+      const bool outlier_near =
+          first ? has(i, PointClass::outlier, i)
+                : out.classes[i] == PointClass::outlier || has(i, PointClass::outlier, cloud.size());
+      out.classes[i] =
+          outlier_near && has(i, PointClass::core, cloud.size()) ? PointClass::frontier : PointClass::outlier;
+    }
   return out;
 }
 

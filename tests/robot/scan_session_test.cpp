@@ -7,6 +7,7 @@
 
 #include "catch.hpp"
 #include "joint_names.hpp"
+#include "messages.hpp"
 #include "read_parameters.hpp"
 #include "spheres.hpp"
 #include "support/says.hpp"
@@ -212,4 +213,15 @@ TEST_CASE("joints are found by name") {
   CHECK((*robot::joints_of(state) == (Joints() << 1, 2, 3, 4, 5, 6).finished()));
   state.position.pop_back();
   CHECK_FALSE(robot::joints_of(state));
+}
+
+TEST_CASE("the poses that a result is published as are where a gripper takes the fruit") {
+  Fruit fitted, plain;
+  fitted.centroid = plain.centroid = {0.1, 0.5, 0.2};
+  fitted.body.emplace();
+  fitted.body->center = {0.1, 0.52, 0.2};
+  const robot::ResultPoses poses = robot::result_poses({fitted, plain});
+  REQUIRE(poses.fruits.size() == 2);
+  CHECK(poses.fruits[0].translation() == fitted.body->center);
+  CHECK(poses.fruits[1].translation() == plain.centroid);
 }

@@ -121,7 +121,7 @@ TEST_CASE("a sensor that cannot be used is refused") {
   REQUIRE_THROWS_AS(look(scene, with([](sensor::DepthCamera& s) { s.max_incidence = 0.0; }), "none"), ParameterError);
   REQUIRE_THROWS_AS(look(scene, with([](sensor::DepthCamera& s) { s.max_incidence = std::nan(""); }), "none"),
                     ParameterError);
-  REQUIRE_THROWS_AS(look(scene, with([](sensor::DepthCamera& s) { s.intrinsics.width = 0; }), "none"), InputError);
+  REQUIRE_THROWS_AS(look(scene, with([](sensor::DepthCamera& s) { s.intrinsics.width = 0; }), "none"), ParameterError);
   const Capture nothing = look(scene, small_sensor(), "rough");
   REQUIRE(std::count(nothing.frame.depth.begin(), nothing.frame.depth.end(), 0.0f) == 256 * 192);
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The planner that knows the truth takes the views of greedy_order(), one by one.
 #include <agrisee/arm/limits.hpp>
-#include <agrisee/arm/ur3.hpp>
+#include <agrisee/arm/ur.hpp>
 #include <agrisee/plan/arm_reach.hpp>
 #include <agrisee/study/greedy_planner.hpp>
 #include <agrisee/study/simulated_scan.hpp>
@@ -18,7 +18,7 @@ const Cloud kCloud;
 const std::vector<sensor::SurfaceImage> kImages;
 const std::vector<View> kViews;
 const std::vector<Eigen::Vector3f> kAdded;
-const plan::Progress kProgress{kCloud, kImages, kViews, kAdded};
+const plan::Progress kProgress{kCloud, kImages, kViews, kAdded, kAdded};
 
 /// Six samples on a line, 1 m apart. `seen` lists for each view the samples that it sees.
 struct Line {

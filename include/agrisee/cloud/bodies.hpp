@@ -13,6 +13,7 @@
 #include <agrisee/cloud/fit.hpp>
 #include <agrisee/cloud/parameters.hpp>
 #include <agrisee/cloud/seen_through.hpp>
+#include <agrisee/core/body_counts.hpp>
 #include <agrisee/geometry/direction_bins.hpp>
 #include <agrisee/geometry/pca.hpp>
 #include <agrisee/neighbors/grid.hpp>
@@ -27,6 +28,8 @@ namespace agrisee {
 struct BodyCandidate {
   Ellipsoid body;        ///< first guess
   std::string found_by;  ///< what proposed it; see Fruit::found_by
+  /// What to count if its points do not support it: that they suggest a radius outside of what is expected, say.
+  std::size_t BodyCounts::*doubt = nullptr;
 };
 
 /// A body that won.
@@ -153,18 +156,30 @@ class Competition {
     std::vector<Ellipsoid> known;  // where proposals ended up; many end up at the same place
     for (const BodyCandidate& c : candidates) {
       throw_if_cancelled();
-      if (!parameters_.plausible(c.body.mean_radius())) continue;
-      // Not worth a fit if hardly anything supports even the first guess.
-      if (judge(cloud_, grid_, taken_, c.body, parameters_, {}).coverage < 0.3 * parameters_.min_coverage) continue;
-      const auto first = refine(c.body, rough);
-      if (!first || std::any_of(known.begin(), known.end(), [&](const Ellipsoid& k) { return alike(k, first->body); }))
+      if (!parameters_.plausible(c.body.mean_radius())) {
+        ++(c.body.mean_radius() < parameters_.radius_min ? counts_.too_small : counts_.too_large);
         continue;
-      known.push_back(first->body);
-      const auto fit = refine(first->body, parameters_.fit);
-      if (!fit) continue;
+      }
+      // Not worth a fit if hardly anything supports even the first guess.
+      if (judge(cloud_, grid_, taken_, c.body, parameters_, {}).coverage < 0.3 * parameters_.min_coverage) {
+        ++(counts_.*(c.doubt ? c.doubt : &BodyCounts::little_seen));
+        continue;
+      }
+      const auto first = refine(c.body, rough);
+      if (first && std::any_of(known.begin(), known.end(), [&](const Ellipsoid& k) { return alike(k, first->body); }))
+        continue;
+      if (first) known.push_back(first->body);
+      const auto fit = first ? refine(first->body, parameters_.fit) : std::nullopt;
+      if (!fit) {
+        ++(counts_.*(c.doubt ? c.doubt : &BodyCounts::not_fitted));
+        continue;
+      }
       Entry e{*fit, &c.found_by, {}, true};
-      assess(e);
-      if (e.alive) entries_.push_back(std::move(e));
+      if (std::size_t BodyCounts::*const fault = assess(e)) {
+        ++(counts_.*(c.doubt ? c.doubt : fault));
+        continue;
+      }
+      entries_.push_back(std::move(e));
     }
   }
 
@@ -173,13 +188,20 @@ class Competition {
     std::vector<FoundBody> found;
     while (Entry* best = best_entry()) {
       best->alive = false;
-      if (clashes(best->fit.body, found)) continue;
+      if (clashes(best->fit.body, found)) {
+        ++counts_.overlapping;
+        continue;
+      }
+      ++counts_.taken;
       found.push_back({best->fit, *best->found_by, best->verdict.coverage, best->verdict.score()});
       take_points(best->fit.body);
       judge_anew(best->fit.body);
     }
     return found;
   }
+
+  /// What became of the candidates so far.
+  const BodyCounts& counts() const { return counts_; }
 
  private:
   struct Entry {
@@ -205,10 +227,18 @@ class Competition {
   }
 
   /// Judge an entry by the free points; it is alive while it may win.
-  void assess(Entry& e) const {
+  /// @return the count of the first test that it fails; null when it is alive
+  std::size_t BodyCounts::*assess(Entry& e) const {
+    const double radius = e.fit.body.mean_radius();
     e.verdict = judge(cloud_, grid_, taken_, e.fit.body, parameters_, seen_through_);
-    e.alive = parameters_.plausible(e.fit.body.mean_radius()) && e.verdict.score() >= parameters_.min_coverage &&
+    e.alive = parameters_.plausible(radius) && e.verdict.score() >= parameters_.min_coverage &&
               e.verdict.roundness >= parameters_.min_roundness;
+    if (e.alive) return nullptr;
+    if (!parameters_.plausible(radius))
+      return radius < parameters_.radius_min ? &BodyCounts::too_small : &BodyCounts::too_large;
+    if (!(e.verdict.coverage >= parameters_.min_coverage)) return &BodyCounts::little_seen;
+    if (!(e.verdict.score() >= parameters_.min_coverage)) return &BodyCounts::contradicted;
+    return &BodyCounts::too_flat;
   }
 
   /// The living entry with the largest score times radius squared, the first of equals; null if none is alive.
@@ -271,6 +301,7 @@ class Competition {
   Grid<S> grid_;
   std::vector<char> taken_;  // whether a point belongs to a body that has won
   std::vector<Entry> entries_;
+  BodyCounts counts_;
   Indices near_;  // scratch of refine()
 };
 
@@ -282,16 +313,20 @@ class Competition {
 /// @param candidates of equally good ones the first wins
 /// @param parameters see their struct
 /// @param seen_through evidence of free space, or empty
+/// @param counts receives what became of the candidates, where it is not null
 /// @return the bodies that won, best first; assign_to_bodies gives them their points
 /// @throws ParameterError; InputError if the cloud has no normals
 template <typename S>
 std::vector<FoundBody> find_bodies(const PointCloud<S>& cloud, const std::vector<BodyCandidate>& candidates,
-                                   const BodyParameters& parameters = {}, const SeenThrough& seen_through = {}) {
+                                   const BodyParameters& parameters = {}, const SeenThrough& seen_through = {},
+                                   BodyCounts* counts = nullptr) {
   parameters.check();
   check_input(cloud.normals.size() == cloud.points.size(), "find_bodies: the cloud has no normals");
   detail::Competition<S> competition(cloud, parameters, seen_through);
   competition.enter(candidates);
-  return competition.decide();
+  std::vector<FoundBody> found = competition.decide();
+  if (counts) *counts = competition.counts();
+  return found;
 }
 
 /// Label each point with the body (counted from 1) on whose surface it lies, 0 for none. That is the nearest body whose

@@ -80,7 +80,7 @@ struct RegionGrowingParameters {
   template <typename P, typename F>
   static void fields(P& p, F&& f) {
     f("radius", p.radius, Range::positive());
-    f("smoothness", p.smoothness, Range::between(0.0, {kPi, "pi"}));
+    f("smoothness", p.smoothness, Range::between(0.0, {kPi, "pi"}).in_radians());
     f("min_size", p.min_size, Range::at_least(1));
     f("neighbors", p.neighbors, Range::not_negative());
     f("seeds_by_curvature", p.seeds_by_curvature);
@@ -137,7 +137,7 @@ struct IcpParameters {
   static void fields(P& p, F&& f) {
     f("point_to_point", p.point_to_point);
     f("max_distance", p.max_distance, Range::positive());
-    f("max_normal_angle", p.max_normal_angle, Range::between(0.0, {kPi, "pi"}));
+    f("max_normal_angle", p.max_normal_angle, Range::between(0.0, {kPi, "pi"}).in_radians());
     f("kernel", p.kernel);
     f("max_iterations", p.max_iterations, Range::at_least(1));
     f("translation_tolerance", p.translation_tolerance, Range::not_negative());
@@ -166,7 +166,7 @@ struct FitParameters {
   static void fields(P& p, F&& f) {
     f("noise", p.noise, Range::positive());
     f("shape_prior", p.shape_prior, Range::positive());
-    f("max_angle", p.max_angle, Range::above(0.0).up_to({kPi, "pi"}));
+    f("max_angle", p.max_angle, Range::above(0.0).up_to({kPi, "pi"}).in_radians());
     f("independent", p.independent, Range::at_least(1));
     f("iterations", p.iterations, Range::at_least(1));
     f("max_points", p.max_points, Range::at_least(1));
@@ -193,11 +193,11 @@ struct BodyParameters {
   /// f(name, field, range) for every field; without a range where there is none.
   template <typename P, typename F>
   static void fields(P& p, F&& f) {
-    f("radius_min", p.radius_min, Range::positive());
+    f("radius_min", p.radius_min, Range::positive().up_to(1.0).in_metres());
     f("radius_max", p.radius_max,
-      Range::between({p.radius_min, "radius_min"}, {20.0 * p.radius_min, "20 times radius_min"}));
+      Range::between({p.radius_min, "radius_min"}, {20.0 * p.radius_min, "20 times radius_min"}).in_metres());
     f("tolerance", p.tolerance, Range::above(0.0).below(1.0));
-    f("max_angle", p.max_angle, Range::above(0.0).below({kPi, "pi"}));
+    f("max_angle", p.max_angle, Range::above(0.0).below({kPi, "pi"}).in_radians());
     f("min_coverage", p.min_coverage, Range::above(0.0).below(1.0));
     f("min_roundness", p.min_roundness, Range::between(0.0, 1.0));
     f("max_overlap", p.max_overlap, Range::not_negative());

@@ -29,6 +29,7 @@ struct Split {
   std::size_t residual = 0;      ///< points that region growing left to DBSCAN
   int regions_found = 0;         ///< number of regions
   int clusters_found = 0;        ///< number of clusters that DBSCAN found in the residual
+  BodyCounts bodies;             ///< what became of the bodies that were proposed
 };
 
 /// Parameters of the two stages for a certain cloud.
@@ -137,11 +138,18 @@ double likely_radius(const PointCloud<S>& cloud, const Grid<S>& grid, const Eige
 inline double least_votes(const RegionGrowingParameters& growing) { return 1.5 * growing.min_size; }
 
 /// Propose a sphere, unless its radius is far from what is expected.
-inline void propose(Sphere sphere, const char* by, const BodyParameters& parameters,
-                    std::vector<BodyCandidate>& candidates) {
-  if (!(sphere.radius > 0.5 * parameters.radius_min && sphere.radius < 2.0 * parameters.radius_max)) return;
+/// @return the count of the reason for which it was not proposed; null if it was
+inline std::size_t BodyCounts::*propose(Sphere sphere, const char* by, const BodyParameters& parameters,
+                                        std::vector<BodyCandidate>& candidates) {
+  if (!(sphere.radius > 0.0)) return &BodyCounts::inside_out;
+  if (!(sphere.radius > 0.5 * parameters.radius_min)) return &BodyCounts::too_small;
+  if (!(sphere.radius < 2.0 * parameters.radius_max)) return &BodyCounts::too_large;
+  std::size_t BodyCounts::*const doubt = parameters.plausible(sphere.radius)     ? nullptr
+                                         : sphere.radius < parameters.radius_min ? &BodyCounts::too_small
+                                                                                 : &BodyCounts::too_large;
   sphere.radius = std::clamp(sphere.radius, parameters.radius_min, parameters.radius_max);
-  candidates.push_back({Ellipsoid(sphere), by});
+  candidates.push_back({Ellipsoid(sphere), by, doubt});
+  return nullptr;
 }
 
 /// Propose bodies about the centers for which the points of `voters`, a part of `cloud`, vote. Centers that coincide
@@ -225,12 +233,17 @@ template <typename S>
 void split_by_bodies(const PointCloud<S>& cloud, const Segments& segments, const RegionGrowingParameters& growing,
                      const BodyParameters& bodies, const SeenThrough& seen_through, int threads, Split& out) {
   std::vector<BodyCandidate> candidates;
+  BodyCounts not_proposed;
   for (std::size_t s = 0; s < segments.members.size(); ++s)
     if (const auto sphere = sphere_from_normals(cloud, segments.members[s]))
-      propose(*sphere, segments.found_by(s + 1), bodies, candidates);
+      if (std::size_t BodyCounts::*const fault = propose(*sphere, segments.found_by(s + 1), bodies, candidates))
+        ++(not_proposed.*fault);
   const Grid<S> grid(cloud, static_cast<S>(growing.radius), threads);
   propose_voted(cloud, cloud, grid, least_votes(growing), bodies, candidates);
-  out.found = find_bodies(cloud, candidates, bodies, seen_through);
+  out.found = find_bodies(cloud, candidates, bodies, seen_through, &out.bodies);
+  out.bodies.too_small += not_proposed.too_small;
+  out.bodies.too_large += not_proposed.too_large;
+  out.bodies.inside_out += not_proposed.inside_out;
   out.labels = assign_to_bodies(cloud, out.found, bodies);
   refit(cloud, bodies, out);
   extend_labels(out.labels, cloud, out.found, out.regions, out.regions_found, bodies);

@@ -23,7 +23,7 @@ struct SurfelParameters {
   template <typename P, typename F>
   static void fields(P& p, F&& f) {
     f("separation", p.separation, Range::positive());
-    f("max_angle", p.max_angle, Range::above(0.0).below({kPi, "pi"}));
+    f("max_angle", p.max_angle, Range::above(0.0).below({kPi, "pi"}).in_radians());
     f("agreement", p.agreement, Range::not_negative());
   }
 };
@@ -45,7 +45,7 @@ struct FreeSpaceParameters {
   static void fields(P& p, F&& f) {
     f("margin", p.margin, Range::positive());
     f("min_fill", p.min_fill, Range::not_negative());
-    f("max_incidence", p.max_incidence, Range::above(0.0).below({kPi / 2, "pi/2"}));
+    f("max_incidence", p.max_incidence, Range::above(0.0).below({kPi / 2, "pi/2"}).in_radians());
     f("min_refuting", p.min_refuting, Range::at_least(1));
     f("max_contradiction", p.max_contradiction, Range::above(0.0).up_to(1.0));
   }

@@ -25,10 +25,11 @@ struct Observation {
 
 /// What a view changed in the map.
 struct Change {
-  std::vector<Eigen::Vector3f> added;  ///< points that are new (m)
-  std::optional<Indices> kept;         ///< if points of the map were dropped: those that stay, as indices into the map
-                                       ///< before the change followed by `added`
-  std::size_t points_in = 0;           ///< points that the frame returned inside the scan volume
+  std::vector<Eigen::Vector3f> added;     ///< points that are new (m)
+  std::vector<Eigen::Vector3f> observed;  ///< all points that the view showed, registered where that is done (m)
+  std::optional<Indices> kept;  ///< if points of the map were dropped: those that stay, as indices into the map
+                                ///< before the change followed by `added`
+  std::size_t points_in = 0;    ///< points that the frame returned inside the scan volume
 };
 
 /// Number of pixels of a frame that returned a point inside a volume (world). Defined in `agrisee::agrisee`.

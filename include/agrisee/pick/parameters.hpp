@@ -14,7 +14,8 @@ struct PickingParameters {
   double stand_off = 0.12;         ///< distance of the tool from the body's surface at the pre-grasp pose (m)
   double contact = 0.0;            ///< the approach ends this far before the surface (m); negative: inside the body
   double gripper_radius = 0.02;    ///< radius of the capsule that the gripper sweeps, safety margin included (m)
-  double tool_length = 0.0;        ///< distance of the gripping point from the optical frame's origin, along its z (m)
+  double tool_length = 0.0;        ///< length of the gripper behind the gripping point (m); without a tool frame
+                                   ///< (Workcell::tool0_T_tool) the gripping point lies as far ahead of the camera
   double pedicel_angle = deg(40);  ///< approaches within this angle of the growth axis are excluded (rad)
   int directions = 300;            ///< number of directions that are tried, spread over the sphere
   int rolls = 12;                  ///< number of rolls about each direction, evenly spaced
@@ -44,7 +45,7 @@ struct PickingParameters {
     f("contact", p.contact, Range::finite().up_to({p.stand_off, "stand_off"}));
     f("gripper_radius", p.gripper_radius, Range::not_negative());
     f("tool_length", p.tool_length, Range::not_negative());
-    f("pedicel_angle", p.pedicel_angle, Range::between(0.0, {0.5 * kPi, "pi/2"}));
+    f("pedicel_angle", p.pedicel_angle, Range::between(0.0, {0.5 * kPi, "pi/2"}).in_radians());
     f("directions", p.directions, Range::at_least(6));
     f("rolls", p.rolls, Range::at_least(1));
     f("steps", p.steps, Range::at_least(1));

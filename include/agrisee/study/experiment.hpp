@@ -23,10 +23,11 @@ inline std::string file_name(std::string name) {
 /// Which scan. The trial is the seed of noise and planner, so `agrisee scan --seed TRIAL` repeats it.
 struct Cell {
   std::string scene;               ///< name of the scene
-  std::string preset = "default";  ///< `default` or `paper`
+  std::string preset = "default";  ///< name of the preset
   std::string planner = "gain";    ///< name of the planner, or `greedy` (greedy_planner.hpp)
   std::string noise = "none";      ///< noise model of the simulated sensor, as for scan --noise
   int trial = 1;                   ///< from 1
+  std::string reach = "arm";       ///< who takes the views: `arm`, or `free` for a camera that flies (free_flight.hpp)
 
   /// f(name, field) for every field.
   template <typename P, typename F>
@@ -35,11 +36,13 @@ struct Cell {
     f("preset", p.preset);
     f("planner", p.planner);
     f("noise", p.noise);
+    f("reach", p.reach);
     f("trial", p.trial);
   }
-  /// A file name that no other cell has: scene, preset, planner, noise and trial.
+  /// A file name that no other cell has: scene, preset, planner, noise, `free` unless the arm takes the views, trial.
   std::string name() const {
-    return file_name(scene + "__" + preset + "__" + planner + "__" + noise + "__" + std::to_string(trial));
+    const std::string taker = reach == "arm" ? "" : "__" + reach;
+    return file_name(scene + "__" + preset + "__" + planner + "__" + noise + taker + "__" + std::to_string(trial));
   }
 };
 
@@ -101,9 +104,10 @@ struct CellRecord {
   StageAlone growing;                 ///< region growing alone, on the filtered cloud
   StageAlone clustering;              ///< DBSCAN alone, on the filtered cloud
   std::vector<LocatedFruit> fruits;   ///< one per true fruit, in the order of `metrics.fruits`
-  std::vector<double> scanned_after;  ///< Metrics::scanned_obs if the scan had ended after each view
-  std::vector<double> recall_after;   ///< Metrics::recall_obs after each view
-  std::vector<int> true_after;        ///< Metrics::n_true after each view
+  std::vector<double> whole_after;    ///< Metrics::scanned if the scan had ended after each view
+  std::vector<double> scanned_after;  ///< Metrics::scanned_obs after each view
+  std::vector<double> recall_after;   ///< Metrics::recall_obs after each view; empty if only `scanned` was judged
+  std::vector<int> true_after;        ///< Metrics::n_true after each view; empty if only `scanned` was judged
 
   /// f(name, field) for every field except `cell`.
   template <typename P, typename F>
@@ -126,6 +130,7 @@ struct CellRecord {
     f("growing", p.growing);
     f("clustering", p.clustering);
     f("fruits", p.fruits);
+    f("whole_after", p.whole_after);
     f("scanned_after", p.scanned_after);
     f("recall_after", p.recall_after);
     f("true_after", p.true_after);

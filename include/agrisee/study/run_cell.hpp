@@ -42,13 +42,21 @@ Subject make_subject(std::string name, std::string fingerprint, const Scene& sce
 /// What can be seen of a scene at all, and in how few views.
 SceneRecord judge_scene(const Subject& subject);
 
+/// What is judged after each view of a scan.
+enum class JudgedAfterViews {
+  all,      ///< all that a record holds
+  scanned,  ///< only `whole_after` and `scanned_after`, which need no segmentation
+};
+
 /// Scan a scene and judge the scan.
 /// @param subject the scene
 /// @param cell what is run
 /// @param parameters of the cell's preset; the planner is that of the cell
 /// @param threads number of threads; the result does not depend on it
+/// @param judged what is judged after each view; at the end all is
 /// @return the record, without fingerprint
-/// @throws ParameterError for an unknown planner or noise model; InputError as scan() does
-CellRecord run_cell(const Subject& subject, const Cell& cell, Parameters parameters, int threads = 1);
+/// @throws ParameterError for an unknown planner, noise model or reach; InputError as scan() does
+CellRecord run_cell(const Subject& subject, const Cell& cell, Parameters parameters, int threads = 1,
+                    JudgedAfterViews judged = JudgedAfterViews::all);
 
 }  // namespace agrisee::study

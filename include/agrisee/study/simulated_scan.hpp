@@ -37,6 +37,7 @@ struct SimulationOptions {
   std::uint64_t seed = 0;                             ///< seed of the noise and of the planner
   int threads = 1;                                    ///< number of threads; the result does not depend on it
   std::unique_ptr<plan::Planner> planner = nullptr;   ///< replaces the planner that the parameters name
+  plan::Reach reach = {};                             ///< replaces the reach of the workcell's arm
   std::function<ViewTaker(ViewTaker)> around = {};    ///< wraps the simulated views, for example to record them or to
                                                       ///< simulate faults
   std::function<void(const Pipeline&)> on_view = {};  ///< called after each view that was taken

@@ -8,12 +8,14 @@
 #include <agrisee/geometry/mesh.hpp>
 
 #include <algorithm>
+#include <cmath>
 #include <vector>
 
 namespace agrisee::study {
 
-/// The shape of a tomato, star-shaped about its own origin: an oblate spheroid with mild lobes around it and a dimple
-/// at the calyx. The z axis of the body frame is the growth axis, and the calyx lies at +z.
+/// The shape of a fruit, star-shaped about its own origin. The defaults give a tomato: an oblate spheroid with mild
+/// lobes around it and a dimple at the calyx. The last six fields give other fruit. The z axis of the body frame is the
+/// growth axis, and the calyx lies at +z. Below, u is the cosine of the angle to the growth axis.
 struct FruitShape {
   double equatorial = 0.036;      ///< semi-axis across the growth axis (m)
   double polar = 0.033;           ///< semi-axis along the growth axis (m)
@@ -22,11 +24,20 @@ struct FruitShape {
   double lobe_phase = 0.0;        ///< turn of the lobes about the axis (rad)
   double dimple_depth = 0.12;     ///< depth of the dimple at the calyx, relative to the radius
   double dimple_width = 0.35;     ///< half width of the dimple, as an angle at the origin (rad)
+  double blossom_depth = 0.0;     ///< depth of a second dimple opposite the calyx, relative to the radius
+  double blossom_width = 0.35;    ///< half width of that dimple, as an angle at the origin (rad)
+  double taper = 0.0;           ///< multiplies `equatorial` by 1 + taper u: below 0 for a pear, above for a strawberry
+  double blockiness = 2.0;      ///< exponent of the outline: 2 is an ellipse, 3 a bell pepper
+  double lobe_sharpness = 1.0;  ///< above 1, the lobes are broad and the furrows between them narrow
+  double lobe_reach = 1.0;      ///< the lobes fade towards the poles as (1 - u^2)^lobe_reach
 
   /// Distance (m) from the origin to the surface in the direction of the unit vector `d` (body frame).
   double radius(const Eigen::Vector3d& d) const;
   /// An upper bound of radius() over all directions (m).
-  double max_radius() const { return std::max(equatorial, polar) * (1.0 + lobe_amplitude); }
+  double max_radius() const {
+    const double corner = std::pow(2.0, 0.5 - 1.0 / blockiness);  // how far a block reaches beyond its ellipse
+    return std::max(equatorial * (1.0 + std::abs(taper)), polar) * (1.0 + lobe_amplitude) * corner;
+  }
 };
 
 /// Makes the closed mesh of a fruit in its body frame. It has 2 slices (stacks - 1) triangles, 2,976 by default.
