@@ -61,7 +61,7 @@ bench:
 
 fuzz:
 	@cmake/packages.sh build fuzz
-	@cmake --preset fuzz -G Ninja
+	@cmake --preset fuzz -G Ninja $(FEW_LARGE_UNITS)
 	@cmake --build --preset fuzz -j $(JOBS)
 	@bash tests/fuzz/run.sh build/fuzz/fuzz $(SECONDS_IN_ALL)
 

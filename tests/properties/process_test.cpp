@@ -163,6 +163,10 @@ TEST_CASE("process: hostile clouds hold no fruit and end") {
       INFO(kind);
       Cloud cloud;
       cloud.points = laws::hostile_cloud<float>(kind);
+      if (known && kind == std::string("far")) {  // no sensor sees as far as that
+        CHECK_THROWS_AS(process(cloud, {}, from(kEye)), InputError);
+        continue;
+      }
       const ScanResult got = process(cloud, {}, known ? from(kEye) : CloudOrigin{});
       CHECK(got.labels.size() == got.cloud.size());
       CHECK(got.fruits.empty());
