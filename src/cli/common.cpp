@@ -26,8 +26,8 @@ namespace fs = std::filesystem;
 std::vector<std::string> preset_choices() { return {kPresetNames.begin(), kPresetNames.end()}; }
 
 std::vector<std::string> planner_choices() {
-  std::vector<std::string> choices(kPlannerNames.begin(), kPlannerNames.end());
-  choices.push_back("greedy");
+  std::vector<std::string> choices{"greedy"};
+  choices.insert(choices.begin(), kPlannerNames.begin(), kPlannerNames.end());
   return choices;
 }
 
