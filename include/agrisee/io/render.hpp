@@ -17,7 +17,7 @@ namespace agrisee::io {
 /// blue), their ids and the outlines of the fitted bodies; in the right picture also the scan volume, the frusta of the
 /// sensor and its path from the first view (dark) to the last (light). Without a scan volume the picture shows the
 /// whole cloud from the side that most normals face. Any result can be drawn, even an empty one; points that are not
-/// finite are left out. The picture is supersampled twofold. Cost: O(points + pixels), about 0.3 s.
+/// finite are left out. Lines and texts are antialiased. Cost: O(points + pixels), about 0.1 s.
 /// @param result the result to draw
 /// @param workcell scan volume, base of the robot, and intrinsics of the sensor
 /// @param width pixels, at least 640

@@ -6,8 +6,8 @@
 namespace agrisee::io {
 namespace {
 
-constexpr int kPlaces = 6000;    // places tried for a badge
-constexpr float kSpread = 4.0f;  // pixels; place k is kSpread * sqrt(k) from the wanted one
+constexpr int kPlaces = 24000;   // places tried for a badge
+constexpr float kSpread = 2.0f;  // pixels; place k is kSpread * sqrt(k) from the wanted one
 
 bool overlap(const Badge& a, const Badge& b) { return (a.center - b.center).norm() < a.radius + b.radius; }
 

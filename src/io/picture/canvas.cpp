@@ -33,20 +33,17 @@ float Canvas::text_width(float size, std::string_view text) {
 
 Image Canvas::image() const {
   Image out;
-  out.width = width_ / kScale;
-  out.height = height_ / kScale;
-  out.pixels.reserve(pixels_.size() / (kScale * kScale));
-  for (int y = 0; y < out.height; ++y)
-    for (int x = 0; x < out.width; ++x) {
-      const auto first = static_cast<std::size_t>(kScale * y) * static_cast<std::size_t>(width_) +
-                         static_cast<std::size_t>(kScale * x);
-      const auto below = first + static_cast<std::size_t>(width_);
-      const Color c = 0.25f * (pixels_[first] + pixels_[first + 1] + pixels_[below] + pixels_[below + 1]);
-      Rgb rgb;
-      for (int i = 0; i < 3; ++i)
-        rgb[static_cast<std::size_t>(i)] = static_cast<std::uint8_t>(255.0f * std::clamp(c[i], 0.0f, 1.0f) + 0.5f);
-      out.pixels.push_back(rgb);
-    }
+  out.width = width_;
+  out.height = height_;
+  out.pixels.resize(pixels_.size());
+  static_assert(sizeof(Color) == 3 * sizeof(float) && sizeof(Rgb) == 3, "channels are packed");
+  const auto* const from = reinterpret_cast<const float*>(pixels_.data());
+  auto* const to = reinterpret_cast<std::uint8_t*>(out.pixels.data());
+  const std::size_t channels = 3 * pixels_.size();
+  for (std::size_t i = 0; i < channels; ++i) {
+    const float level = 255.0f * from[i] + 0.5f;
+    to[i] = static_cast<std::uint8_t>(static_cast<int>(level > 0.0f ? (level < 255.0f ? level : 255.0f) : 0.0f));
+  }
   return out;
 }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// @file
-/// The canvas of the renderer: supersampled twofold, with antialiased lines and text.
+/// The canvas of the renderer, with antialiased lines and text.
 #pragma once
 
 #include <agrisee/io/png.hpp>
@@ -26,15 +26,12 @@ inline const Color kInk(0.13f, 0.16f, 0.20f), kFaint(0.45f, 0.49f, 0.54f);
 /// Shape of the ends of a line.
 enum class Cap { round, butt };
 
-/// A canvas of kScale times the width and height of the image. Coordinates and sizes are in pixels of the canvas ("fine
-/// pixels"), x to the right and y down.
+/// An image to draw on. Coordinates and sizes are in pixels, x to the right and y down.
 class Canvas {
  public:
-  static constexpr int kScale = 2;
-
-  Canvas(int image_width, int image_height)
-      : width_(kScale * image_width),
-        height_(kScale * image_height),
+  Canvas(int width, int height)
+      : width_(width),
+        height_(height),
         pixels_(static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_), Color::Ones()) {}
 
   int width() const { return width_; }
@@ -67,7 +64,7 @@ class Canvas {
   void line(const Eigen::Vector2f& a, const Eigen::Vector2f& b, float line_width, const Color& c, Cap cap,
             Alpha&& alpha);
 
-  /// The image; each of its pixels is the mean of four fine pixels.
+  /// The image, in colours of eight bits a channel.
   Image image() const;
 
  private:

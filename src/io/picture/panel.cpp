@@ -26,9 +26,7 @@ Panel::Panel(Canvas& canvas, const Viewport& viewport, const Eigen::Vector3d& di
   focal_ = static_cast<float>(0.5 * std::min(viewport.width, viewport.height) / std::tan(kOpening));
   cx_ = static_cast<float>(viewport.x) + 0.5f * static_cast<float>(viewport.width - 1);
   cy_ = static_cast<float>(viewport.y) + 0.5f * static_cast<float>(viewport.height - 1);
-  columns_ = (viewport.width + Canvas::kScale - 1) / Canvas::kScale;
-  rows_ = (viewport.height + Canvas::kScale - 1) / Canvas::kScale;
-  depth_.assign(static_cast<std::size_t>(columns_) * static_cast<std::size_t>(rows_), kFarAway);
+  depth_.assign(static_cast<std::size_t>(viewport.width) * static_cast<std::size_t>(viewport.height), kFarAway);
 
   // Find the nearest eye from which every subject projects into the viewport. Along each image axis the two outermost
   // planes of sight through the subjects bound the eye, and it is placed where these planes meet.
@@ -59,18 +57,16 @@ Eigen::Vector3f Panel::project(const Eigen::Vector3d& p) const {
   return {cx_ + focal_ * q.x() / z, cy_ + focal_ * q.y() / z, q.z()};
 }
 
-/// Call visit(cell, depth, weight, point, normal, behind) for every cell of every disc. `normal` is turned towards the
-/// eye; `behind` says whether the disc is seen from its back.
+/// Call visit(i, j, row, point, normal, behind) for every row of pixels across every disc; i and j are the column and
+/// row of the first. `normal` is turned towards the eye; `behind` says whether the disc is seen from its back.
 template <typename Visit>
 void Panel::rasterise(const Splats& splats, Visit&& visit) const {
   const Cloud& cloud = splats.cloud;
   const Eigen::Matrix3f rotation = rotation_.cast<float>();
-  constexpr float kSmallest = 1.0f, kLargest = 40.0f;  // bounds of a disc's radius (cells)
-  constexpr float kCell = Canvas::kScale;
-  const float focal = focal_ / kCell, inverse_focal = 1.0f / focal;  // all in cells from here on
-  const float cx = (cx_ - static_cast<float>(viewport_.x) - 0.5f * (kCell - 1.0f)) / kCell;
-  const float cy = (cy_ - static_cast<float>(viewport_.y) - 0.5f * (kCell - 1.0f)) / kCell;
+  const float focal = focal_, inverse_focal = 1.0f / focal;
+  const float cx = cx_ - static_cast<float>(viewport_.x), cy = cy_ - static_cast<float>(viewport_.y);
   constexpr float kSteepest = 0.25f;  // discs seen more edge-on than this cosine are turned, to close gaps
+  Row row;
   for (std::size_t point = 0; point < cloud.size(); ++point) {
     if (!is_finite(cloud.points[point])) continue;
     const Eigen::Vector3f p = (rotation_ * (cloud.points[point].cast<double>() - eye_)).cast<float>();
@@ -96,83 +92,112 @@ void Panel::rasterise(const Splats& splats, Visit&& visit) const {
     const float u = cx + p.x() * scale, v = cy + p.y() * scale;
     if (!(std::abs(u) < 1e6f && std::abs(v) < 1e6f)) continue;
     const float distance = plane.dot(p);
-    // A tilted disc appears as an ellipse. Perspective shifts its edge slightly; one cell is added for that.
+    // A tilted disc appears as an ellipse. Perspective shifts its edge slightly; one pixel is added for that.
     const float half_i = drawn * std::sqrt(std::max(1.0f - plane.x() * plane.x(), 0.0f)) + 1.0f;
     const float half_j = drawn * std::sqrt(std::max(1.0f - plane.y() * plane.y(), 0.0f)) + 1.0f;
     const int i0 = std::max(0, static_cast<int>(std::ceil(u - half_i)));
-    const int i1 = std::min(columns_ - 1, static_cast<int>(std::floor(u + half_i)));
+    const int i1 = std::min(viewport_.width - 1, static_cast<int>(std::floor(u + half_i)));
     const int j0 = std::max(0, static_cast<int>(std::ceil(v - half_j)));
-    const int j1 = std::min(rows_ - 1, static_cast<int>(std::floor(v + half_j)));
-    for (int j = j0; j <= j1; ++j)
+    const int j1 = std::min(viewport_.height - 1, static_cast<int>(std::floor(v + half_j)));
+    if (i0 > i1) continue;
+    for (int j = j0; j <= j1; ++j) {
+      const float y = (static_cast<float>(j) - cy) * inverse_focal;
       for (int i = i0; i <= i1; ++i) {
-        const Eigen::Vector3f ray((static_cast<float>(i) - cx) * inverse_focal,
-                                  (static_cast<float>(j) - cy) * inverse_focal, 1.0f);
-        const float z = distance / plane.dot(ray);
-        const float share = (z * ray - p).squaredNorm() * inverse_sq;
-        if (share < 1.0f) visit(cell(i, j), z, (1.0f - share) * (1.0f - share) + 1e-3f, point, n, behind);
+        const float x = (static_cast<float>(i) - cx) * inverse_focal;
+        const float z = distance / (plane.x() * x + plane.y() * y + plane.z());
+        const float dx = z * x - p.x(), dy = z * y - p.y(), dz = z - p.z();
+        row.depth[i - i0] = z;
+        row.share[i - i0] = (dx * dx + dy * dy + dz * dz) * inverse_sq;
       }
+      row.size = i1 - i0 + 1;
+      visit(i0, j, row, point, n, behind);
+    }
   }
 }
 
-/// A factor that darkens gaps and contacts (eye-dome lighting; Boucheny, 2009): 1 where no neighbouring cell is nearer
-/// to the eye; smaller the more of them are, and the nearer, up to a difference of depth of `deep` (m).
-float Panel::openness(int i, int j, float deep) const {
-  // Three rings of eight neighbours.
+/// Factors that darken gaps and contacts (eye-dome lighting; Boucheny, 2009), for the pixels [begin, end) of row j: 1
+/// where no pixel nearby is nearer to the eye; smaller the more of them are, and the nearer, up to a difference of
+/// depth of `deep` (m).
+void Panel::openness(int j, int begin, int end, float deep, std::vector<float>& out) const {
+  // Three rings of eight neighbors.
   static constexpr int kNeighbors[24][2] = {{2, 0},  {1, 1}, {0, 2},  {-1, 1}, {-2, 0},  {-1, -1}, {0, -2},  {1, -1},
                                             {5, 0},  {4, 4}, {0, 5},  {-4, 4}, {-5, 0},  {-4, -4}, {0, -5},  {4, -4},
                                             {11, 0}, {8, 8}, {0, 11}, {-8, 8}, {-11, 0}, {-8, -8}, {0, -11}, {8, -8}};
-  const float z = depth_[cell(i, j)], inverse = 1.0f / deep;
-  float sum = 0.0f;
-  for (const auto& [di, dj] : kNeighbors)
-    if (i + di >= 0 && j + dj >= 0 && i + di < columns_ && j + dj < rows_)
-      sum += std::clamp((z - depth_[cell(i + di, j + dj)]) * inverse, 0.0f, 1.0f);
-  return std::exp(-1.6f * sum / 24.0f);
+  const float inverse = 1.0f / deep;
+  out.assign(static_cast<std::size_t>(viewport_.width), 0.0f);
+  float* const sums = out.data();
+  const float* const own = &depth_[cell(0, j)];
+  for (const auto& [di, dj] : kNeighbors) {
+    if (j + dj < 0 || j + dj >= viewport_.height) continue;
+    const float* const other = &depth_[cell(0, j + dj)];
+    const int last = std::min(end, viewport_.width - di);
+    for (int i = std::max(begin, -di); i < last; ++i) {
+      const float nearer = (own[i] - other[i + di]) * inverse;
+      sums[i] += nearer > 0.0f ? (nearer < 1.0f ? nearer : 1.0f) : 0.0f;
+    }
+  }
+  for (int i = begin; i < end; ++i) sums[i] = std::exp(-1.6f / 24.0f * sums[i]);
 }
 
 void Panel::draw(const Splats& splats) {
-  rasterise(splats, [&](std::size_t at, float z, float, std::size_t, const Eigen::Vector3f&, bool) {
-    depth_[at] = std::min(depth_[at], z);
+  Extent drawn;
+  rasterise(splats, [&](int i0, int j, const Row& row, std::size_t, const Eigen::Vector3f&, bool) {
+    drawn.extend(i0, j, row.size);
+    float* const depth = &depth_[cell(i0, j)];
+    for (int i = 0; i < row.size; ++i)
+      depth[i] = row.share[i] < 1.0f && row.depth[i] < depth[i] ? row.depth[i] : depth[i];
   });
   // Blend the discs that are near the foremost one (Zwicker et al., "Surface Splatting", SIGGRAPH 2001).
-  std::vector<Pixel> pixels(depth_.size());
+  std::vector<Pixel> pixels(drawn.size());
   const float together = 1.5f * splats.radius;
-  rasterise(splats,
-            [&](std::size_t at, float z, float weight, std::size_t point, const Eigen::Vector3f& n, bool behind) {
-              Pixel& pixel = pixels[at];
-              if (z > depth_[at] + together) {
-                pixel.backed = true;
-                return;
-              }
-              const Color& c = splats.colors[point];
-              pixel.color += weight * (behind ? mix(c, Color(0.42f, 0.42f, 0.44f), 0.55f) : c);
-              pixel.normal += weight * n;
-              pixel.weight += weight;
-            });
-  shade(pixels, 8.0f * splats.radius);
+  rasterise(splats, [&](int i0, int j, const Row& row, std::size_t point, const Eigen::Vector3f& n, bool behind) {
+    Color c = splats.colors[point];
+    if (behind) c = mix(c, Color(0.42f, 0.42f, 0.44f), 0.55f);
+    const Eigen::Array4f color(c.x(), c.y(), c.z(), 1.0f), normal(n.x(), n.y(), n.z(), 0.0f);
+    Pixel* const first = &pixels[drawn.at(i0, j)];
+    const float* const depth = &depth_[cell(i0, j)];
+    for (int i = 0; i < row.size; ++i) {
+      if (!(row.share[i] < 1.0f)) continue;
+      Pixel& pixel = first[i];
+      if (row.depth[i] > depth[i] + together) {
+        pixel.normal[3] = 1.0f;
+        continue;
+      }
+      const float open = 1.0f - row.share[i], weight = open * open + 1e-3f;
+      pixel.color += weight * color;
+      pixel.normal += weight * normal;
+    }
+  });
+  shade(pixels, drawn, 8.0f * splats.radius);
 }
 
-/// Light the cells and put them onto the canvas. @param deep see openness()
-void Panel::shade(const std::vector<Pixel>& pixels, float deep) {
+/// Light the pixels and put them onto the canvas. @param deep see openness()
+void Panel::shade(const std::vector<Pixel>& pixels, const Extent& drawn, float deep) {
   constexpr float kOpaque = 0.08f;  // sum of weights; the border of a surface fades below it, where nothing is behind
   const Eigen::Vector3f light =
       Eigen::Vector3f(-0.45f, -0.60f, -0.66f).normalized();  // from behind the left shoulder of the viewer
   const Eigen::Vector3f halfway = (light + Eigen::Vector3f(0.0f, 0.0f, -1.0f)).normalized();
-  for (int j = 0; j < rows_; ++j)
-    for (int i = 0; i < columns_; ++i) {
-      const Pixel& pixel = pixels[cell(i, j)];
-      if (pixel.weight <= 0.0f) continue;
-      const Eigen::Vector3f n = pixel.normal.normalized();
+  std::vector<float> open;
+  for (int j = drawn.top; j < drawn.bottom; ++j) {
+    int begin = drawn.left, end = drawn.right;  // between the outermost pixels of the row that are drawn
+    while (begin < end && pixels[drawn.at(begin, j)].weight() <= 0.0f) ++begin;
+    while (begin < end && pixels[drawn.at(end - 1, j)].weight() <= 0.0f) --end;
+    openness(j, begin, end, deep, open);
+    for (int i = begin; i < end; ++i) {
+      const Pixel& pixel = pixels[drawn.at(i, j)];
+      const float weight = pixel.weight();
+      if (weight <= 0.0f) continue;
+      const Eigen::Vector3f n = pixel.normal.head<3>().matrix().normalized();
       const float facing = n.dot(light);
       const float diffuse = 0.42f + 0.62f * std::max(facing, 0.0f) + 0.08f * std::min(facing, 0.0f);
-      const float shine = 0.16f * std::pow(std::max(n.dot(halfway), 0.0f), 30.0f);
-      const Color lit = pixel.color / pixel.weight * diffuse + Color::Constant(shine);
-      const Color c = (lit * openness(i, j, deep)).cwiseMin(1.0f);
-      const float alpha = pixel.backed ? 1.0f : std::min(pixel.weight / kOpaque, 1.0f);
-      const int x0 = viewport_.x + Canvas::kScale * i, y0 = viewport_.y + Canvas::kScale * j;
-      for (int y = y0; y < std::min(y0 + Canvas::kScale, viewport_.y + viewport_.height); ++y)
-        for (int x = x0; x < std::min(x0 + Canvas::kScale, viewport_.x + viewport_.width); ++x)
-          canvas_.blend(x, y, c, alpha);
+      const float x = std::max(n.dot(halfway), 0.0f), x2 = x * x, x4 = x2 * x2, x8 = x4 * x4;
+      const float shine = 0.16f * x8 * x8 * x8 * x4 * x2;  // x to the power of 30
+      const Color lit = pixel.color.head<3>().matrix() / weight * diffuse + Color::Constant(shine);
+      const Color c = (lit * open[static_cast<std::size_t>(i)]).cwiseMin(1.0f);
+      const float alpha = pixel.is_backed() ? 1.0f : std::min(weight / kOpaque, 1.0f);
+      canvas_.blend(viewport_.x + i, viewport_.y + j, c, alpha);
     }
+  }
 }
 
 void Panel::line(const Eigen::Vector3d& a, const Eigen::Vector3d& b, const Color& c, const LineStyle& style, Cap cap) {

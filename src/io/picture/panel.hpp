@@ -5,11 +5,13 @@
 
 #include <agrisee/core/cloud.hpp>
 
+#include <limits>
+
 #include "io/picture/canvas.hpp"
 
 namespace agrisee::io {
 
-/// A part of the canvas, in fine pixels.
+/// A part of the canvas (pixels).
 struct Viewport {
   int x = 0, y = 0, width = 0, height = 0;
 };
@@ -23,7 +25,7 @@ struct Splats {
 
 /// How a line is drawn where it is visible, and where something is in front of it.
 struct LineStyle {
-  float width = 2.0f;   ///< fine pixels
+  float width = 1.0f;   ///< pixels
   float alpha = 1.0f;   ///< opacity where the line is visible
   float hidden = 0.0f;  ///< opacity where the line is hidden
 };
@@ -45,7 +47,7 @@ class Panel {
   /// Pixel of a point on the canvas; z is its depth (m), small or negative if it is behind the eye.
   Eigen::Vector3f project(const Eigen::Vector3d& p) const;
   Eigen::Vector2f pixel(const Eigen::Vector3d& p) const { return project(p).head<2>(); }
-  /// Fine pixels per metre at that depth (m).
+  /// Pixels per metre at that depth (m).
   float scale(float depth) const { return focal_ / depth; }
   const Eigen::Vector3d& eye() const { return eye_; }
   /// Unit axes of the view: right, down, forward.
@@ -53,24 +55,43 @@ class Panel {
   const Viewport& viewport() const { return viewport_; }
 
  private:
+  /// What the discs at a pixel add up to, in fours, which processors add at once.
   struct Pixel {
-    Color color = Color::Zero();
-    Eigen::Vector3f normal = Eigen::Vector3f::Zero();
-    float weight = 0.0f;
-    bool backed = false;  ///< another surface is behind the foremost
+    Eigen::Array4f color = Eigen::Array4f::Zero();   ///< times the weights; then the sum of the weights
+    Eigen::Array4f normal = Eigen::Array4f::Zero();  ///< times the weights; then 1 if another surface is behind
+    float weight() const { return color[3]; }
+    bool is_backed() const { return normal[3] > 0.0f; }
+  };
+  static constexpr float kSmallest = 1.0f, kLargest = 40.0f;  // bounds of a disc's radius (pixels)
+  /// A row of pixels across a disc.
+  struct Row {
+    float depth[2 * int(kLargest) + 4];  ///< of the disc's plane (m)
+    float share[2 * int(kLargest) + 4];  ///< squared distance from its center, over its squared radius
+    int size = 0;
+  };
+  /// The part of the viewport on which discs are drawn.
+  struct Extent {
+    int left = std::numeric_limits<int>::max(), top = left, right = 0, bottom = 0;
+    void extend(int i, int j, int width) {
+      left = std::min(left, i), right = std::max(right, i + width);
+      top = std::min(top, j), bottom = std::max(bottom, j + 1);
+    }
+    std::size_t size() const { return right > 0 ? at(right - 1, bottom - 1) + 1 : 0; }
+    std::size_t at(int i, int j) const {
+      return static_cast<std::size_t>(j - top) * static_cast<std::size_t>(right - left) +
+             static_cast<std::size_t>(i - left);
+    }
   };
   template <typename Visit>
   void rasterise(const Splats& splats, Visit&& visit) const;
-  float openness(int i, int j, float deep) const;
-  void shade(const std::vector<Pixel>& pixels, float deep);
-  /// Index of the cell in column i and row j.
+  void openness(int j, int begin, int end, float deep, std::vector<float>& out) const;
+  void shade(const std::vector<Pixel>& pixels, const Extent& drawn, float deep);
+  /// Index of the pixel in column i and row j of the viewport.
   std::size_t cell(int i, int j) const {
-    return static_cast<std::size_t>(j) * static_cast<std::size_t>(columns_) + static_cast<std::size_t>(i);
+    return static_cast<std::size_t>(j) * static_cast<std::size_t>(viewport_.width) + static_cast<std::size_t>(i);
   }
-  /// Depth of the cell that holds a pixel of the canvas.
-  float depth(int x, int y) const {
-    return depth_[cell((x - viewport_.x) / Canvas::kScale, (y - viewport_.y) / Canvas::kScale)];
-  }
+  /// Depth at a pixel of the canvas.
+  float depth(int x, int y) const { return depth_[cell(x - viewport_.x, y - viewport_.y)]; }
   bool inside(int x, int y) const {
     return x >= viewport_.x && y >= viewport_.y && x < viewport_.x + viewport_.width &&
            y < viewport_.y + viewport_.height;
@@ -81,9 +102,7 @@ class Panel {
   Eigen::Vector3d eye_ = Eigen::Vector3d::Zero();
   Eigen::Matrix3d rotation_ = Eigen::Matrix3d::Identity();  // rows: right, down, forward
   float focal_ = 1.0f, cx_ = 0.0f, cy_ = 0.0f;
-  // Discs are drawn in cells of kScale x kScale fine pixels, a pixel of the image each; lines and texts finer.
-  int columns_ = 0, rows_ = 0;
-  std::vector<float> depth_;  // depth of each cell (m); infinite where nothing is drawn
+  std::vector<float> depth_;  // of each pixel of the viewport (m); infinite where nothing is drawn
 };
 
 }  // namespace agrisee::io

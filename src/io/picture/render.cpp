@@ -12,7 +12,6 @@
 namespace agrisee::io {
 namespace {
 
-constexpr int kS = Canvas::kScale;
 const Color kPaper(0.985f, 0.988f, 0.992f);
 const Color kAxisColors[3] = {Color(0.86f, 0.15f, 0.15f), Color(0.13f, 0.62f, 0.22f), Color(0.14f, 0.33f, 0.86f)};
 const Color kUnlabelled(0.60f, 0.63f, 0.58f);
@@ -69,14 +68,14 @@ void draw_fruit(Canvas& canvas, Panel& panel, const std::vector<Fruit>& fruits, 
   for (const Fruit& fruit : fruits)
     if (fruit.body) {
       const Color c = mix(color(fruit_color(fruit.id)), kInk, 0.45f);
-      panel.polyline(outline(*fruit.body, panel.eye()), c, {1.6f * kS, 0.9f, 0.35f});
+      panel.polyline(outline(*fruit.body, panel.eye()), c, {1.6f, 0.9f, 0.35f});
     }
   std::vector<const Fruit*> shown;
   std::vector<Badge> wanted;
-  const float border = 1.2f * kS;
+  const float border = 1.2f;
   for (const Fruit& fruit : fruits) {
     if (!fruit.position().allFinite()) continue;
-    draw_frame(panel, fruit.pose(), 0.03, 2.2f * kS);
+    draw_frame(panel, fruit.pose(), 0.03, 2.2f);
     const Eigen::Vector3f at = panel.project(fruit.position());
     const Rectangle panel_edges = rectangle(panel.viewport());
     if (!(at.z() > 0.05f) || !((at.head<2>().array() >= panel_edges.min.array()).all() &&
@@ -119,16 +118,16 @@ std::vector<Eigen::Vector3d> frustum(const View& view, const sensor::Intrinsics&
 void draw_views(Panel& panel, const std::vector<View>& views, const sensor::Intrinsics& k) {
   for (std::size_t i = 1; i < views.size(); ++i)
     panel.line(views[i - 1].world_T_optical.translation(), views[i].world_T_optical.translation(),
-               mix(view_color(i, views.size()), Color::Ones(), 0.35f), {1.3f * kS, 0.9f, 0.25f});
+               mix(view_color(i, views.size()), Color::Ones(), 0.35f), {1.3f, 0.9f, 0.25f});
   for (std::size_t i = 0; i < views.size(); ++i) {
     const Color c = view_color(i, views.size());
     const std::vector<Eigen::Vector3d> f = frustum(views[i], k, 0.035);
-    const LineStyle style{1.5f * kS, 1.0f, 0.3f};
+    const LineStyle style{1.5f, 1.0f, 0.3f};
     for (std::size_t j = 1; j <= 4; ++j) {
       panel.line(f[0], f[j], c, style);
       panel.line(f[j], f[j % 4 + 1], c, style);
     }
-    panel.line(f[0], f[0] + 1e-6 * panel.axis(0), c, {5.0f * kS, 1.0f, 0.3f}, Cap::round);
+    panel.line(f[0], f[0] + 1e-6 * panel.axis(0), c, {5.0f, 1.0f, 0.3f}, Cap::round);
   }
 }
 
@@ -136,7 +135,7 @@ void draw_box(Panel& panel, const Aabb& box) {
   const std::vector<Eigen::Vector3d> c = corners(box);
   for (std::size_t i = 0; i < 8; ++i)
     for (std::size_t bit = 1; bit < 8; bit *= 2)
-      if (!(i & bit)) panel.line(c[i], c[i | bit], Color(0.50f, 0.55f, 0.62f), {1.0f * kS, 0.8f, 0.18f});
+      if (!(i & bit)) panel.line(c[i], c[i | bit], Color(0.50f, 0.55f, 0.62f), {1.0f, 0.8f, 0.18f});
 }
 
 /// Draw a scale bar in the corner of a panel. Its length is true at the depth of `at`.
@@ -149,9 +148,9 @@ Rectangle draw_scale(Canvas& canvas, const Panel& panel, const Eigen::Vector3d& 
   const float pixels = static_cast<float>(length) * per_metre;
   const Viewport& v = panel.viewport();
   const Eigen::Vector2f a(static_cast<float>(v.x) + 2.0f * size, static_cast<float>(v.y + v.height) - 2.0f * size);
-  canvas.line(a, a + Eigen::Vector2f(pixels, 0.0f), 1.6f * kS, kInk, 1.0f, Cap::butt);
+  canvas.line(a, a + Eigen::Vector2f(pixels, 0.0f), 1.6f, kInk, 1.0f, Cap::butt);
   for (const float x : {0.0f, pixels})
-    canvas.line(a + Eigen::Vector2f(x, -0.4f * size), a + Eigen::Vector2f(x, 0.4f * size), 1.6f * kS, kInk);
+    canvas.line(a + Eigen::Vector2f(x, -0.4f * size), a + Eigen::Vector2f(x, 0.4f * size), 1.6f, kInk);
   const std::string text = format(length * 1000.0) + " mm";
   canvas.text(a + Eigen::Vector2f(0.0f, -0.8f * size), 0.8f * size, text, kInk);
   const float width = std::max(pixels, Canvas::text_width(0.8f * size, text));
@@ -166,7 +165,7 @@ Rectangle draw_triad(Canvas& canvas, const Panel& panel, float size) {
                           static_cast<float>(v.y + v.height) - 3.2f * size);
   for (int i = 0; i < 3; ++i) {
     const Eigen::Vector2f tip(static_cast<float>(panel.axis(0)[i]), static_cast<float>(panel.axis(1)[i]));
-    canvas.line(o, o + 2.6f * size * tip, 1.6f * kS, kAxisColors[i]);
+    canvas.line(o, o + 2.6f * size * tip, 1.6f, kAxisColors[i]);
     const char name[] = {"xyz"[i], '\0'};
     const float width = Canvas::text_width(0.8f * size, name);
     if (tip.norm() > 0.25f)
@@ -205,7 +204,7 @@ void draw_title(Canvas& canvas, const ScanResult& result, const Workcell& workce
   if (start > used + 2.0f * size) canvas.text({start, base}, 0.8f * size, kNote, kFaint);  // else there is no room
 }
 
-/// The parts of the picture, in fine pixels.
+/// The parts of the picture, in pixels.
 struct Layout {
   float size;            ///< height of small capitals
   int title, legend;     ///< heights of the title at the top and the legend at the bottom
@@ -219,7 +218,7 @@ Layout layout_of(const Canvas& canvas, const std::vector<Fruit>& fruits) {
   const std::size_t rows = legend_rows(fruits, static_cast<float>(w), layout.size);
   layout.title = static_cast<int>(4.4f * layout.size);
   layout.legend = static_cast<int>((rows > 0 ? 1.0f + 2.15f * static_cast<float>(rows) : 0.6f) * layout.size);
-  const int middle = w / 2, gap = kS, panel_height = h - layout.title - layout.legend;
+  const int middle = w / 2, gap = 1, panel_height = h - layout.title - layout.legend;
   layout.left = {0, layout.title, middle - gap, panel_height};
   layout.right = {middle + gap, layout.title, w - middle - gap, panel_height};
   return layout;
