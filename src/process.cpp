@@ -166,6 +166,14 @@ void check_distance(const Cloud& cloud, const std::vector<Eigen::Vector3d>& sens
   }
 }
 
+/// The origin of the cluster frame where no scan volume is known.
+Eigen::Vector3d corner_of(const Cloud& cloud) {
+  Aabb box;
+  for (const auto& p : cloud.points) box.extend(p.cast<double>());
+  const Eigen::Vector3d robot = Eigen::Vector3d::Zero();
+  return box.empty() ? robot : cluster_origin(box, robot);
+}
+
 }  // namespace
 
 void check_origin(const Cloud& cloud, const CloudOrigin& origin) {
@@ -225,6 +233,7 @@ ScanResult process(Cloud&& cloud, const Parameters& parameters, const CloudOrigi
   const Indices finite = finite_indices(cloud);
   result.raw = finite.size() == cloud.size() ? std::move(cloud) : select(cloud, finite);
   if (result.raw.views.empty()) result.raw.views.assign(result.raw.size(), -1);
+  result.cluster_origin = origin.cluster_origin ? *origin.cluster_origin : corner_of(result.raw);
   Timing& t = result.seconds;
 
   // Clean: statistical outlier removal.
@@ -240,7 +249,7 @@ ScanResult process(Cloud&& cloud, const Parameters& parameters, const CloudOrigi
 
   // Locate: centroids, pose frames, fitted bodies.
   timed(t.locate,
-        [&] { result.fruits = locate(result.cloud, found, origin.cluster_origin, parameters, result.labels); });
+        [&] { result.fruits = locate(result.cloud, found, result.cluster_origin, parameters, result.labels); });
   result.trusses = found_trusses(result.fruits);
   t.total = t.filter + t.normals + t.segment + t.locate;
   return result;

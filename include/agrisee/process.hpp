@@ -21,7 +21,8 @@ struct CloudOrigin {
   std::vector<Eigen::Vector3d> sensors;  ///< sensor position (m) of each view that `cloud.views` names; may be empty
   std::optional<Eigen::Vector3d> viewpoint;  ///< one sensor position (m) for all points, for a cloud of a single view
   bool check_normals = false;                ///< also turn the cloud's own normals where they face away from the sensor
-  Eigen::Vector3d cluster_origin = Eigen::Vector3d::Zero();  ///< origin of the cluster frame {R} in world (m)
+  /// Origin of the cluster frame {R} in world (m); empty: that of the box around the cloud, seen from the origin.
+  std::optional<Eigen::Vector3d> cluster_origin;
 };
 
 /// Refuse what cannot be where a cloud was seen from. `process` calls it.

@@ -199,17 +199,18 @@ struct Timing {
 
 /// Everything that a scan, or the processing of a ready cloud, leaves behind.
 struct ScanResult {
-  std::vector<View> views;                           ///< in the order in which they were taken
-  StopReason stop_reason = StopReason::not_stopped;  ///< why there are no more
-  Cloud raw;                                         ///< the merged cloud before any filtering; `views` filled
-  Cloud cloud;                                       ///< the consolidated cloud: points, normals, views (world)
-  Labels labels;                                     ///< one per point of `cloud`: the fruit's id, or 0
-  std::vector<Fruit> fruits;                         ///< truss by truss, each from the top down
-  std::vector<FoundTruss> trusses;                   ///< from the top down by their highest fruit
-  std::optional<Completeness> completeness;          ///< as the planner estimates; empty if it does not
-  Timing seconds;                                    ///< of computing
-  std::vector<std::string> warnings;                 ///< what was put right and should be looked at, in sentences
-  BodyCounts bodies;                                 ///< what became of the round bodies that were proposed
+  std::vector<View> views;                                   ///< in the order in which they were taken
+  StopReason stop_reason = StopReason::not_stopped;          ///< why there are no more
+  Cloud raw;                                                 ///< the merged cloud before any filtering; `views` filled
+  Cloud cloud;                                               ///< the consolidated cloud: points, normals, views (world)
+  Labels labels;                                             ///< one per point of `cloud`: the fruit's id, or 0
+  Eigen::Vector3d cluster_origin = Eigen::Vector3d::Zero();  ///< origin of the cluster frame {R} (m, world)
+  std::vector<Fruit> fruits;                                 ///< truss by truss, each from the top down
+  std::vector<FoundTruss> trusses;                           ///< from the top down by their highest fruit
+  std::optional<Completeness> completeness;                  ///< as the planner estimates; empty if it does not
+  Timing seconds;                                            ///< of computing
+  std::vector<std::string> warnings;  ///< what was put right and should be looked at, in sentences
+  BodyCounts bodies;                  ///< what became of the round bodies that were proposed
 };
 
 /// How many of some views were discarded and why, in one sentence without a full stop; empty if none was. Defined in

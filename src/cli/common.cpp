@@ -121,7 +121,7 @@ void prepare_output(const std::string& folder, bool force) {
 
 void write_files(const std::string& folder, const ScanResult& result, const Workcell& workcell, const io::RunInfo& info,
                  const CommonOptions& options, const io::ScanHistory& history) {
-  io::write_result(folder, result, workcell, info);
+  io::write_result(folder, result, info);
   // The picture comes last: `scan --live` may have left a page already, which does not say that a result is complete.
   if (!options.no_report) io::write_scan_page(fs::path(folder) / kReport, result, workcell, info, history);
   if (!options.no_picture) io::write_picture(fs::path(folder) / kPicture, result, workcell);

@@ -2,7 +2,6 @@
 // agrisee process: locates the fruit in a cloud, or in the views of a camera, from another source.
 #include <agrisee/io/parameters.hpp>
 #include <agrisee/io/results.hpp>
-#include <agrisee/locate.hpp>
 #include <agrisee/process.hpp>
 #include <agrisee/version.hpp>
 
@@ -85,14 +84,12 @@ Processed process_cloud(const ProcessOptions& options, const Parameters& paramet
   const io::CloudFile file = read_cloud_input(options.cloud);
   if (file.dropped > 0)
     std::cerr << options.cloud << ": " << file.dropped << " points that are not finite were dropped\n";
-  CloudOrigin origin = origin_of(options, file.cloud);
+  const CloudOrigin origin = origin_of(options, file.cloud);
   check_cloud(options, file.cloud, parameters, origin);
   const Cloud cloud = parameters.fuse_surfaces ? thinned(file.cloud, parameters) : file.cloud;
   Processed out;
   out.workcell.name = name_of(options.cloud);
   for (const auto& p : cloud.points) out.workcell.scan_volume.extend(p.cast<double>());
-  if (!out.workcell.scan_volume.empty())
-    origin.cluster_origin = cluster_origin(out.workcell.scan_volume, Eigen::Vector3d::Zero());
   out.result = process(cloud, parameters, origin, {}, threads_of(options.threads));
   return out;
 }

@@ -172,7 +172,7 @@ void add_texts(std::vector<Seed>& seeds, const fs::path& folder) {
   result.fruits = {seed_fruit()};
   io::RunInfo info;
   info.scene = "seed";
-  io::write_run(folder / "run.json", result, scene.workcell, info);
+  io::write_run(folder / "run.json", result, info);
   io::write_fruits(folder / "fruits.json", result.fruits);
   io::write_views(folder / "views.csv", result.views);
   seeds.push_back({"records", "run", "r" + bytes_of(folder / "run.json")});

@@ -35,6 +35,7 @@ ScanResult some_result() {
   r.views[2].discard_reason = DiscardReason::contradicts_others;
   r.bodies.too_small = 5;
   r.stop_reason = StopReason::low_gain;
+  r.cluster_origin = {-0.17, 0.72, -0.02};
   Rng rng(3);
   for (int i = 0; i < 50; ++i) {
     r.raw.points.push_back(rng.direction().cast<float>());
@@ -95,14 +96,6 @@ ScanResult some_result() {
   return r;
 }
 
-Workcell some_cell() {
-  Workcell cell;
-  cell.name = "some";
-  cell.scan_volume.min = {-0.17, 0.40, -0.02};
-  cell.scan_volume.max = {0.17, 0.72, 0.42};
-  return cell;
-}
-
 io::RunInfo some_info() {
   io::RunInfo info;
   info.scene = "truss \"7\" \xC3\xA9";
@@ -121,7 +114,7 @@ io::RunInfo some_info() {
 TEST_CASE("a result folder holds every file of the contract and reads back") {
   const TempFolder folder;
   const ScanResult result = some_result();
-  io::write_result(folder / "new/result", result, some_cell(), some_info());
+  io::write_result(folder / "new/result", result, some_info());
   for (const char* name : {"cloud.ply", "cloud_raw.ply", "views.csv", "fruits.json", "fruits.csv", "run.json"})
     CHECK(std::filesystem::exists(folder / "new/result" / name));
   const auto dir = folder / "new/result";
@@ -207,7 +200,7 @@ TEST_CASE("a result folder holds every file of the contract and reads back") {
 
 TEST_CASE("the text files have the contract's keys and columns") {
   const TempFolder folder;
-  io::write_result(folder.path(), some_result(), some_cell(), some_info());
+  io::write_result(folder.path(), some_result(), some_info());
   const std::string views = slurp(folder / "views.csv");
   CHECK(views.rfind("view,x,y,z,dx,dy,dz,ox,oy,oz,qx,qy,qz,qw,q1,q2,q3,q4,q5,q6,points_in,points_new,plan_s\n0,0,0.1,0."
                     "3333333333333333,",
@@ -298,8 +291,8 @@ TEST_CASE("the text files have the contract's keys and columns") {
 
 TEST_CASE("equal results leave equal bytes") {
   const TempFolder a, b;
-  io::write_result(a.path(), some_result(), some_cell(), some_info());
-  io::write_result(b.path(), some_result(), some_cell(), some_info());
+  io::write_result(a.path(), some_result(), some_info());
+  io::write_result(b.path(), some_result(), some_info());
   for (const char* name : {"cloud.ply", "cloud_raw.ply", "views.csv", "fruits.json", "fruits.csv", "run.json"})
     CHECK(slurp(a / name) == slurp(b / name));
   CHECK(a.files() == 6);
@@ -319,7 +312,7 @@ TEST_CASE("the time is that of the clock, or the one that SOURCE_DATE_EPOCH give
 
 TEST_CASE("an empty result is a result") {
   const TempFolder folder;
-  io::write_result(folder.path(), ScanResult{}, Workcell{}, io::RunInfo{});
+  io::write_result(folder.path(), ScanResult{}, io::RunInfo{});
   CHECK(io::read_views(folder / "views.csv").empty());
   CHECK(io::read_fruits(folder / "fruits.json").empty());
   CHECK(io::read_cloud(folder / "cloud.ply").cloud.empty());
@@ -346,7 +339,7 @@ TEST_CASE("a result that is not finite or does not fit together is not written")
     ScanResult bad = some_result();
     spoil(bad);
     INFO(what);
-    CHECK_THROWS_AS(io::write_result(folder.path(), bad, some_cell(), some_info()), InputError);
+    CHECK_THROWS_AS(io::write_result(folder.path(), bad, some_info()), InputError);
     CHECK(folder.files() == 0);
   };
   refuse("centroid", [](ScanResult& r) { r.fruits[1].centroid.x() = kNan; });
@@ -365,15 +358,15 @@ TEST_CASE("a result that is not finite or does not fit together is not written")
   refuse("views of points", [](ScanResult& r) { r.raw.views.pop_back(); });
   io::RunInfo info = some_info();
   info.parameters_json = "{";
-  CHECK_THROWS_AS(io::write_result(folder.path(), some_result(), some_cell(), info), InputError);
+  CHECK_THROWS_AS(io::write_result(folder.path(), some_result(), info), InputError);
   CHECK(folder.files() == 0);
   folder.file("plain", "a file");
-  CHECK_THROWS_AS(io::write_result(folder / "plain", some_result(), some_cell(), some_info()), FileError);
+  CHECK_THROWS_AS(io::write_result(folder / "plain", some_result(), some_info()), FileError);
 }
 
 TEST_CASE("result files that are not right are refused by name") {
   const TempFolder folder;
-  io::write_result(folder.path(), some_result(), some_cell(), some_info());
+  io::write_result(folder.path(), some_result(), some_info());
   const auto views = [](const auto& p) { io::read_views(p); };
   const auto fruits = [](const auto& p) { io::read_fruits(p); };
   const auto run = [](const auto& p) { io::read_run(p); };

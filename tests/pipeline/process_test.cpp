@@ -167,6 +167,23 @@ TEST_CASE("a result without fruit says why") {
   CHECK(why_no_fruit(flat).find("too flat") != std::string::npos);
 }
 
+TEST_CASE("the cluster frame of a ready cloud is known without being asked for") {
+  const Cloud cloud = seen();
+  const ScanResult result = process(cloud);
+  Eigen::Vector3f low = cloud.points[0], high = low;
+  for (const auto& p : cloud.points) low = low.cwiseMin(p), high = high.cwiseMax(p);
+  // As seen from the origin of the frame: the lowest corner, on the left, at the back.
+  CHECK(result.cluster_origin.isApprox(Eigen::Vector3d(double(low.x()), double(high.y()), double(low.z())), 1e-6));
+  REQUIRE(result.fruits.size() == kFruit.size());
+  for (const Fruit& f : result.fruits) CHECK(f.position_cluster().isApprox(f.position() - result.cluster_origin, 1e-9));
+  CloudOrigin origin;
+  origin.cluster_origin = Eigen::Vector3d(1.0, 2.0, 3.0);
+  const ScanResult told = process(cloud, {}, origin);
+  CHECK(told.cluster_origin == *origin.cluster_origin);
+  CHECK(told.fruits[0].position_cluster().isApprox(told.fruits[0].position() - *origin.cluster_origin, 1e-9));
+  CHECK(process(Cloud()).cluster_origin.isZero());
+}
+
 TEST_CASE("normals that are missing are estimated on their neighbours' side") {
   const Cloud cloud = seen();
   Cloud some = cloud, none = cloud;

@@ -6,7 +6,6 @@
 #pragma once
 
 #include <agrisee/result.hpp>
-#include <agrisee/workcell.hpp>
 
 #include <filesystem>
 #include <string>
@@ -79,17 +78,15 @@ void write_fruits_csv(const std::filesystem::path& path, const std::vector<Fruit
 /// `views_discarded` counts the views that were discarded because their pose was wrong. `completeness` holds the
 /// planner's estimates of the shares of the fruit's surface that have been seen (`seen`) and that the arm can observe
 /// at all
-/// (`observable`). `cluster_origin_world` is the origin of the cluster frame {R}, if the workcell has a scan volume.
+/// (`observable`). `cluster_origin_world` is the origin of the cluster frame {R}.
 /// @throws InputError when `parameters_json` is not JSON  @throws FileError when it cannot be written
-void write_run(const std::filesystem::path& path, const ScanResult& result, const Workcell& workcell,
-               const RunInfo& info);
+void write_run(const std::filesystem::path& path, const ScanResult& result, const RunInfo& info);
 
 /// Write all files of a result into `folder`, which is created if necessary. run.json is written last, so a folder with
 /// run.json holds a complete result.
 /// @throws InputError for a result that is not finite or whose labels are not one per point; then nothing is written
 /// @throws FileError when a file cannot be written
-void write_result(const std::filesystem::path& folder, const ScanResult& result, const Workcell& workcell,
-                  const RunInfo& info);
+void write_result(const std::filesystem::path& folder, const ScanResult& result, const RunInfo& info);
 
 /// Read views.csv. Columns may be in any order; unknown columns are skipped. Only `view`, `x`, `y` and `z` are
 /// required: where there are no others, rotations are the identity, and the rest is zero or absent.

@@ -5,6 +5,7 @@
 
 #include <agrisee/io/depth_picture.hpp>
 #include <agrisee/io/results.hpp>
+#include <agrisee/workcell.hpp>
 
 #include <filesystem>
 #include <string>

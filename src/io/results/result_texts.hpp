@@ -18,6 +18,6 @@ std::string fruits_text(const std::vector<Fruit>& fruits);
 /// fruits.csv
 std::string fruits_csv_text(const std::vector<Fruit>& fruits);
 /// run.json
-std::string run_text(const ScanResult& result, const Workcell& workcell, const RunInfo& info);
+std::string run_text(const ScanResult& result, const RunInfo& info);
 
 }  // namespace agrisee::io

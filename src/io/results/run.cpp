@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <agrisee/io/ply.hpp>
 #include <agrisee/io/results.hpp>
-#include <agrisee/locate.hpp>
 
 #include <algorithm>
 
@@ -24,7 +23,7 @@ Json parameters_of(const RunInfo& info) {
 
 }  // namespace
 
-std::string run_text(const ScanResult& result, const Workcell& workcell, const RunInfo& info) {
+std::string run_text(const ScanResult& result, const RunInfo& info) {
   Json j;
   j["format_version"] = kFormatVersion;
   j["scene"] = info.scene;
@@ -66,9 +65,7 @@ std::string run_text(const ScanResult& result, const Workcell& workcell, const R
     j["completeness"]["seen"] = result.completeness->seen;
     j["completeness"]["observable"] = result.completeness->observable;
   }
-  if (!workcell.scan_volume.empty())
-    j["cluster_origin_world"] = json_list(cluster_origin(workcell.scan_volume, workcell.world_T_base.translation()),
-                                          "the scan volume is not finite");
+  j["cluster_origin_world"] = json_list(result.cluster_origin, "the origin of the cluster frame is not finite");
   Json& seconds = j["seconds"];
   Timing::fields(result.seconds, [&](const char* stage, double value) {
     check_input(std::isfinite(value), "write_run: a time is not finite");
@@ -86,17 +83,15 @@ void check_result(const ScanResult& result) {
               "write_result: not one normal per point");
 }
 
-void write_run(const std::filesystem::path& path, const ScanResult& result, const Workcell& workcell,
-               const RunInfo& info) {
-  write_file(path, run_text(result, workcell, info));
+void write_run(const std::filesystem::path& path, const ScanResult& result, const RunInfo& info) {
+  write_file(path, run_text(result, info));
 }
 
-void write_result(const std::filesystem::path& folder, const ScanResult& result, const Workcell& workcell,
-                  const RunInfo& info) {
+void write_result(const std::filesystem::path& folder, const ScanResult& result, const RunInfo& info) {
   check_result(result);
   // Compose everything first: if a value is invalid, nothing is written.
   const std::string views = views_text(result.views), fruits = fruits_text(result.fruits),
-                    table = fruits_csv_text(result.fruits), run = run_text(result, workcell, info);
+                    table = fruits_csv_text(result.fruits), run = run_text(result, info);
   std::error_code error;
   std::filesystem::create_directories(folder, error);
   if (error) fail(folder, "cannot be created: " + error.message());
