@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <agrisee/cloud/convexity.hpp>
+#include <agrisee/cloud/hidden_points.hpp>
 #include <agrisee/cloud/normals.hpp>
 #include <agrisee/cloud/orient_normals.hpp>
 #include <agrisee/cloud/sor.hpp>
@@ -14,6 +16,7 @@
 #include <agrisee/process.hpp>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <string>
 
@@ -33,13 +36,18 @@ std::optional<Eigen::Vector3d> seen_from(const Cloud& cloud, std::size_t i, cons
   return origin.viewpoint;
 }
 
+/// Standard deviation (m) of the points about their own surface, from neighborhoods of a certain radius (m).
+double noise_within(const Cloud& cloud, double radius, const BodyParameters& bodies) {
+  return estimate_noise(cloud, Grid<float>(cloud, static_cast<float>(radius)), radius,
+                        std::sqrt(bodies.radius_min * bodies.radius_max));
+}
+
 /// Neighborhoods for normals that suit the cloud: wider where it is sparse, and wider again where it is noisy.
 /// @return the standard deviation (m) of the points about their own surface
 double adapt_to_noise(const Cloud& cloud, double spacing, const Parameters& parameters, NormalParameters& normals) {
   const BodyParameters& bodies = parameters.split.bodies;
   normals.radius = parameters.normal_reach * spacing;
-  const double noise = estimate_noise(cloud, Grid<float>(cloud, static_cast<float>(normals.radius)), normals.radius,
-                                      std::sqrt(bodies.radius_min * bodies.radius_max));
+  const double noise = noise_within(cloud, normals.radius, bodies);
   // A slope needs eight standard deviations across; more than half a fruit's radius would flatten it.
   normals.radius = std::max(normals.radius, std::min(8.0 * noise, 0.5 * bodies.radius_min));
   const double across = std::min(normals.radius / spacing, 20.0);
@@ -174,6 +182,50 @@ Eigen::Vector3d corner_of(const Cloud& cloud) {
   return box.empty() ? robot : cluster_origin(box, robot);
 }
 
+/// "34 % of the points"
+std::string percent_of(double share, const char* what) {
+  return std::to_string(std::lround(100.0 * share)) + " % of " + what;
+}
+
+/// What speaks against one viewpoint. @throws InputError with it, unless the viewpoint is trusted or the doubt is small
+void doubt(const std::string& what, bool small, const CloudOrigin& origin, std::vector<std::string>& warnings) {
+  if (!small && !origin.trust_viewpoint) throw InputError(what);
+  warnings.push_back(what);
+}
+
+/// Whether one viewpoint is given for all points.
+bool has_one_viewpoint(const CloudOrigin& origin) { return origin.viewpoint && origin.sensors.empty(); }
+
+/// Doubt one viewpoint from which many points would be hidden behind others. Those of single views, real ones and such
+/// with much noise included, hide less than 1 % of their points, those of three views and more at least 6 %.
+void check_hidden(const Cloud& cloud, const Parameters& parameters, const CloudOrigin& origin,
+                  std::vector<std::string>& warnings) {
+  constexpr double kMost = 0.03;
+  if (!has_one_viewpoint(origin) || cloud.empty()) return;
+  const BodyParameters& bodies = parameters.split.bodies;
+  const double noise = noise_within(cloud, 0.5 * bodies.radius_min, bodies);
+  const double hidden = hidden_share(cloud, *origin.viewpoint, bodies.radius_min + 4.0 * noise);
+  if (hidden > kMost)
+    doubt(percent_of(hidden,
+                     "the points lie hidden behind others as seen from the viewpoint, so they were seen from "
+                     "elsewhere"),
+          false, origin, warnings);
+}
+
+/// Doubt one viewpoint on the hollow side of what should be fruit.
+void check_side(const Cloud& cloud, const Parameters& parameters, const CloudOrigin& origin,
+                std::vector<std::string>& warnings) {
+  constexpr double kLeast = 1.0 / 3.0, kUsual = 0.45;  // share that bulges; on real trees seen rightly 0.55 or more
+  if (!has_one_viewpoint(origin)) return;
+  const BodyParameters& bodies = parameters.split.bodies;
+  const auto convex = convex_share(cloud, bodies.radius_min, bodies.radius_max);
+  if (convex && *convex < kUsual)
+    doubt(percent_of(1.0 - *convex,
+                     "what is curved as fruit is hollow as seen from the viewpoint, so it may lie behind "
+                     "the cloud"),
+          *convex >= kLeast, origin, warnings);
+}
+
 }  // namespace
 
 void check_origin(const Cloud& cloud, const CloudOrigin& origin) {
@@ -233,6 +285,7 @@ ScanResult process(Cloud&& cloud, const Parameters& parameters, const CloudOrigi
   const Indices finite = finite_indices(cloud);
   result.raw = finite.size() == cloud.size() ? std::move(cloud) : select(cloud, finite);
   if (result.raw.views.empty()) result.raw.views.assign(result.raw.size(), -1);
+  check_hidden(result.raw, parameters, origin, result.warnings);
   result.cluster_origin = origin.cluster_origin ? *origin.cluster_origin : corner_of(result.raw);
   Timing& t = result.seconds;
 
@@ -242,6 +295,7 @@ ScanResult process(Cloud&& cloud, const Parameters& parameters, const CloudOrigi
 
   // Split: region growing, DBSCAN on the residual, bodies that compete for the points.
   const double noise = timed(t.normals, [&] { return provide_normals(result.cloud, parameters, origin, threads); });
+  check_side(result.cloud, parameters, origin, result.warnings);
   SplitParameters fitted = parameters.split;
   fitted.bodies.fit.noise = std::max(fitted.bodies.fit.noise, 4.0 * noise);
   const Split found = timed(t.segment, [&] { return split(result.cloud, fitted, seen_through, threads); });

@@ -21,6 +21,7 @@ struct CloudOrigin {
   std::vector<Eigen::Vector3d> sensors;  ///< sensor position (m) of each view that `cloud.views` names; may be empty
   std::optional<Eigen::Vector3d> viewpoint;  ///< one sensor position (m) for all points, for a cloud of a single view
   bool check_normals = false;                ///< also turn the cloud's own normals where they face away from the sensor
+  bool trust_viewpoint = false;              ///< use `viewpoint` although the points speak against it
   /// Origin of the cluster frame {R} in world (m); empty: that of the box around the cloud, seen from the origin.
   std::optional<Eigen::Vector3d> cluster_origin;
 };
@@ -53,13 +54,19 @@ void check_units(const Cloud& cloud, const Parameters& parameters = {});
 /// fitted with four times the noise that the cloud shows locally (`split.bodies.fit.noise`), because the errors of a
 /// ready cloud extend beyond the neighborhood in which they can be told from the surface. Any number of points is
 /// accepted; too few to form a body give no fruit.
+///
+/// One viewpoint is refused where the points speak against it: where more than 3 % of them lie hidden behind others
+/// (cloud/hidden_points.hpp), so that they were seen from elsewhere, or where less than a third of what is curved as
+/// fruit bulges towards it (cloud/convexity.hpp), so that it is on the wrong side. With `origin.trust_viewpoint`, and
+/// where the doubt is smaller, that is a warning of the result.
 /// @param cloud points (m), any frame; normals and views where it has them
 /// @param parameters of all stages
 /// @param origin where the points were seen from
 /// @param seen_through evidence of free space from the views, or empty
 /// @param threads number of threads; the result does not depend on it
 /// @throws ParameterError; InputError for a cloud that cannot be in metres (check_units), for one viewpoint of several
-///   views (check_origin), or when a point's view has no sensor position; Cancelled (core/cancellation.hpp)
+///   views (check_origin), when a point's view has no sensor position, or when the points speak against the viewpoint;
+///   Cancelled (core/cancellation.hpp)
 ScanResult process(const Cloud& cloud, const Parameters& parameters = {}, const CloudOrigin& origin = {},
                    const SeenThrough& seen_through = {}, int threads = 1);
 

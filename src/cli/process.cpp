@@ -28,6 +28,7 @@ struct ProcessOptions : CommonOptions {
 CloudOrigin origin_of(const ProcessOptions& options, const Cloud& cloud) {
   CloudOrigin origin;
   origin.check_normals = true;
+  origin.trust_viewpoint = options.turn_normals;
   if (!options.viewpoint.empty())
     origin.viewpoint = Eigen::Vector3d(options.viewpoint[0], options.viewpoint[1], options.viewpoint[2]);
   if (options.views.empty()) return origin;
@@ -41,7 +42,7 @@ CloudOrigin origin_of(const ProcessOptions& options, const Cloud& cloud) {
 }
 
 /// Refuse a cloud that cannot be what the options say: in metres, and seen from one viewpoint.
-/// @throws FileError, UsageError
+/// @throws FileError
 void check_cloud(const ProcessOptions& options, const Cloud& cloud, const Parameters& parameters,
                  const CloudOrigin& origin) {
   std::size_t away = 0;
@@ -53,9 +54,9 @@ void check_cloud(const ProcessOptions& options, const Cloud& cloud, const Parame
     throw FileError(options.cloud + ": " + e.what() + (origin.viewpoint && cloud.views.size() ? " (--views)" : ""));
   }
   if (100 * away > cloud.size())
-    throw UsageError(options.cloud + ": " + std::to_string(away) + " of its " + std::to_string(cloud.size()) +
-                     " normals face away from --viewpoint. If the cloud was seen from several sides, leave --viewpoint "
-                     "out, which keeps the normals; if the normals are wrong, add --turn-normals");
+    throw FileError(options.cloud + ": " + std::to_string(away) + " of its " + std::to_string(cloud.size()) +
+                    " normals face away from --viewpoint. If the cloud was seen from several sides, leave --viewpoint "
+                    "out, which keeps the normals; if the normals are wrong, add --turn-normals");
 }
 
 /// @throws UsageError if a file of the result would overwrite the cloud
@@ -90,7 +91,13 @@ Processed process_cloud(const ProcessOptions& options, const Parameters& paramet
   Processed out;
   out.workcell.name = name_of(options.cloud);
   for (const auto& p : cloud.points) out.workcell.scan_volume.extend(p.cast<double>());
-  out.result = process(cloud, parameters, origin, {}, threads_of(options.threads));
+  try {
+    out.result = process(cloud, parameters, origin, {}, threads_of(options.threads));
+  } catch (const InputError& e) {  // the rest was checked before
+    throw FileError(options.cloud + ": " + e.what() +
+                    ". If several views saw the cloud, leave --viewpoint out, or give their positions (--views); if "
+                    "--viewpoint is right, add --turn-normals");
+  }
   return out;
 }
 
@@ -129,7 +136,8 @@ void add_process(CLI::App& app, Run& run) {
       ->delimiter(',')
       ->expected(3);
   command->add_flag("--turn-normals", options->turn_normals,
-                    "turn normals of the file that face away from --viewpoint, however many they are");
+                    "believe --viewpoint: turn normals of the file that face away from it, however many they are, "
+                    "and do not refuse it");
   command
       ->add_option("--views", options->views,
                    "views.csv with the sensor poses that the property 'view' of the points refers to")
@@ -138,7 +146,8 @@ void add_process(CLI::App& app, Run& run) {
   command->footer(
       "Normals in the file are kept; those that face away from the view of their point are turned. Missing normals\n"
       "are estimated; without viewpoint or views they are turned so that neighbors agree. --viewpoint is refused for\n"
-      "points of several views, and where more than 1 % of the normals face away from it.\n"
+      "points of several views, where more than 1 % of the normals face away from it, where more than 3 % of the\n"
+      "points lie hidden behind others, and where it lies on the hollow side of what is curved.\n"
       "Examples:\n"
       "  agrisee process cloud.ply -o result\n"
       "  agrisee process recorded/views.yaml -o result\n"

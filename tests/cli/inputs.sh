@@ -82,6 +82,18 @@ PY
     grep -q '"scene": "standard input"' pipe/run.json || fail "the input is not named"
     echo '%PDF' | "$agrisee" process - -o d 2>err.txt && fail "a PDF is no cloud"
     grep -q 'agrisee: standard input: is no point cloud' err.txt || fail "standard input is not named: $(cat err.txt)"
+    # One viewpoint for a cloud of several views that does not say so, and one behind the cloud of a single view.
+    for f in xyz npy; do
+      expect 2 "c.$f: [0-9]+ % of the points lie hidden behind others.*--views.*--turn-normals" process c.$f -o d --viewpoint 0,0,0.2
+    done
+    python3 - <<'PY'
+rows = [line.rsplit(",", 1) for line in open("c.csv").read().splitlines()]
+open("first.csv", "w").write("\n".join(point for point, view in rows if view in ("view", "0")) + "\n")
+PY
+    expect 2 'first.csv: [0-9]+ % of what is curved as fruit is hollow as seen from the viewpoint' process first.csv -o d --viewpoint 0,1.2,0.2
+    [ ! -e d ] || fail "a refused viewpoint wrote something"
+    expect 0 '' process first.csv -o first --viewpoint 0,0,0.2 && ! grep -q '^Note' out.txt || fail "the right viewpoint: $(cat out.txt)"
+    expect 0 '' process first.csv -o behind --viewpoint 0,1.2,0.2 --turn-normals && grep -q '^Note: .* is hollow as seen from the viewpoint' out.txt || fail "no note"
     expect 0 '' process c.csv -o csv --views positions.csv && expect 0 '' process r/cloud_raw.ply -o full --views r/views.csv
     cmp csv/fruits.json full/fruits.json || fail "positions alone give other fruit than a whole views.csv"
     mkdir season && cp -r t season/t1 && cp -r t season/t2

@@ -131,7 +131,7 @@ PY
     SOURCE_DATE_EPOCH=1774098475 expect 0 '' process r1/cloud.ply -o again
     grep -q '"time": "2026-03-21T13:07:55Z"' again/run.json || fail "SOURCE_DATE_EPOCH does not set the time"
     # One viewpoint for what several views saw would turn normals that are right.
-    expect 1 'normals face away from --viewpoint.*--turn-normals' process r1/cloud.ply -o turned --viewpoint 0,0,0.2
+    expect 2 'normals face away from --viewpoint.*--turn-normals' process r1/cloud.ply -o turned --viewpoint 0,0,0.2
     expect 2 'cloud_raw.ply: its points come from several views.*--views' process r1/cloud_raw.ply -o turned --viewpoint 0,0,0.2
     [ ! -e turned ] || fail "a refused viewpoint wrote something"
     expect 0 '' process r1/cloud.ply -o turned --viewpoint 0,0,0.2 --turn-normals

@@ -178,6 +178,21 @@ TEST_CASE("smaller and larger fruit need another radius range and nothing else")
   }
 }
 
+TEST_CASE("a body is too large by any mean of its semi-axes") {
+  const auto found = [](const Eigen::Vector3d& radii) {
+    Cloud ball, cloud;
+    test::add_sphere(ball, {{0, 0, 0}, 1.0}, 0.05, test::everywhere);
+    for (const auto& p : ball.points) {
+      const Eigen::Vector3d d = p.cast<double>();
+      cloud.points.push_back(d.cwiseProduct(radii).cast<float>());
+      cloud.normals.push_back(d.cwiseQuotient(radii).normalized().cast<float>());
+    }
+    return split(cloud).found.size();
+  };
+  CHECK(found({0.060, 0.055, 0.050}) == 1);
+  CHECK(found({0.080, 0.057, 0.044}) == 0);  // harmonic mean 57 mm, arithmetic mean 60 mm; the limit is 57.5 mm
+}
+
 TEST_CASE("the split follows a rigid motion of the cloud") {
   Cloud cloud;
   test::add_sphere(

@@ -184,6 +184,39 @@ TEST_CASE("the cluster frame of a ready cloud is known without being asked for")
   CHECK(process(Cloud()).cluster_origin.isZero());
 }
 
+TEST_CASE("one viewpoint is refused for points that hide one another, unless it is trusted") {
+  Cloud cloud = seen(0.001);
+  cloud.normals.clear();
+  cloud.views.clear();
+  CHECK(process(cloud, {}, from_eye(false)).warnings.empty());
+  const std::size_t front = cloud.size();
+  for (std::size_t i = 0; i < front; ++i) {  // the backs of the fruit
+    const Eigen::Vector3f p = cloud.points[i], center = kFruit[p.x() > 0.0f ? 1 : 0].center.cast<float>();
+    cloud.points.push_back(2.0f * center - p);
+  }
+  CHECK_THROWS_WITH(process(cloud, {}, from_eye(false)), test::says(" % of the points lie hidden behind others"));
+  CloudOrigin trusted = from_eye(false);
+  trusted.trust_viewpoint = true;
+  const ScanResult result = process(cloud, {}, trusted);
+  REQUIRE_FALSE(result.warnings.empty());
+  CHECK_THAT(result.warnings[0], test::says(" % of the points lie hidden behind others"));
+  CHECK(process(cloud).warnings.empty());  // without a viewpoint there is nothing to doubt
+}
+
+TEST_CASE("a viewpoint behind what was seen is refused, and invents no fruit") {
+  Cloud cloud = seen(0.0005);
+  cloud.normals.clear();
+  cloud.views.clear();
+  CloudOrigin behind;
+  behind.viewpoint = Eigen::Vector3d(0.0, 1.2, 0.2);
+  CHECK_THROWS_WITH(process(cloud, {}, behind), test::says("so it may lie behind the cloud"));
+  behind.trust_viewpoint = true;
+  const ScanResult result = process(cloud, {}, behind);
+  REQUIRE(result.warnings.size() == 1);
+  CHECK_THAT(result.warnings[0], test::says("what is curved as fruit is hollow"));
+  for (const Fruit& f : result.fruits) CHECK(f.body->radii.mean() <= 1.15 * Parameters().split.bodies.radius_max);
+}
+
 TEST_CASE("normals that are missing are estimated on their neighbours' side") {
   const Cloud cloud = seen();
   Cloud some = cloud, none = cloud;

@@ -27,7 +27,7 @@ writeFileSync(scene, readFileSync(scene, 'utf8').replace(/width: *1024/, 'width:
 run('scan', 't/scene.yaml', '-o', 'scan', '--noise', 'l515', '--seed', '5', '--max-views', '5');
 run('scan', 't/scene.yaml', '-o', 'one', '--max-views', '1');
 run('scan', 't/scene.yaml', '-o', 'see', '--planner', 'see', '--max-views', '3');
-run('process', 'scan/cloud.ply', '-o', 'processed', '--viewpoint', '0,0,0.2');
+run('process', 'scan/cloud.ply', '-o', 'processed');
 const ply = (points) => `ply\nformat ascii 1.0\nelement vertex ${points.length}\nproperty float x\nproperty float y\nproperty float z\nend_header\n${points.join('\n')}\n`;
 writeFileSync(join(work, 'three.ply'), ply(['0 0 0', '1 1 1', '1e30 0 0']));
 writeFileSync(join(work, 'none.ply'), ply([]));

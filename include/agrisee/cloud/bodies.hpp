@@ -50,6 +50,11 @@ inline double loose_cosine(const BodyParameters& parameters) {
   return std::cos(std::min(kPi / 2, 1.6 * parameters.max_angle));
 }
 
+/// Whether an ellipsoid could be a fruit by its size, however its mean radius is taken.
+inline bool plausible(const Ellipsoid& body, const BodyParameters& parameters) {
+  return parameters.plausible(body.mean_radius()) && parameters.plausible(body.mean_semi_axis());
+}
+
 /// How a body fares against the points that are still free.
 struct Verdict {
   double coverage = 0.0;      ///< share of the surface covered by points on it
@@ -229,13 +234,13 @@ class Competition {
   /// Judge an entry by the free points; it is alive while it may win.
   /// @return the count of the first test that it fails; null when it is alive
   std::size_t BodyCounts::*assess(Entry& e) const {
-    const double radius = e.fit.body.mean_radius();
+    const bool right_size = plausible(e.fit.body, parameters_);
     e.verdict = judge(cloud_, grid_, taken_, e.fit.body, parameters_, seen_through_);
-    e.alive = parameters_.plausible(radius) && e.verdict.score() >= parameters_.min_coverage &&
-              e.verdict.roundness >= parameters_.min_roundness;
+    e.alive =
+        right_size && e.verdict.score() >= parameters_.min_coverage && e.verdict.roundness >= parameters_.min_roundness;
     if (e.alive) return nullptr;
-    if (!parameters_.plausible(radius))
-      return radius < parameters_.radius_min ? &BodyCounts::too_small : &BodyCounts::too_large;
+    if (!right_size)
+      return e.fit.body.mean_radius() < parameters_.radius_min ? &BodyCounts::too_small : &BodyCounts::too_large;
     if (!(e.verdict.coverage >= parameters_.min_coverage)) return &BodyCounts::little_seen;
     if (!(e.verdict.score() >= parameters_.min_coverage)) return &BodyCounts::contradicted;
     return &BodyCounts::too_flat;

@@ -60,6 +60,8 @@ struct Ellipsoid {
   Eigen::Vector3d normal(const Eigen::Vector3d& p) const { return foot(p).normal; }
   /// Harmonic mean of the semi-axes (m).
   double mean_radius() const { return 3.0 / A.trace(); }
+  /// Mean of the semi-axes (m), at least mean_radius().
+  double mean_semi_axis() const { return A.inverse().trace() / 3.0; }
   /// Point of the surface in direction `d` (unit) from the center.
   Eigen::Vector3d surface(const Eigen::Vector3d& d) const { return center + d / (A * d).norm(); }
 };

@@ -179,7 +179,7 @@ void refit(const PointCloud<S>& cloud, const BodyParameters& bodies, Split& out)
     own.resize(out.found.size());
     for (std::size_t b = 0; b < out.found.size(); ++b)
       if (const auto fit = fit_ellipsoid(cloud, own[b], out.found[b].fit.body, last_fit))
-        if (bodies.plausible(fit->body.mean_radius())) out.found[b].fit = *fit;
+        if (plausible(fit->body, bodies)) out.found[b].fit = *fit;
     out.labels = assign_to_bodies(cloud, out.found, bodies);
   }
 }
