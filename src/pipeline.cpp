@@ -175,6 +175,8 @@ View Pipeline::begin_view(const sensor::DepthFrame& frame, const Pose& world_T_o
   const Eigen::Vector3d to_middle = workcell_.scan_volume.center() - world_T_optical.translation();
   const double ahead = std::max(to_middle.dot(world_T_optical.linear().col(2)), 0.0);
   view.target = world_T_optical * Eigen::Vector3d(0.0, 0.0, ahead);
+  view.median_depth = sensor::median_depth(frame).value_or(0.0);
+  view.volume_distance = to_middle.norm();
   view.joints = joints;
   view.plan_seconds = seconds_.plan - planned_before_;
   return view;

@@ -17,7 +17,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <string>
 
 namespace agrisee {
@@ -149,13 +148,6 @@ double provide_normals(Cloud& cloud, const Parameters& parameters, const CloudOr
   else
     complete_normals(cloud, parameters, origin.check_normals ? origin : CloudOrigin{}, noise, threads);
   return noise;
-}
-
-/// A length as messages show it (m).
-std::string metres(double length) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.3g m", length);
-  return text;
 }
 
 /// @throws InputError if a sensor stood farther from all points than any sensor sees

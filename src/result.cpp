@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <agrisee/core/error.hpp>
+#include <agrisee/core/median.hpp>
 #include <agrisee/result.hpp>
 
 #include <algorithm>
@@ -13,6 +15,27 @@ std::string listed(const std::vector<std::string>& parts) {
   for (std::size_t i = 0; i < parts.size(); ++i)
     out += (i == 0 ? "" : i + 1 < parts.size() ? ", " : " and ") + parts[i];
   return out;
+}
+
+/// That no view saw anything inside the scan volume, and why, as far as depths and distances tell.
+std::string nothing_seen(const std::vector<View>& views) {
+  const std::string nothing = "no view saw a point inside the scan volume";
+  std::vector<double> depths, distances;
+  for (const View& v : views) {
+    if (v.median_depth > 0.0) depths.push_back(v.median_depth);
+    if (v.volume_distance > 0.0) distances.push_back(v.volume_distance);
+  }
+  if (distances.empty()) return nothing;
+  if (depths.empty()) return nothing + ": the depth images hold no return at all";
+  const double depth = median(depths), distance = median(distances);
+  constexpr double kFarthest = 20.0, kFactor = 8.0;  // m; depths of a wrong unit are off by a factor of ten or more
+  std::string cause = "is the camera turned to it? Poses have to be world_T_optical, with z forward and y down";
+  if (distance > kFarthest)
+    cause = "are the poses in millimetres? They have to be in metres";
+  else if (depth > kFactor * distance || kFactor * depth < distance)
+    cause = "are the depths in another unit than metres (depth_scale)?";
+  return nothing + ": the median depth is " + metres(depth) + ", and the sensor stood " + metres(distance) +
+         " from the middle of the volume; " + cause;
 }
 
 }  // namespace
@@ -49,8 +72,7 @@ std::string why_no_fruit(const ScanResult& result) {
   const auto saw = [](const View& v) { return v.points_in > 0; };
   if (result.raw.empty()) {
     if (result.views.empty()) return "there are no points";
-    if (std::none_of(result.views.begin(), result.views.end(), saw))
-      return "no view saw a point inside the scan volume";
+    if (std::none_of(result.views.begin(), result.views.end(), saw)) return nothing_seen(result.views);
     return "every view with points inside the scan volume was discarded";
   }
   if (result.cloud.empty()) return "cleaning left none of " + std::to_string(result.raw.size()) + " points";

@@ -37,13 +37,15 @@ inline const char* to_string(DiscardReason reason) {
 
 /// A view that was taken.
 struct View {
-  Pose world_T_optical = Pose::Identity();             ///< as reported by the robot
-  Eigen::Vector3d target = Eigen::Vector3d::Zero();    ///< observed point on the optical axis
-  std::optional<Joints> joints;                        ///< absent without an arm
-  std::size_t points_in = 0;                           ///< points returned inside the scan volume
-  std::size_t points_new = 0;                          ///< points that the merged cloud kept
-  double plan_seconds = 0.0;                           ///< time it took to choose this view
-  bool discarded = false;                              ///< it is not part of the map
+  Pose world_T_optical = Pose::Identity();           ///< as reported by the robot
+  Eigen::Vector3d target = Eigen::Vector3d::Zero();  ///< observed point on the optical axis
+  std::optional<Joints> joints;                      ///< absent without an arm
+  double median_depth = 0.0;     ///< of its frame (m), inside the scan volume or not; 0 = no return, or not known
+  double volume_distance = 0.0;  ///< from the sensor to the middle of the scan volume (m); 0 = not known
+  std::size_t points_in = 0;     ///< points returned inside the scan volume
+  std::size_t points_new = 0;    ///< points that the merged cloud kept
+  double plan_seconds = 0.0;     ///< time it took to choose this view
+  bool discarded = false;        ///< it is not part of the map
   DiscardReason discard_reason = DiscardReason::none;  ///< why it is not
 };
 

@@ -2,6 +2,7 @@
 // Recorded views: `agrisee process views.yaml`, and `agrisee export-views`, which writes those of a simulated scan.
 #include "recorded.hpp"
 
+#include <agrisee/fuse/pose_check.hpp>
 #include <agrisee/io/depth_image.hpp>
 #include <agrisee/io/depth_picture.hpp>
 #include <agrisee/io/recorded_views.hpp>
@@ -9,6 +10,8 @@
 #include <agrisee/io/scene.hpp>
 #include <agrisee/pipeline.hpp>
 
+#include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <iostream>
 #include <memory>
@@ -29,19 +32,56 @@ class NoPlanner final : public plan::Planner {
   StopReason stop_reason() const override { return StopReason::not_stopped; }
 };
 
-/// Everything that the views show, and a millimetre around it. @throws FileError if they show nothing
-Aabb all_that_is_seen(const std::string& path, const io::RecordedViews& recorded) {
-  Aabb box;
-  for (std::size_t i = 0; i < recorded.views.size(); ++i) {
-    const Aabb seen = io::extent_of(io::read_frame(recorded, i), recorded.views[i].world_T_optical);
+/// What a first look at the images tells.
+struct Survey {
+  Aabb seen;                              ///< all points of the views that were looked at
+  std::vector<fuse::ViewSample> samples;  ///< some of their points
+};
+
+/// Look at all views; where the scan volume is known, at some are enough.
+Survey survey(const io::RecordedViews& recorded) {
+  constexpr std::size_t kEnough = 16;
+  const std::size_t step = recorded.workcell.scan_volume.empty() ? 1 : recorded.views.size() / kEnough + 1;
+  Survey out;
+  for (std::size_t i = 0; i < recorded.views.size(); i += step) {
+    const sensor::DepthFrame frame = io::read_frame(recorded, i);
+    out.samples.push_back(fuse::sample_of(frame, recorded.views[i].world_T_optical));
+    const Aabb seen = io::extent_of(frame, recorded.views[i].world_T_optical);
     if (seen.empty()) continue;
-    box.extend(seen.min);
-    box.extend(seen.max);
+    out.seen.extend(seen.min);
+    out.seen.extend(seen.max);
   }
-  if (box.empty()) throw FileError(path + ": no depth image has a single return in the camera's range");
-  box.min.array() -= 1e-3;
-  box.max.array() += 1e-3;
-  return box;
+  return out;
+}
+
+/// Everything that the views show, and a millimetre around it. @throws FileError if they show nothing
+Aabb all_that_is_seen(const std::string& path, Aabb seen) {
+  if (seen.empty()) throw FileError(path + ": no depth image has a single return in the camera's range");
+  seen.min.array() -= 1e-3;
+  seen.max.array() += 1e-3;
+  return seen;
+}
+
+std::string percent(double share) { return std::to_string(std::lround(100.0 * share)) + " %"; }
+
+/// Test the poses. @return a warning if the views hardly agree
+/// @throws FileError if the poses are not world_T_optical
+std::optional<std::string> doubt_of_poses(const std::string& path, const Survey& first, const Aabb& volume) {
+  constexpr double kHardly = 0.1;
+  const fuse::PoseCheck check = fuse::check_poses(first.samples, volume);
+  const std::string rule = "Poses have to be world_T_optical: z forward, x right, y down";
+  if (!check.mistake.empty())
+    throw FileError(path + ": it seems that the poses " + check.mistake +
+                    (check.mended > 0.0
+                         ? ". Taken so, " + percent(check.mended) + " of what a view shows is shown by another, " +
+                               "too; as they stand, " + percent(check.as_reported) + ". "
+                         : ". Only so does the view see the scan volume. ") +
+                    rule);
+  const auto shows = [](const fuse::ViewSample& sample) { return !sample.points.empty(); };
+  if (check.as_reported >= kHardly || std::count_if(first.samples.begin(), first.samples.end(), shows) < 2)
+    return std::nullopt;
+  return "only " + percent(check.as_reported) +
+         " of what a view shows is shown by another, too: are the poses right? " + rule;
 }
 
 /// The first of many warnings, and how many more there are.
@@ -100,7 +140,9 @@ Processed process_recording(const std::string& path, const CommonOptions& option
   const io::RecordedViews recorded = io::read_recorded_views(path);
   Processed out;
   out.workcell = recorded.workcell;
-  if (out.workcell.scan_volume.empty()) out.workcell.scan_volume = all_that_is_seen(path, recorded);
+  const Survey first = survey(recorded);
+  const std::optional<std::string> doubt = doubt_of_poses(path, first, recorded.workcell.scan_volume);
+  if (out.workcell.scan_volume.empty()) out.workcell.scan_volume = all_that_is_seen(path, first.seen);
   PipelineOptions pipeline_options;
   pipeline_options.planner = std::make_unique<NoPlanner>();
   pipeline_options.reach = [](const plan::ViewRequest&, const Joints&) { return std::nullopt; };  // there is no arm
@@ -117,6 +159,7 @@ Processed process_recording(const std::string& path, const CommonOptions& option
   out.result = pipeline.result();
   const std::vector<std::string> notes = shortened(recorded.warnings);
   out.result.warnings.insert(out.result.warnings.begin(), notes.begin(), notes.end());
+  if (doubt) out.result.warnings.push_back(*doubt);
   return out;
 }
 

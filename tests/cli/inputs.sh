@@ -47,6 +47,29 @@ PY
     expect 2 'pose.yaml:[0-9]+: views\[0\].pose: is not a rigid transform' process png/pose.yaml -o d
     sed 's/camera:/kamera:/' png/views.yaml >png/key.yaml
     expect 2 "key.yaml:[0-9]+: unknown key 'kamera'; did you mean 'camera'" process png/key.yaml -o d
+    # Poses that are stated in another way are refused; where nothing is in the scan volume, figures say why.
+    python3 - <<'PY'
+import json, re
+text = open("exact/views.yaml").read()
+times = lambda a, b: [[sum(a[r][k] * b[k][c] for k in range(4)) for c in range(4)] for r in range(4)]
+def inverted(m):
+    turned = [[m[c][r] for c in range(3)] for r in range(3)]
+    return [turned[r] + [-sum(turned[r][k] * m[k][3] for k in range(3))] for r in range(3)] + [[0, 0, 0, 1]]
+def restated(name, change):
+    pose = lambda m: "pose: " + json.dumps(change(json.loads(m.group(1))))
+    open(f"exact/{name}.yaml", "w").write(re.sub(r"pose: (\[\[.*\]\])", pose, text))
+restated("inverted", inverted)
+restated("body", lambda m: times(m, [[0, -1, 0, 0], [0, 0, -1, 0], [1, 0, 0, 0], [0, 0, 0, 1]]))
+restated("mm", lambda m: [row[:3] + [1000 * row[3]] for row in m[:3]] + m[3:])
+PY
+    expect 2 'inverted.yaml: it seems that the poses are inverted \(optical_T_world\)\..*world_T_optical' process exact/inverted.yaml -o d
+    expect 2 'body.yaml: it seems that the poses are those of a frame with x forward' process exact/body.yaml -o d
+    [ ! -e d ] || fail "refused poses wrote something"
+    expect 0 '' process exact/mm.yaml -o mm --no-picture --no-report
+    grep -qE '^No fruit: no view saw a point inside the scan volume: the median depth is 0\.[0-9]+ m, and the sensor stood [0-9]+ m .*are the poses in millimetres' out.txt ||
+      fail "poses in millimetres: $(cat out.txt)"
+    sed 's/depth_scale: .*/depth_scale: 0.001/' png/views.yaml >png/tenfold.yaml && expect 0 '' process png/tenfold.yaml -o tenfold --no-picture --no-report
+    grep -qE '^No fruit: .*the median depth is [3-9]\.[0-9]+ m, .*\(depth_scale\)' out.txt || fail "a wrong depth_scale: $(cat out.txt)"
     cp png/depth/0001.png png/depth/0002.png && truncate -s 1000 png/depth/0002.png
     expect 2 'views.yaml:[0-9]+: views\[2\].depth: .*0002.png: is cut off' process png -o d
     [ ! -e d ] || fail "a refused recording wrote something"

@@ -167,6 +167,24 @@ TEST_CASE("a result without fruit says why") {
   CHECK(why_no_fruit(flat).find("too flat") != std::string::npos);
 }
 
+TEST_CASE("where no view saw the scan volume, the depths and distances say why") {
+  const auto told = [](double depth, double distance) {
+    ScanResult result;
+    result.views.resize(3);
+    for (View& v : result.views) v.median_depth = depth, v.volume_distance = distance;
+    result.views[2].median_depth = 0.0;  // without a return
+    return why_no_fruit(result);
+  };
+  const std::string nothing = "no view saw a point inside the scan volume";
+  CHECK(told(0.52, 480.0) == nothing +
+                                 ": the median depth is 0.52 m, and the sensor stood 480 m from the middle of the "
+                                 "volume; are the poses in millimetres? They have to be in metres");
+  for (const double depth : {5.2, 0.052}) CHECK_THAT(told(depth, 0.5), test::says("in another unit than metres"));
+  CHECK_THAT(told(0.52, 0.5), test::says("is the camera turned to it?"));
+  CHECK(told(0.0, 0.5) == nothing + ": the depth images hold no return at all");
+  CHECK(told(0.0, 0.0) == nothing);  // views that were read from a file
+}
+
 TEST_CASE("the cluster frame of a ready cloud is known without being asked for") {
   const Cloud cloud = seen();
   const ScanResult result = process(cloud);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// @file
-/// Whether the curved parts of a cloud bulge towards the side of their normals, as fruit do, or away from it, as they do
-/// when the normals were turned to the wrong side. Metres. Cost: some 2000 neighborhoods.
+/// Whether the curved parts of a cloud bulge towards the side of their normals, as fruit do, or away from it, as they
+/// do when the normals were turned to the wrong side. Metres. Cost: some 2000 neighborhoods.
 #pragma once
 
 #include <agrisee/core/cancellation.hpp>
@@ -44,7 +44,8 @@ std::optional<double> convex_share(const PointCloud<S>& cloud, double radius_min
     grid.visit(cloud.points[i], reach, [&](Index other, S d_sq) {
       const Vector3<S>& normal = cloud.normals[static_cast<std::size_t>(other)];
       if (!(normal.dot(cloud.normals[i]) > kSameSurface)) return;
-      products += double((cloud.points[static_cast<std::size_t>(other)] - cloud.points[i]).dot(normal - cloud.normals[i]));
+      products +=
+          double((cloud.points[static_cast<std::size_t>(other)] - cloud.points[i]).dot(normal - cloud.normals[i]));
       squares += double(d_sq);
       ++neighbors;
     });

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// @file
-/// The exceptions that AgriSEE throws, and two checks that throw them.
+/// The exceptions that AgriSEE throws, two checks that throw them, and lengths as their messages show them.
 #pragma once
 
+#include <cstdio>
 #include <stdexcept>
 #include <string>
 
@@ -42,6 +43,13 @@ void check_parameter(bool ok, const char* field, const char* rule, const T& valu
 /// Throws InputError(message) unless `ok`.
 inline void check_input(bool ok, const char* message) {
   if (!ok) throw InputError(message);
+}
+
+/// A length (m) as messages show it: "0.0125 m".
+inline std::string metres(double length) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.3g m", length);
+  return text;
 }
 
 }  // namespace agrisee

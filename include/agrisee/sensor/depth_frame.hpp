@@ -3,10 +3,11 @@
 /// A depth image: what a depth camera measures in one shot.
 #pragma once
 
+#include <agrisee/core/median.hpp>
 #include <agrisee/sensor/intrinsics.hpp>
 
-#include <algorithm>
-#include <cstdio>
+#include <optional>
+#include <vector>
 
 namespace agrisee::sensor {
 
@@ -35,25 +36,28 @@ inline void check(const DepthFrame& frame) {
   check_input(frame.depth.size() == k.size(), "depth frame: the image size differs from its intrinsics");
 }
 
-/// Refuse a depth image that cannot be in metres: no depth camera sees a scene most of which is farther than 50 m or
-/// nearer than 1 mm. A frame without returns passes.
-/// @throws InputError that names the median depth and the likely cause
-inline void check_depth_unit(const DepthFrame& frame) {
+/// The median (m) of the depths that are returns, of some 2000 pixels; none without any.
+inline std::optional<double> median_depth(const DepthFrame& frame) {
   constexpr std::size_t kSamples = 2000;
   const std::size_t step = frame.depth.size() / kSamples + 1;
   std::vector<float> depths;
   for (std::size_t i = 0; i < frame.depth.size(); i += step)
     if (DepthFrame::valid(frame.depth[i])) depths.push_back(frame.depth[i]);
-  if (depths.empty()) return;
-  const auto middle = depths.begin() + static_cast<std::ptrdiff_t>(depths.size() / 2);
-  std::nth_element(depths.begin(), middle, depths.end());
+  if (depths.empty()) return std::nullopt;
+  return double(median(depths));
+}
+
+/// Refuse a depth image that cannot be in metres: no depth camera sees a scene most of which is farther than 50 m or
+/// nearer than 1 mm. A frame without returns passes.
+/// @throws InputError that names the median depth and the likely cause
+inline void check_depth_unit(const DepthFrame& frame) {
+  const std::optional<double> depth = median_depth(frame);
+  if (!depth) return;
   const auto refuse = [&](const char* cause) {
-    char number[32];
-    std::snprintf(number, sizeof number, "%.3g", static_cast<double>(*middle));
-    throw InputError("depth frame: its median depth is " + std::string(number) + " m: " + cause);
+    throw InputError("depth frame: its median depth is " + metres(*depth) + ": " + cause);
   };
-  if (*middle > 50.0f) refuse("is it in millimetres, or in another unit of the camera? Depths have to be in metres");
-  if (*middle < 0.001f) refuse("were depths in metres multiplied by the camera's depth unit once more?");
+  if (*depth > 50.0) refuse("is it in millimetres, or in another unit of the camera? Depths have to be in metres");
+  if (*depth < 0.001) refuse("were depths in metres multiplied by the camera's depth unit once more?");
 }
 
 }  // namespace agrisee::sensor

@@ -12,7 +12,7 @@ namespace agrisee::io {
 namespace {
 
 constexpr std::size_t kCodeBlock = 1 << 18;  // bytes that share a code
-constexpr std::size_t kSymbols = 286;    // 0..255: bytes; 256: end of the block; 257..285: lengths of runs
+constexpr std::size_t kSymbols = 286;        // 0..255: bytes; 256: end of the block; 257..285: lengths of runs
 constexpr int kEnd = 256, kShortestRun = 3, kLongestRun = 258;
 
 /// Collects bits, the lowest first.
@@ -79,8 +79,8 @@ void walk(std::string_view bytes, std::size_t begin, std::size_t end, Byte&& byt
   }
 }
 
-/// Lengths (bits) of a Huffman code for symbols that occur so often, 0 for those that do not. At least two symbols get a
-/// code, and none is longer than `longest`.
+/// Lengths (bits) of a Huffman code for symbols that occur so often, 0 for those that do not. At least two symbols get
+/// a code, and none is longer than `longest`.
 std::vector<int> code_lengths(std::vector<std::uint32_t> counts, int longest) {
   auto unused = std::count(counts.begin(), counts.end(), 0u);
   const auto most_unused = static_cast<std::ptrdiff_t>(counts.size()) - 2;

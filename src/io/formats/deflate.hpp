@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// @file
-/// Compresses bytes as zlib does (RFC 1950, RFC 1951), for PNG files. Only runs of one byte are replaced; for the rest a
-/// Huffman code is made anew every few hundred kilobytes. Of filtered images little else repeats, and this takes a fifth
-/// of the time of a search for all repetitions.
+/// Compresses bytes as zlib does (RFC 1950, RFC 1951), for PNG files. Only runs of one byte are replaced; for the rest
+/// a Huffman code is made anew every few hundred kilobytes. Of filtered images little else repeats, and this takes a
+/// fifth of the time of a search for all repetitions.
 #pragma once
 
 #include <string>

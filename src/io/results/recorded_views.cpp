@@ -3,7 +3,6 @@
 #include <agrisee/io/files.hpp>
 #include <agrisee/io/recorded_views.hpp>
 
-#include <algorithm>
 #include <cmath>
 #include <cstdio>
 
@@ -53,22 +52,11 @@ RecordedView read_view(const YamlValue& value, RecordedViews& recorded) {
   return view;
 }
 
-/// The median of the depths that are returns; none without any.
-std::optional<double> median_depth(const sensor::DepthFrame& frame) {
-  std::vector<float> depths;
-  std::copy_if(frame.depth.begin(), frame.depth.end(), std::back_inserter(depths), sensor::DepthFrame::valid);
-  if (depths.empty()) return std::nullopt;
-  const auto middle = depths.begin() + static_cast<std::ptrdiff_t>(depths.size() / 2);
-  std::nth_element(depths.begin(), middle, depths.end());
-  return double(*middle);
-}
-
 void check_scale(const std::string& place, const sensor::DepthFrame& frame, double scale) {
-  const std::optional<double> median = median_depth(frame);
+  const std::optional<double> median = sensor::median_depth(frame);
   if (!median || (*median >= 0.02 && *median <= 50.0)) return;
-  throw FileError(place + ": the median depth is " + format(static_cast<float>(*median)) +
-                  " m: is camera.depth_scale right? It is " + format(scale) +
-                  " (metres per unit; for an image in millimetres 0.001)");
+  throw FileError(place + ": the median depth is " + metres(*median) + ": is camera.depth_scale right? It is " +
+                  format(scale) + " (metres per unit; for an image in millimetres 0.001)");
 }
 
 /// A text as a YAML scalar in double quotes.
