@@ -199,6 +199,8 @@ TEST_CASE("values out of range are named") {
   folder.refuse(kScene + "sensor: {width: 0}\n", "sensor.width");
   folder.refuse(kScene + "sensor: {height: 1000000}\n", "sensor.height");
   folder.refuse(kScene + "sensor: {fov_deg: [70, 180]}\n", "sensor.fov_deg");
+  folder.refuse(kScene + "sensor: {fov_deg: [1.22, 0.96]}\n",
+                "sensor.fov_deg: an opening angle of 0.96 degrees is too small for a depth camera: is it in radians?");
   folder.refuse(kScene + "sensor: {range: [2, 1]}\n", "sensor.range");
   folder.refuse(kScene + "keep_out: [{name: a}]\n", "keep_out[0]: expected one of 'box' and 'cylinder'");
   folder.refuse(kScene + "keep_out: [{name: a, box: {center: [0, 0, 0], size: [1, 0, 1]}}]\n", "keep_out[0].box.size");

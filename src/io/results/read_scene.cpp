@@ -61,6 +61,10 @@ sensor::Intrinsics read_intrinsics(const YamlValue& value, const sensor::CameraM
     fov = value.at("fov_deg").numbers<2>();
     if (!(fov.minCoeff() > 0.0 && fov.maxCoeff() < 180.0))
       value.at("fov_deg").fail("must be between 0 and 180 degrees");
+    constexpr double kNarrowest = 5.0;  // degrees; no depth camera sees less, and 5 rad are no opening angle
+    if (fov.minCoeff() < kNarrowest)
+      value.at("fov_deg").fail("an opening angle of " + format(fov.minCoeff()) +
+                               " degrees is too small for a depth camera: is it in radians? It has to be in degrees");
   }
   sensor::Intrinsics k = sensor::intrinsics_from_fov(width, height, deg(fov.x()), deg(fov.y()));
   if (!value.has("fx") && !value.has("fy") && !value.has("cx") && !value.has("cy")) return k;
