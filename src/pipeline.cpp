@@ -78,7 +78,7 @@ Pipeline::Pipeline(const Workcell& workcell, const Parameters& parameters, Pipel
 const View& Pipeline::observe(const sensor::DepthFrame& frame, const Pose& reported,
                               const std::optional<Joints>& joints) {
   const Pose world_T_optical =
-      made_rigid(reported, "observe: world_T_optical of view " + std::to_string(views_.size() + 1));
+      made_rigid(reported, "observe: world_T_optical of view " + std::to_string(views_.size()));
   const View view = begin_view(frame, world_T_optical, joints);
   const bool frozen = repeats_last_frame(frame);
 

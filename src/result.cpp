@@ -46,7 +46,7 @@ std::string discarded_views(const std::vector<View>& views) {
     std::size_t n = 0;
     for (std::size_t v = 0; v < views.size(); ++v) {
       if (!views[v].discarded || views[v].discard_reason != reason) continue;
-      numbers += (n++ ? ", " : "") + std::to_string(v + 1);
+      numbers += (n++ ? ", " : "") + std::to_string(v);
     }
     return std::pair(n, numbers);
   };

@@ -215,8 +215,8 @@ struct ScanResult {
   BodyCounts bodies;                  ///< what became of the round bodies that were proposed
 };
 
-/// How many of some views were discarded and why, in one sentence without a full stop; empty if none was. Defined in
-/// `agrisee::agrisee`.
+/// How many of some views were discarded and why, in one sentence without a full stop; empty if none was. Views are
+/// numbered from 0, as in views.csv. Defined in `agrisee::agrisee`.
 std::string discarded_views(const std::vector<View>& views);
 
 /// Why a result has no fruit, as far as it is known, in one sentence without a full stop: whether anything was seen,

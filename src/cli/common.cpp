@@ -130,8 +130,8 @@ void write_files(const std::string& folder, const ScanResult& result, const Work
 void show_progress(const std::vector<View>& views, std::size_t budget) {
   const View& v = views.back();
   const std::size_t n = views.size();
-  const std::string line = "view " + std::to_string(n) + "/" + std::to_string(budget) + ": " +
-                           std::to_string(v.points_in) + " points seen, " + std::to_string(v.points_new) + " new";
+  const std::string line = std::to_string(n) + "/" + std::to_string(budget) + " views: " + std::to_string(v.points_in) +
+                           " points in the scan volume, " + std::to_string(v.points_new) + " new";
   if (isatty(STDERR_FILENO)) {
     constexpr std::size_t kWidth = 24;
     const std::size_t done = std::min(kWidth, kWidth * n / std::max<std::size_t>(1, budget));

@@ -15,6 +15,7 @@
 #include <sstream>
 
 #include "commands.hpp"
+#include "inputs.hpp"
 
 namespace agrisee::cli {
 namespace {
@@ -103,7 +104,7 @@ void print(const study::Metrics& m) {
   percent(m.f1) << "\nSegmentation: mIoU by surface ";
   percent(m.miou_surface) << ", by points ";
   percent(m.miou_point) << "\n";
-  out << "  id  as    IoU   seen  centroid error  centre error  radius error  axis error\n";
+  out << "  id  as    IoU   seen  recall  recall_obs  centroid error  centre error  radius error  axis error\n";
   const auto mm = [&](const std::optional<double>& x, int width) {
     out << std::setw(width);
     if (x)
@@ -114,7 +115,8 @@ void print(const study::Metrics& m) {
   };
   for (const study::FruitMetrics& f : m.fruits) {
     out << std::setw(4) << f.id << std::setw(4) << f.instance << std::setprecision(2) << std::setw(7) << f.surface_iou
-        << std::setprecision(0) << std::setw(5) << 100.0 * f.recall_obs << " %" << std::setprecision(1);
+        << std::setprecision(0) << std::setw(5) << 100.0 * f.scanned << " %" << std::setw(6) << 100.0 * f.recall << " %"
+        << std::setw(10) << 100.0 * f.recall_obs << " %" << std::setprecision(1);
     mm(f.centroid_error_seen, 13);
     mm(f.center_error, 11);
     mm(f.radius_error, 11);
@@ -128,10 +130,11 @@ void print(const study::Metrics& m) {
 }
 
 int run_evaluate(const EvaluateOptions& options) {
-  const io::SceneFile file = io::read_scene(options.scene);
+  const std::string scene = scene_file(options.scene);
+  const io::SceneFile file = io::read_scene(scene);
   const ScanResult result = read_result(options.result);
   const int threads = threads_of(options.threads);
-  const auto known = io::read_ground_truth(fs::path(options.scene).parent_path() / "ground_truth.json");
+  const auto known = io::read_ground_truth(fs::path(scene).parent_path() / "ground_truth.json");
   const study::Truth truth = study::make_truth(file.scene, known, file.workcell.sensor);
   const study::Observability observability = study::observable(truth.traced, truth.samples, file.workcell, {}, threads);
   study::MetricParameters parameters;
@@ -149,7 +152,7 @@ int run_evaluate(const EvaluateOptions& options) {
 void add_evaluate(CLI::App& app, Run& run) {
   auto* command = app.add_subcommand("evaluate", "compare a result with the scene that it was made from");
   auto options = std::make_shared<EvaluateOptions>();
-  command->add_option("scene", options->scene, "scene file (YAML)")->required();
+  command->add_option("scene", options->scene, "scene file (YAML), or a folder with scene.yaml")->required();
   command->add_option("result", options->result, "result folder")->required();
   command->add_option("--threshold", options->threshold, "a point lies on a surface if it is within this distance (m)")
       ->check(CLI::PositiveNumber)
@@ -157,7 +160,10 @@ void add_evaluate(CLI::App& app, Run& run) {
   command->add_option("--threads", options->threads, "number of threads (0: one per core); does not change the result")
       ->check(CLI::Range(0, 1024));
   command->add_flag("--json", options->json, "print the metrics as JSON");
-  command->footer("Example:\n  agrisee evaluate truss/scene.yaml result --json");
+  command->footer(
+      "In the table, seen is the true share of a fruit's surface near a point (in JSON: scanned), which the table of\n"
+      "scan estimates; recall counts only the points that were given to fruit; docs/formats.md explains all.\n"
+      "Example:\n  agrisee evaluate truss/scene.yaml result --json");
   command->callback([options, &run] { run = [options] { return run_evaluate(*options); }; });
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "inputs.hpp"
 
+#include <algorithm>
 #include <cerrno>
 #include <cstdio>
 #include <cstdlib>
@@ -10,6 +11,8 @@
 #include <unistd.h>
 
 #include "commands.hpp"
+#include "io/formats/text.hpp"
+#include "io/formats/yaml_map.hpp"
 
 namespace agrisee::cli {
 namespace {
@@ -19,6 +22,71 @@ namespace fs = std::filesystem;
 bool is_folder(const std::string& input) {
   std::error_code error;
   return fs::is_directory(input, error);
+}
+
+bool holds(const std::string& folder, const char* name) {
+  std::error_code error;
+  return fs::exists(fs::path(folder) / name, error);
+}
+
+/// Whether a name ends as one of those.
+bool ends(const std::string& input, std::initializer_list<const char*> extensions) {
+  const std::string own = io::lower(fs::path(input).extension().string());
+  return std::any_of(extensions.begin(), extensions.end(), [&](const char* extension) { return own == extension; });
+}
+
+/// The kind of a YAML file, by its keys.
+Kind kind_of_yaml(const std::string& input) {
+  try {
+    const io::YamlValue top(input, io::load_yaml(input), "");
+    if (top.has("objects") || top.has("robot")) return Kind::scene;
+    if (top.has("camera") && top.has("views")) return Kind::recording;
+  } catch (const FileError&) {  // who reads it says what is wrong
+  }
+  return Kind::unknown;
+}
+
+Kind kind_of(const std::string& input) {
+  if (is_folder(input)) {
+    if (holds(input, "scene.yaml")) return Kind::scene;
+    if (holds(input, "views.yaml")) return Kind::recording;
+    if (holds(input, "scan.json")) return Kind::scan;
+    return holds(input, "run.json") ? Kind::processed : Kind::unknown;
+  }
+  std::error_code error;
+  if (!fs::is_regular_file(input, error)) return Kind::unknown;
+  if (ends(input, {".yaml", ".yml"})) return kind_of_yaml(input);
+  return ends(input, {".ply", ".pcd", ".npy", ".xyz", ".csv"}) ? Kind::cloud : Kind::unknown;
+}
+
+/// What a kind is called, and which command takes it.
+const char* text_of(Kind kind) {
+  switch (kind) {
+    case Kind::scene:
+      return "a scene, which `agrisee scan` takes";
+    case Kind::recording:
+      return "a list of recorded views (views.yaml), which `agrisee process` takes";
+    case Kind::cloud:
+      return "a point cloud, which `agrisee process` takes";
+    case Kind::scan:
+      return "the result of a scan, which `agrisee evaluate` and `agrisee export-views` take; its cloud is cloud.ply";
+    case Kind::processed:
+      return "a result of `agrisee process`, which holds a cloud (cloud.ply) but no frames";
+    case Kind::unknown:
+      break;
+  }
+  return "something else";
+}
+
+/// The file that an input of a certain kind names. @throws FileError
+std::string file_of(const std::string& input, Kind wanted, const char* name) {
+  if (!is_folder(input)) {
+    check_kind(input, wanted);
+    return input;
+  }
+  if (holds(input, name)) return (fs::path(input) / name).string();
+  check_kind(input, wanted);
+  throw FileError(input + ": is a folder without " + name);
 }
 
 /// A temporary file with all that comes out of a pipe: readers look at the beginning of a file first, and then read it.
@@ -59,18 +127,20 @@ io::CloudFile read_pipe(std::FILE* pipe, const std::string& name) {
 
 }  // namespace
 
-std::string file_in(const std::string& input, const char* name) {
-  if (!is_folder(input)) return input;
-  const fs::path file = fs::path(input) / name;
-  std::error_code error;
-  if (!fs::exists(file, error)) throw FileError(input + ": is a folder without " + name);
-  return file.string();
+void check_kind(const std::string& input, Kind wanted) {
+  const Kind kind = kind_of(input);
+  if (kind == wanted || kind == Kind::unknown) return;
+  const char* const missing = wanted == Kind::scene  ? "not a scene"
+                              : wanted == Kind::scan ? "not the result of a scan"
+                                                     : "neither a cloud nor recorded views";
+  throw FileError(input + ": is " + missing + ", but " + text_of(kind));
 }
 
-bool is_recording(const std::string& input) {
-  const std::string extension = fs::path(input).extension().string();
-  return is_folder(input) || extension == ".yaml" || extension == ".yml";
-}
+std::string scene_file(const std::string& input) { return file_of(input, Kind::scene, "scene.yaml"); }
+
+std::string recording_file(const std::string& input) { return file_of(input, Kind::recording, "views.yaml"); }
+
+bool is_recording(const std::string& input) { return is_folder(input) || ends(input, {".yaml", ".yml"}); }
 
 std::string name_of(const std::string& input) {
   return input == "-" ? "standard input" : fs::path(input).filename().string();

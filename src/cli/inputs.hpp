@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What the commands read: clouds from files and pipes, and folders that stand for the file in them.
+// What the commands read: clouds from files and pipes, folders that stand for the file in them, and what to say to
+// those who name one thing where another is wanted.
 #pragma once
 
 #include <agrisee/io/cloud_file.hpp>
@@ -8,8 +9,25 @@
 
 namespace agrisee::cli {
 
-/// `input`, or, where it is a folder, the file of that name in it. @throws FileError if the folder holds no such file
-std::string file_in(const std::string& input, const char* name);
+/// What an input may be.
+enum class Kind {
+  scene,      ///< scene.yaml, or a folder with it
+  recording,  ///< views.yaml, or a folder with it
+  cloud,      ///< a file with points
+  scan,       ///< the result folder of a scan
+  processed,  ///< any other result folder
+  unknown     ///< the reader may tell
+};
+
+/// Refuse an input that is clearly of another kind than the one that is wanted.
+/// @throws FileError "<input>: is not a scene, but a point cloud, which `agrisee process` takes"
+void check_kind(const std::string& input, Kind wanted);
+
+/// The scene file that an input names: it, or scene.yaml in it. @throws FileError if it is something else
+std::string scene_file(const std::string& input);
+
+/// views.yaml that an input names: it, or that in it. @throws FileError if it is something else
+std::string recording_file(const std::string& input);
 
 /// Whether an input is a recording of views (views.yaml, or a folder with it) and not a cloud.
 bool is_recording(const std::string& input);

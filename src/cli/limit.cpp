@@ -18,6 +18,7 @@
 #include <sstream>
 
 #include "commands.hpp"
+#include "inputs.hpp"
 
 namespace agrisee::cli {
 namespace {
@@ -269,7 +270,7 @@ int run_limit(const LimitOptions& options) {
   } catch (const ParameterError& e) {  // the numbers came from the command line
     throw UsageError(e.what());
   }
-  const io::SceneFile file = io::read_scene(options.scene);
+  const io::SceneFile file = io::read_scene(scene_file(options.scene));
   file.workcell.sensor.check();
   const study::Samples samples = study::fruit_samples(file.scene);
   if (samples.size() == 0) throw FileError(options.scene + ": holds no fruit, so there is nothing to observe");
@@ -296,7 +297,7 @@ void add_limit(CLI::App& app, Run& run) {
   auto* command =
       app.add_subcommand("limit", "how much of the fruit in a scene the arm can see at all, and in how few views");
   auto options = std::make_shared<LimitOptions>();
-  command->add_option("scene", options->scene, "scene file (YAML)")->required();
+  command->add_option("scene", options->scene, "scene file (YAML), or a folder with scene.yaml")->required();
   command->add_option("-o,--output", options->output, "folder for the result")->required();
   auto* search =
       command->add_flag("--base-search", options->base_search, "also try places around the present one for the base");

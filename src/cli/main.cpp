@@ -13,6 +13,10 @@ int main(int argc, char** argv) {
   CLI::App app{"AgriSEE: scan a truss, find every fruit, and tell where it is."};
   app.set_version_flag("--version", std::string("agrisee ") + AGRISEE_VERSION);
   app.require_subcommand(1);
+  const auto complaint = [](const std::string& what) {
+    return "agrisee: " + what + "\nRun with --help for more information.\n";
+  };
+  app.failure_message([&](const CLI::App*, const CLI::Error& e) { return complaint(e.what()); });
   app.footer(
       "Examples:\n"
       "  agrisee make-truss --total 7 --hidden 1 --seed 1 -o truss\n"
@@ -21,7 +25,11 @@ int main(int argc, char** argv) {
       "  agrisee limit truss/scene.yaml -o limit --base-search\n"
       "  agrisee process cloud.ply -o result --views views.csv\n"
       "  agrisee process recorded/views.yaml -o result\n"
-      "Exit codes: 0 success, 1 bad usage, 2 bad input, 3 a scan that failed midway.");
+      "Exit codes: 0 success; 1 bad usage: the command line cannot be followed, whatever its inputs hold; 2 bad "
+      "input:\n"
+      "an input is missing or damaged, or does not fit what the command line says of it, such as --viewpoint; 3 a "
+      "scan\n"
+      "that failed midway or could take no view.");
   cli::Run run;
   cli::add_scan(app, run);
   cli::add_process(app, run);
@@ -40,7 +48,7 @@ int main(int argc, char** argv) {
   } catch (const CLI::ParseError& e) {
     if (e.get_exit_code() != 0)
       if (const auto message = cli::wrong_word(app, {argv + 1, argv + argc})) {
-        std::cerr << "agrisee: " << *message << "\nRun with --help for more information.\n";
+        std::cerr << complaint(*message);
         return cli::kUsage;
       }
     return app.exit(e) == 0 ? cli::kSuccess : cli::kUsage;

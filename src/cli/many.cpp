@@ -34,7 +34,7 @@ std::vector<std::string> matches(const std::string& pattern) {
   std::vector<std::string> out;
   for (std::size_t i = 0; failed == 0 && i < found.gl_pathc; ++i) out.emplace_back(found.gl_pathv[i]);
   ::globfree(&found);
-  if (out.empty()) throw UsageError(pattern + ": matches no file");
+  if (out.empty()) throw FileError(pattern + ": matches no file");
   return out;
 }
 

@@ -108,8 +108,8 @@ int run_process(const ProcessOptions& options) {
   check_output(options.output, options.force);
   const bool recording = is_recording(options.cloud);
   if (recording && !(options.views.empty() && options.viewpoint.empty()))
-    throw UsageError(options.cloud + ": states where its views were seen from, so leave out --views and --viewpoint");
-  const Processed done = recording ? process_recording(file_in(options.cloud, "views.yaml"), options, parameters)
+    throw FileError(options.cloud + ": states where its views were seen from, so leave out --views and --viewpoint");
+  const Processed done = recording ? process_recording(recording_file(options.cloud), options, parameters)
                                    : process_cloud(options, parameters);
   prepare_output(options.output, options.force);
   write_files(options.output, done.result, done.workcell, run_info(options, parameters, done.workcell.name), options,

@@ -16,6 +16,8 @@
 #include <iostream>
 #include <memory>
 
+#include "inputs.hpp"
+
 namespace agrisee::cli {
 namespace {
 
@@ -109,6 +111,9 @@ fs::path image_name(std::size_t i, bool npy) {
 int run_export(const ExportOptions& options) {
   constexpr double kScale = 1e-4;  // m; the images then reach up to 6.5 m
   const fs::path from = options.result, to = options.output;
+  check_kind(options.result, Kind::scan);
+  if (!fs::exists(from / "scan.json"))
+    throw FileError(options.result + ": is not the result of a scan: there is no " + (from / "scan.json").string());
   const io::ScanTask task = io::read_scan_task(from / "scan.json");
   io::RecordedViews recorded;
   recorded.workcell = io::read_scene(task.scene).workcell;

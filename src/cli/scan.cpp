@@ -321,7 +321,7 @@ void add_scan(CLI::App& app, Run& run) {
       return run_inputs(options->scenes, options->shard, options->output,
                         [&](const std::string& input, const std::string& folder) {
                           ScanOptions one = *options;
-                          one.scene = input.empty() ? input : file_in(input, "scene.yaml");
+                          one.scene = input.empty() ? input : scene_file(input);
                           one.output = folder;
                           return run_scan(one);
                         });

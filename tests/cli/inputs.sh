@@ -11,7 +11,7 @@ case $3 in
     expect 0 '' export-views r -o exact --npy && grep -q '^6 views' out.txt || fail "export-views: $(cat out.txt)"
     expect 0 '' export-views r -o png
     expect 1 'force' export-views r -o png && expect 0 '' export-views r -o png --force
-    expect 0 'view 6/6' process exact/views.yaml -o a && expect 0 '' process png -o b
+    expect 0 '^6/6 views: [0-9]+ points in the scan volume, ' process exact/views.yaml -o a && expect 0 '' process png -o b
     grep -qE '^4 fruit, [0-9]+ points from 6 views, ' out.txt || fail "summary: $(head -1 out.txt)"
     cmp r/cloud.ply a/cloud.ply || fail "the exact frames give another cloud than the scan"
     cmp r/cloud_raw.ply a/cloud_raw.ply || fail "the exact frames give another merged cloud than the scan"
@@ -73,8 +73,8 @@ PY
     cp png/depth/0001.png png/depth/0002.png && truncate -s 1000 png/depth/0002.png
     expect 2 'views.yaml:[0-9]+: views\[2\].depth: .*0002.png: is cut off' process png -o d
     [ ! -e d ] || fail "a refused recording wrote something"
-    expect 2 'folder without views.yaml' process t -o d && expect 2 'folder without scene.yaml' scan png -o d
-    expect 1 '--viewpoint' process exact -o d --viewpoint 0,0,0
+    mkdir bare && expect 2 'bare: is a folder without views.yaml' process bare -o d && expect 2 'bare: is a folder without scene.yaml' scan bare -o d
+    expect 2 '--viewpoint' process exact -o d --viewpoint 0,0,0
     ;;
   clouds)  # one cloud in every format gives the same fruit
     small_truss t --total 3 --hidden 0 --seed 1
@@ -144,17 +144,39 @@ PY
     expect 0 'nothing to do' scan --resume s --no-picture --no-report
     expect 0 '' scan --resume s && cmp s/truss.png r/truss.png && [ -s s/report.html ] || fail "the pictures of a scan without them"
     ;;
+  kinds)  # one thing named where another is wanted
+    small_truss t --total 3 --hidden 0 --seed 1
+    expect 0 '' scan t -o r --seed 1 --max-views 1 --quiet && expect 0 '' export-views r -o v
+    expect 0 '' process r/cloud.ply -o p --quiet --no-report --no-picture && mkdir bare
+    for input in t t/scene.yaml; do
+      expect 2 "$input: is neither a cloud nor recorded views, but a scene, which .agrisee scan. takes" process $input -o d
+    done
+    expect 2 'r: is neither .*, but the result of a scan, .*its cloud is cloud.ply' process r -o d
+    expect 2 'r/cloud.ply: is not a scene, but a point cloud, which .agrisee process. takes' scan r/cloud.ply -o d
+    expect 2 'r/cloud.ply: is not a scene' limit r/cloud.ply -o d && expect 2 'r/cloud.ply: is not a scene' evaluate r/cloud.ply r
+    for input in v v/views.yaml; do
+      expect 2 "$input: is not a scene, but a list of recorded views .*, which .agrisee process. takes" scan $input -o d
+    done
+    expect 2 'p: is not the result of a scan, but a result of .agrisee process., .*no frames' export-views p -o d
+    expect 2 't: is not the result of a scan, but a scene' export-views t -o d && expect 2 'v: is not the .*, but a list' export-views v -o d
+    expect 2 'bare: is not the result of a scan: there is no bare/scan.json' export-views bare -o d
+    expect 2 'gone.yaml: no such file' scan gone.yaml -o d && expect 2 'gone.ply: no such file' process gone.ply -o d
+    [ ! -e d ] || fail "a wrong input wrote something"
+    expect 0 '' evaluate t r && grep -q '^  id  as    IoU   seen  recall  recall_obs ' out.txt || fail "evaluate: $(cat out.txt)"
+    ;;
   words)  # a wrong word is named, with the right one
     for words in "proces a.ply -o b:command 'proces'; did you mean 'process'" \
       "process a.ply --out b:option '--out'; did you mean '--output'" \
       "scan s.yaml -o b --max-veiws=3:option '--max-veiws'; did you mean '--max-views'" \
       "scan s.yaml -o b -x:scan: unknown option '-x'" "--verzion:option '--verzion'; did you mean '--version'" \
+      "process a.ply -o b --view v.csv:option '--view'; did you mean '--views'" \
       "xyzzy:unknown command 'xyzzy'\$"; do
       expect 1 "agrisee: .*${words#*:}" ${words%%:*}
     done
     expect 1 'must be 0 or more, got -1' scan s.yaml -o b --seed -1
     expect 1 'must be 0 or more, got -1' make-truss -o b --seed -1
-    expect 1 'output is required' process a.ply
+    expect 1 '^agrisee: .*output is required' process a.ply
+    expect 1 '^agrisee: --max-views: ' scan s.yaml -o b --max-views 0 && expect 1 '^agrisee: .*subcommand' && expect 1 '^agrisee: ' scan
     for limit in 'total.*1 - 12' 'leaflets.*0 - 6' 'elongation.*0.5 - 2' 'at most half' '0.005 to 0.06'; do
       "$agrisee" make-truss --help | grep -q -- "$limit" || fail "make-truss --help does not state $limit"
     done

@@ -77,7 +77,7 @@ TEST_CASE("a view whose reported pose is 50 mm off is discarded, in whatever dir
     for (const View& v : result.views)
       CHECK(v.discard_reason == (v.discarded ? DiscardReason::contradicts_others : DiscardReason::none));
     CHECK(discarded_views(result.views) ==
-          "2 of 8 views were discarded: views 4, 7 contradict the others (are their poses wrong?)");
+          "2 of 8 views were discarded: views 3, 6 contradict the others (are their poses wrong?)");
     for (const int v : result.raw.views) CHECK((v != 3 && v != 6));
     check_found(result);
   }
@@ -94,7 +94,7 @@ TEST_CASE("a frame that comes again is discarded") {
   CHECK(discarded(result) == std::set<int>{4});
   CHECK(result.views[4].discard_reason == DiscardReason::repeated_frame);
   CHECK(discarded_views(result.views) ==
-        "1 of 8 views was discarded: view 5 repeats the frame before (does the camera hang?)");
+        "1 of 8 views was discarded: view 4 repeats the frame before (does the camera hang?)");
   check_found(result);
 }
 

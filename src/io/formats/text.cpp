@@ -187,10 +187,11 @@ std::optional<std::string> nearest_word(std::string_view word, const std::vector
   constexpr std::size_t kLongest = 64;
   if (word.size() < 2 || word.size() > kLongest) return std::nullopt;
   std::optional<std::string> nearest;
-  std::size_t least = std::max<std::size_t>(1, word.size() / 3) + 1;
+  std::pair least(std::max<std::size_t>(1, word.size() / 3), kLongest);
   for (const std::string& candidate : words) {
+    const std::size_t letters = distance(word, candidate);
     const bool begins = word.size() > 2 && candidate.compare(0, word.size(), word) == 0;
-    const std::size_t far = begins ? 1 : distance(word, candidate);
+    const std::pair far(begins ? std::size_t{1} : letters, letters);  // of words that begin alike, the shortest
     if (far >= least) continue;
     least = far;
     nearest = candidate;

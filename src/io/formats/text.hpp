@@ -32,8 +32,9 @@ std::string lower(std::string_view text);
 /// `text` in quotes for an error message: at most 40 characters, unprintable ones replaced by `?`.
 std::string excerpt(std::string_view text);
 
-/// Of some words, the one that a mistyped word probably means: the one of which it is the beginning, or from which it
-/// differs least (letters added, left out, changed or swapped; at most a third of them). None if no word is that near.
+/// Of some words, the one that a mistyped word probably means: the one of which it is the beginning (of several the
+/// shortest), or from which it differs least (letters added, left out, changed or swapped; at most a third of them).
+/// None if no word is that near.
 std::optional<std::string> nearest_word(std::string_view word, const std::vector<std::string>& words);
 
 /// "; did you mean 'scan_volume'?", to be added to a message about an unknown word; empty if no word is near.

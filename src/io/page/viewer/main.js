@@ -72,7 +72,7 @@ parts.push({
     const v = data.views[view];
     if (!v) return;
     slider.value = view + 1;
-    $('view-text').textContent = `View ${view + 1} of ${n} \u00b7 ${v.discarded ? 'discarded' : plural(v.points_new, 'new point', 'new points')} \u00b7 planned in ${seconds(v.plan_seconds)}`;
+    $('view-text').textContent = `View ${view} (${view + 1} of ${n}) \u00b7 ${v.discarded ? 'discarded' : plural(v.points_new, 'new point', 'new points')} \u00b7 planned in ${seconds(v.plan_seconds)}`;
   },
 });
 

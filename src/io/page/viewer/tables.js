@@ -100,7 +100,7 @@ export function showWarnings(data, nodes) {
   const discarded = data.views.filter((v) => v.discarded), n = data.views.length;
   if (discarded.length) {
     const reasons = new Map();
-    for (const v of discarded) reasons.set(v.discarded, [...(reasons.get(v.discarded) || []), v.index + 1]);
+    for (const v of discarded) reasons.set(v.discarded, [...(reasons.get(v.discarded) || []), v.index]);
     const list = [...reasons].map(([why, views]) => `${views.length > 1 ? 'views' : 'view'} ${views.join(', ')} (${kReasons[why] || words(why)})`);
     nodes.warnings.append(el('p', {}, `${discarded.length} of ${plural(n, 'view', 'views')} ${discarded.length === 1 ? 'was' : 'were'} discarded: ${list.join('; ')}.`));
   }
