@@ -30,6 +30,7 @@ class AgriseeConan(ConanFile):
             self.requires("yaml-cpp/0.8.0")
             self.requires("nlohmann_json/3.11.3")
             self.requires("stb/cci.20230920")
+            self.requires("zlib/1.3.1")
 
     def layout(self):
         cmake_layout(self)

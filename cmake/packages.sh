@@ -5,7 +5,7 @@
 set -euo pipefail
 
 declare -A groups=(
-  [build]="g++ cmake ninja-build libeigen3-dev libnanoflann-dev libyaml-cpp-dev nlohmann-json3-dev libcli11-dev libstb-dev"
+  [build]="g++ cmake ninja-build libeigen3-dev libnanoflann-dev libyaml-cpp-dev zlib1g-dev nlohmann-json3-dev libcli11-dev libstb-dev"
   [test]="catch2 pkg-config python3"
   [oracles]="libpcl-dev libopen3d-dev liborocos-kdl-dev libembree-dev"
   [viewers]="cloudcompare meshlab xvfb xauth"

@@ -20,7 +20,7 @@ in_root() { chroot "$root" env -i PATH=/usr/sbin:/usr/bin:/sbin:/bin LC_ALL=C.UT
 install="apt-get install -y -qq --no-install-recommends -o Dpkg::Use-Pty=0"
 in_root apt-get update -qq
 # shellcheck disable=SC2086
-in_root $install cmake ninja-build pkg-config libeigen3-dev libnanoflann-dev libyaml-cpp-dev nlohmann-json3-dev \
+in_root $install cmake ninja-build pkg-config libeigen3-dev libnanoflann-dev libyaml-cpp-dev zlib1g-dev nlohmann-json3-dev \
   libstb-dev catch2 g++ "${compilers[@]}" >/dev/null
 cli=ON  # CLI11 came with Debian 12
 # shellcheck disable=SC2086

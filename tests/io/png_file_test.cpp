@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What our own deflate writes is read back by another inflate, that of stb_image.
+// What is written is read back by another inflate, that of stb_image.
 #include "io/formats/deflate.hpp"
 #include "io/formats/png16.hpp"
 #include "io/io_support.hpp"

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// @file
-/// Compresses bytes as zlib does (RFC 1950, RFC 1951), for PNG files. Only runs of one byte are replaced; for the rest
-/// a Huffman code is made anew every few hundred kilobytes. Of filtered images little else repeats, and this takes a
-/// fifth of the time of a search for all repetitions.
+/// Compresses bytes by zlib (RFC 1950), for PNG files.
 #pragma once
 
 #include <string>
@@ -10,7 +8,7 @@
 
 namespace agrisee::io {
 
-/// The bytes as a zlib stream. The same bytes give the same stream. O(n).
+/// The bytes, at most 4 GB, as a zlib stream. Only runs of one byte are replaced, the rest is Huffman coded. O(n).
 std::string deflate(std::string_view bytes);
 
 }  // namespace agrisee::io
