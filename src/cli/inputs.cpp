@@ -46,7 +46,7 @@ Kind kind_of_yaml(const std::string& input) {
   return Kind::unknown;
 }
 
-Kind kind_of(const std::string& input) {
+Kind input_kind_of(const std::string& input) {
   if (is_folder(input)) {
     if (holds(input, "scene.yaml")) return Kind::scene;
     if (holds(input, "views.yaml")) return Kind::recording;
@@ -128,7 +128,7 @@ io::CloudFile read_pipe(std::FILE* pipe, const std::string& name) {
 }  // namespace
 
 void check_kind(const std::string& input, Kind wanted) {
-  const Kind kind = kind_of(input);
+  const Kind kind = input_kind_of(input);
   if (kind == wanted || kind == Kind::unknown) return;
   const char* const missing = wanted == Kind::scene  ? "not a scene"
                               : wanted == Kind::scan ? "not the result of a scan"
