@@ -33,7 +33,6 @@ double completeness_of(const Cloud& cloud, const Indices& points, const Eigen::V
 
 /// The fitted body of a fruit: its size, how much of it was seen, how far it can be trusted, its volume and mass.
 Body body_of(const Cloud& cloud, const Indices& points, const FoundBody& found, const Parameters& parameters) {
-  const BodyParameters& bodies = parameters.split.bodies;
   const Ellipsoid& ellipsoid = found.fit.body;
   Body body;
   body.center = ellipsoid.center;
@@ -41,11 +40,8 @@ Body body_of(const Cloud& cloud, const Indices& points, const FoundBody& found, 
   body.center_covariance = found.fit.center_covariance;
   body.rms = found.fit.rms;
   body.completeness = completeness_of(cloud, points, body.center);
-  // Confidence grows with what was seen beyond the least that is accepted, and falls with the misfit.
-  const double seen = std::clamp((found.score - bodies.min_coverage) / 0.25, 0.0, 1.0);
-  const double misfit = body.rms / (bodies.tolerance * ellipsoid.mean_radius());
-  body.confidence = (0.5 + 0.5 * seen) * std::exp(-misfit * misfit);
-  const double fit_error = relative_volume_error(cloud, points, ellipsoid, bodies.fit);
+  body.confidence = found.confidence;
+  const double fit_error = relative_volume_error(cloud, points, ellipsoid, parameters.split.bodies.fit);
   Estimate volume = volume_of(ellipsoid, fit_error, parameters.mass);
   if (const auto measured = measured_volume(cloud, points, ellipsoid.center))
     volume = {*measured, volume.error * *measured / volume.value};
@@ -68,7 +64,7 @@ Fruit fruit_of(const Cloud& cloud, const Labels& labels, const Indices& points, 
   if (parameters.split.fit_bodies) fruit.body = body_of(cloud, points, found, parameters);
   if (parameters.growth_axis && parameters.split.fit_bodies) {
     const Eigen::Vector3d z = growth_axis(cloud, labels, found.fit, parameters.axis);
-    const double near = 0.3 * parameters.split.bodies.radius_min;  // scales with the fruit
+    const double near = 0.2 * (fruit.body ? fruit.body->radii.mean() : parameters.split.bodies.radius_min);
     fruit.orientation = frame_from_z_and_x(z, densest_point(cloud, points, near) - c.mean);
   } else {
     fruit.orientation = paper_pose_frame(cloud, points, c.mean);

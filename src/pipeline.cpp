@@ -148,7 +148,11 @@ ScanResult Pipeline::result() const {
     seen_through = [this](const Ellipsoid& body) {
       return fuse::seen_through(map_->images(), body, parameters_.free_space);
     };
-  ScanResult out = process(cloud_, parameters_, origin, seen_through, threads_);
+  constexpr std::ptrdiff_t kSeveral = 3;
+  Parameters parameters = parameters_;
+  if (std::count_if(views_.begin(), views_.end(), [](const View& v) { return !v.discarded; }) >= kSeveral)
+    parameters.split = parameters_.scan_split();
+  ScanResult out = process(cloud_, parameters, origin, seen_through, threads_);
   out.raw = raw();
   center_on_reported_poses(out);
   const double located = out.seconds.locate;

@@ -17,8 +17,8 @@ std::unique_ptr<plan::Planner> make_planner(const Workcell& workcell, const Para
   band.distance_min = parameters.gain.distance_min;
   band.distance_max = parameters.gain.distance_max;
   if (parameters.planner == "gain")
-    return std::make_unique<plan::GainPlanner>(workcell.sensor, volume, robot, parameters.split, parameters.free_space,
-                                               parameters.gain);
+    return std::make_unique<plan::GainPlanner>(workcell.sensor, volume, robot, parameters.scan_split(),
+                                               parameters.free_space, parameters.gain);
   if (parameters.planner == "see") {
     see::Parameters see = parameters.see;
     see.max_views = parameters.max_views;

@@ -3,6 +3,7 @@
 #include <agrisee/cloud/hidden_points.hpp>
 #include <agrisee/cloud/normals.hpp>
 #include <agrisee/cloud/orient_normals.hpp>
+#include <agrisee/cloud/sight_lines.hpp>
 #include <agrisee/cloud/sor.hpp>
 #include <agrisee/cloud/spacing.hpp>
 #include <agrisee/cloud/split.hpp>
@@ -47,8 +48,9 @@ double adapt_to_noise(const Cloud& cloud, double spacing, const Parameters& para
   const BodyParameters& bodies = parameters.split.bodies;
   normals.radius = parameters.normal_reach * spacing;
   const double noise = noise_within(cloud, normals.radius, bodies);
-  // A slope needs eight standard deviations across; more than half a fruit's radius would flatten it.
-  normals.radius = std::max(normals.radius, std::min(8.0 * noise, 0.5 * bodies.radius_min));
+  // A slope needs eight standard deviations across; a wider neighborhood would flatten small fruit and mix leaves.
+  constexpr double kWidest = 0.117;  // of the largest expected radius
+  normals.radius = std::max(normals.radius, std::min(8.0 * noise, kWidest * bodies.radius_max));
   const double across = std::min(normals.radius / spacing, 20.0);
   normals.max_neighbors = std::max(normals.max_neighbors, static_cast<int>(kPi * across * across));
   return noise;
@@ -150,6 +152,21 @@ double provide_normals(Cloud& cloud, const Parameters& parameters, const CloudOr
   return noise;
 }
 
+/// The sight lines of each sensor whose position is known.
+std::vector<SightLines> sight_lines(const Cloud& cloud, const CloudOrigin& origin) {
+  std::vector<SightLines> lines;
+  if (!origin.sensors.empty() && cloud.views.size() == cloud.size()) {
+    std::vector<Indices> seen(origin.sensors.size());
+    for (std::size_t i = 0; i < cloud.size(); ++i)
+      if (cloud.views[i] >= 0) seen[static_cast<std::size_t>(cloud.views[i])].push_back(static_cast<Index>(i));
+    for (std::size_t v = 0; v < seen.size(); ++v)
+      if (!seen[v].empty()) lines.emplace_back(select(cloud, seen[v]), origin.sensors[v]);
+  } else if (origin.viewpoint) {
+    lines.emplace_back(cloud, *origin.viewpoint);
+  }
+  return lines;
+}
+
 /// @throws InputError if a sensor stood farther from all points than any sensor sees
 void check_distance(const Cloud& cloud, const std::vector<Eigen::Vector3d>& sensors) {
   constexpr double kFarthest = 20.0;  // m; depth cameras see less far, and 20 mm are nearer than any of them sees
@@ -185,6 +202,10 @@ void doubt(const std::string& what, bool small, const CloudOrigin& origin, std::
   warnings.push_back(what);
 }
 
+/// From this share of the largest expected radius on, a curved surface tells where it was seen from; small bumps do
+/// not.
+constexpr double kMedium = 0.33;
+
 /// Whether one viewpoint is given for all points.
 bool has_one_viewpoint(const CloudOrigin& origin) { return origin.viewpoint && origin.sensors.empty(); }
 
@@ -195,8 +216,8 @@ void check_hidden(const Cloud& cloud, const Parameters& parameters, const CloudO
   constexpr double kMost = 0.03;
   if (!has_one_viewpoint(origin) || cloud.empty()) return;
   const BodyParameters& bodies = parameters.split.bodies;
-  const double noise = noise_within(cloud, 0.5 * bodies.radius_min, bodies);
-  const double hidden = hidden_share(cloud, *origin.viewpoint, bodies.radius_min + 4.0 * noise);
+  const double deep = kMedium * bodies.radius_max, noise = noise_within(cloud, 0.5 * deep, bodies);
+  const double hidden = hidden_share(cloud, *origin.viewpoint, deep + 4.0 * noise);
   if (hidden > kMost)
     doubt(percent_of(hidden,
                      "the points lie hidden behind others as seen from the viewpoint, so they were seen from "
@@ -210,7 +231,7 @@ void check_side(const Cloud& cloud, const Parameters& parameters, const CloudOri
   constexpr double kLeast = 1.0 / 3.0, kUsual = 0.45;  // share that bulges; on real trees seen rightly 0.55 or more
   if (!has_one_viewpoint(origin)) return;
   const BodyParameters& bodies = parameters.split.bodies;
-  const auto convex = convex_share(cloud, bodies.radius_min, bodies.radius_max);
+  const auto convex = convex_share(cloud, kMedium * bodies.radius_max, bodies.radius_max);
   if (convex && *convex < kUsual)
     doubt(percent_of(1.0 - *convex,
                      "what is curved as fruit is hollow as seen from the viewpoint, so it may lie behind "
@@ -289,8 +310,13 @@ ScanResult process(Cloud&& cloud, const Parameters& parameters, const CloudOrigi
   const double noise = timed(t.normals, [&] { return provide_normals(result.cloud, parameters, origin, threads); });
   check_side(result.cloud, parameters, origin, result.warnings);
   SplitParameters fitted = parameters.split;
-  fitted.bodies.fit.noise = std::max(fitted.bodies.fit.noise, 4.0 * noise);
-  const Split found = timed(t.segment, [&] { return split(result.cloud, fitted, seen_through, threads); });
+  fitted.bodies.fit.sensor_noise = std::max(fitted.bodies.fit.sensor_noise, 4.0 * noise);
+  const std::vector<SightLines> lines = seen_through ? std::vector<SightLines>() : sight_lines(result.cloud, origin);
+  const double margin = std::max(parameters.free_space.margin, 3.0 * noise);
+  const SeenThrough through = seen_through || lines.empty() ? seen_through : [&](const Ellipsoid& body) {
+    return agrisee::seen_through(lines, body, deg(70), std::max(margin, 0.12 * body.mean_radius()));
+  };
+  const Split found = timed(t.segment, [&] { return split(result.cloud, fitted, through, threads); });
   result.bodies = found.bodies;
 
   // Locate: centroids, pose frames, fitted bodies.

@@ -89,6 +89,7 @@ std::string why_no_fruit(const ScanResult& result) {
   add(n.little_seen, "of which too little was seen");
   add(n.contradicted, "with points inside, or through which a view looked");
   add(n.too_flat, "too flat, as leaves and stems are");
+  add(n.doubtful, "too unlike a fruit, as scraps of leaves are (see min_confidence)");
   add(n.overlapping, "inside another");
   add(n.not_fitted, "that no ellipsoid fits");
   add(n.taken, "without points of its own");

@@ -19,7 +19,7 @@ PANEL = (300, 290)
 # name: options of all three, then caption, parameters and further options of each.
 FIGURES = {
     "radius": ([], [("--radius 0.010,0.018", "", ["--radius", "0.010,0.018"]),
-                    ("default: 0.02,0.05", "", []),
+                    ("default: 0.008,0.06", "", []),
                     ("--radius 0.05,0.1", "", ["--radius", "0.05,0.1"])]),
     "separation": ([], [("surfels.separation 0.0006", "{surfels: {separation: 0.0006}}", []),
                         ("default: 0.0024", "", []),

@@ -36,6 +36,8 @@ struct Parameters {
   double normal_reach = 3.0;      ///< adaptive: that radius, in spacings of the cloud
   bool growth_axis = true;  ///< z of the pose frames points to the calyx; off: to the cloud's highest point, as [1]
   double truss_gap = 1.5;   ///< fruit hang on one truss if the gap between them is at most this many of their radii
+  double scan_confidence = 0.3;  ///< a body that several views looked at is taken for a fruit from this probability on,
+                                 ///< one of a single cloud from `split.bodies.min_confidence` on
   sensor::SurfaceParameters surface;          ///< how a surface is reconstructed from each frame
   fuse::SurfelParameters surfels;             ///< how views are fused
   IcpParameters icp;                          ///< how views are registered
@@ -100,13 +102,21 @@ struct Parameters {
     bodies.radius_min = smallest;
     bodies.radius_max = largest;
     check_fields(bodies, "split.bodies.");
-    const double scale = std::min(1.0, smallest / BodyParameters().radius_min);
-    bodies.fit.noise = scale * FitParameters().noise;
+    constexpr double kSmallest = 0.020, kLargest = 0.050;  // m; from here on the defaults are fine enough
+    const double scale = std::min(1.0, std::max(smallest / kSmallest, largest / kLargest));
+    bodies.min_tolerance = scale * BodyParameters().min_tolerance;
     split.bodies = bodies;
     surface.spacing = scale * sensor::SurfaceParameters().spacing;
     surface.smallest_radius = scale * sensor::SurfaceParameters().smallest_radius;
     surfels.separation = scale * fuse::SurfelParameters().separation;
     surfels.agreement = scale * fuse::SurfelParameters().agreement;
+  }
+
+  /// Those of the split for a scan: several views have looked at each body, so less has to speak for it.
+  SplitParameters scan_split() const {
+    SplitParameters out = split;
+    out.bodies.min_confidence = std::min(out.bodies.min_confidence, scan_confidence);
+    return out;
   }
 
   /// Those that fuse::FusedViews needs.
@@ -146,6 +156,7 @@ struct Parameters {
     f("normal_reach", p.normal_reach, Range::positive());
     f("growth_axis", p.growth_axis);
     f("truss_gap", p.truss_gap, Range::not_negative());
+    f("scan_confidence", p.scan_confidence, Range::between(0.0, 1.0));
     f("surface", p.surface);
     f("surfels", p.surfels);
     f("icp", p.icp);

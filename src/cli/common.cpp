@@ -40,7 +40,7 @@ CLI::Option* add_common_options(CLI::App& command, CommonOptions& options) {
   command
       .add_option("--radius", options.radius,
                   "smallest,largest expected radius of a fruit (m, the largest at most 20 times the smallest; default "
-                  "0.02,0.05); also sets the parameters that depend on it")
+                  "0.008,0.06); also sets the parameters that depend on it")
       ->delimiter(',')
       ->expected(2);
   command.add_option("--seed", options.seed, "seed of all random draws")->check(not_negative())->capture_default_str();

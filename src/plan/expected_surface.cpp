@@ -112,6 +112,8 @@ Labels ExpectedSurface::find_fruit(const Progress& progress, const SplitParamete
   // The model needs bodies, whatever stages the final segmentation uses.
   SplitParameters with_bodies = split_parameters;
   with_bodies.adaptive = with_bodies.fit_bodies = true;
+  min_confidence_ = split_parameters.bodies.min_confidence;
+  with_bodies.bodies.min_confidence = std::min(min_confidence_, parameters_.least_confidence);
   const auto through = [&](const Ellipsoid& body) { return fuse::seen_through(progress.images, body, free_space); };
   const bool fused = progress.cloud.normals.size() == progress.cloud.size();
   const Cloud estimated = fused ? Cloud() : with_normals(progress);
@@ -129,7 +131,8 @@ void ExpectedSurface::collect_samples(const Cloud& cloud) {
   areas_.clear();
   occluders_.clear();
   for (const FoundBody& b : bodies_)
-    occluders_.push_back({b.fit.body.center.cast<float>(), static_cast<float>(0.97 * b.fit.body.mean_radius())});
+    occluders_.push_back(
+        {b.fit.body.center.cast<float>(), believed(b) ? static_cast<float>(0.97 * b.fit.body.mean_radius()) : 0.0f});
   area_ = covered_ = 0.0;
   area_of_.clear();
   covered_of_.clear();
@@ -151,7 +154,8 @@ void ExpectedSurface::sample_bodies(const Cloud& cloud) {
     const Ellipsoid& body = bodies_[b].fit.body;
     center_ += body.center / static_cast<double>(bodies_.size());
     for (int side : {-1, 1}) extent_.extend(body.center + Eigen::Vector3d::Constant(side * body.mean_radius()));
-    const double r = body.mean_radius(), share = 4.0 * kPi * r * r / parameters_.samples;
+    const double r = body.mean_radius(), weight = believed(bodies_[b]) ? 1.0 : bodies_[b].confidence;
+    const double share = weight * 4.0 * kPi * r * r / parameters_.samples;
     double covered = 0.0;
     for (const Eigen::Vector3d& d : directions) {
       const Eigen::Vector3d p = body.surface(d);
@@ -176,7 +180,7 @@ void ExpectedSurface::sample_unknown_space(const Aabb& cloud) {
         const Eigen::Vector3d p = voxel_center(x, y, z);
         double nearest = std::numeric_limits<double>::infinity();
         for (const FoundBody& b : bodies_)
-          nearest = std::min(nearest, (p - b.fit.body.center).norm() - b.fit.body.mean_radius());
+          if (believed(b)) nearest = std::min(nearest, (p - b.fit.body.center).norm() - b.fit.body.mean_radius());
         if (bodies_.empty() && cloud.distance(p) < parameters_.neighborhood) nearest = edge_;
         if (nearest < 0.0 || nearest > parameters_.neighborhood) continue;
         add_sample(p, Eigen::Vector3d::Zero(), parameters_.unknown_weight * edge_ * edge_, -1);
@@ -190,7 +194,7 @@ void ExpectedSurface::add_sample(const Eigen::Vector3d& point, const Eigen::Vect
 
 bool ExpectedSurface::inside_other(const Eigen::Vector3d& point, int own) const {
   for (std::size_t b = 0; b < bodies_.size(); ++b)
-    if (static_cast<int>(b) != own &&
+    if (static_cast<int>(b) != own && believed(bodies_[b]) &&
         (point - bodies_[b].fit.body.center).norm() < 0.98 * bodies_[b].fit.body.mean_radius())
       return true;
   return false;
@@ -251,6 +255,7 @@ Completeness ExpectedSurface::completeness(const std::vector<char>& can_be_seen)
     if (samples_[i].body >= 0 && can_be_seen[i]) open[static_cast<std::size_t>(samples_[i].body)] += double(areas_[i]);
   double all = 0.0;
   for (std::size_t b = 0; b < bodies_.size(); ++b) {
+    if (!believed(bodies_[b])) continue;
     const double seen = covered_of_[b], observable = seen + open[b];
     out.fruits.push_back({bodies_[b].fit.body.center, seen / area_of_[b], observable / area_of_[b]});
     out.seen += seen;

@@ -187,7 +187,9 @@ TEST_CASE("a body is too large by any mean of its semi-axes") {
       cloud.points.push_back(d.cwiseProduct(radii).cast<float>());
       cloud.normals.push_back(d.cwiseQuotient(radii).normalized().cast<float>());
     }
-    return split(cloud).found.size();
+    SplitParameters p;
+    p.bodies.radius_min = 0.020, p.bodies.radius_max = 0.050;
+    return split(cloud, p).found.size();
   };
   CHECK(found({0.060, 0.055, 0.050}) == 1);
   CHECK(found({0.080, 0.057, 0.044}) == 0);  // harmonic mean 57 mm, arithmetic mean 60 mm; the limit is 57.5 mm

@@ -19,6 +19,7 @@ LIBRARIES = [  # vcpkg, Conan, rosdep
     ("yaml-cpp", "yaml-cpp", "yaml-cpp"),
     ("nlohmann-json", "nlohmann_json", "nlohmann-json-dev"),
     ("stb", "stb", "libstb-dev"),
+    ("zlib", "zlib", "zlib"),
     ("cli11", None, "cli11"),
     ("catch2", None, "catch2"),
 ]

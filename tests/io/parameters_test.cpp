@@ -87,8 +87,8 @@ TEST_CASE("values out of their range are named with file, line and the whole key
 }
 
 TEST_CASE("where the key at fault is not in the file, the line is that of what encloses it") {
-  CHECK_THAT(error_of("max_views: 9\nsplit:\n  bodies:\n    radius_min: 0.06\n"),
-             test::says(".yaml:4: 'split.bodies.radius_max' must be from radius_min (0.06) to "));
+  CHECK_THAT(error_of("max_views: 9\nsplit:\n  bodies:\n    radius_min: 0.07\n"),
+             test::says(".yaml:4: 'split.bodies.radius_max' must be from radius_min (0.07) to "));
   CHECK_THAT(error_of("gain:\n  distance_min: 0.5\n"),
              test::says(".yaml:2: 'gain.distance' must be at least distance_min (0.5), got 0.38"));
   Parameters bad;
@@ -113,9 +113,10 @@ TEST_CASE("a whole struct is checked by whole keys") {
   refused([](Parameters& p) { p.split.growing.smoothness = 12.0; },
           "split.growing.smoothness must be from 0 to pi (3.14159265), got 12: angles are in radians; 12 degrees are "
           "0.20943951");
-  refused([](Parameters& p) { p.surfels.separation = 2.4; },
-          "surfels.separation must be below 20 times split.bodies.radius_max (1), got 2.4: lengths are in metres; 2.4 "
-          "mm are 0.0024");
+  refused(
+      [](Parameters& p) { p.surfels.separation = 2.4; },
+      "surfels.separation must be below 20 times split.bodies.radius_max (1.2), got 2.4: lengths are in metres; 2.4 "
+      "mm are 0.0024");
   Parameters p;
   CHECK_THROWS_WITH(p.expect_radii(20, 50),
                     "split.bodies.radius_min must be above 0 and at most 1, got 20: lengths are in metres; 20 mm are "
@@ -162,7 +163,7 @@ TEST_CASE("parameter files that hold more, or other things, than parameters are 
 
 TEST_CASE("expected radii set what follows from them, and only that") {
   Parameters p;
-  p.expect_radii(0.03, 0.06);  // lengths of the surface stay as they are for fruit larger than the defaults' 20 mm
+  p.expect_radii(0.03, 0.06);  // lengths of the surface stay as they are for fruit of 20 mm and more
   CHECK(p.split.bodies.radius_min == 0.03);
   CHECK(p.split.bodies.radius_max == 0.06);
   CHECK(p.surface.spacing == sensor::SurfaceParameters().spacing);
@@ -172,8 +173,8 @@ TEST_CASE("expected radii set what follows from them, and only that") {
   CHECK(p.surface.smallest_radius == Approx(0.006));
   CHECK(p.surfels.separation == Approx(0.5 * fuse::SurfelParameters().separation));
   CHECK(p.surfels.agreement == Approx(0.5 * fuse::SurfelParameters().agreement));
-  CHECK(p.split.bodies.fit.noise == Approx(0.5 * FitParameters().noise));
-  p.expect_radii(0.02, 0.05);  // it is not cumulative
+  CHECK(p.split.bodies.min_tolerance == Approx(0.5 * BodyParameters().min_tolerance));
+  p.expect_radii(0.008, 0.06);  // it is not cumulative
   CHECK(io::parameters_to_yaml(p) == io::parameters_to_yaml(Parameters{}));
   CHECK_THROWS_AS(p.expect_radii(0.0, 0.05), ParameterError);
   CHECK_THROWS_AS(p.expect_radii(0.03, 0.02), ParameterError);

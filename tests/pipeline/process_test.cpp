@@ -94,7 +94,7 @@ TEST_CASE("a cloud in millimetres is refused, large clouds in metres are not") {
   Cloud cloud = seen(), scaled = cloud;
   for (auto& p : scaled.points) p *= 1000.0f;
   CHECK_THROWS_WITH(process(scaled),
-                    test::says("apart, farther than the largest expected fruit (0.1 m): is it in millimetres?"));
+                    test::says("apart, farther than the largest expected fruit (0.12 m): is it in millimetres?"));
   CHECK_THROWS_AS(check_units(scaled), InputError);
   std::vector<Eigen::Vector3f> foreign = scaled.points;
   CHECK_THROWS_AS(process(foreign), InputError);

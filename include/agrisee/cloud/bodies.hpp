@@ -10,15 +10,13 @@
 /// smaller. Metres; most limits are shares of the body's radius. Cost: linear in the points near each candidate.
 #pragma once
 
+#include <agrisee/cloud/body_verdict.hpp>
 #include <agrisee/cloud/fit.hpp>
 #include <agrisee/cloud/parameters.hpp>
 #include <agrisee/cloud/seen_through.hpp>
 #include <agrisee/core/body_counts.hpp>
-#include <agrisee/geometry/direction_bins.hpp>
-#include <agrisee/geometry/pca.hpp>
 #include <agrisee/neighbors/grid.hpp>
 
-#include <bitset>
 #include <optional>
 #include <string>
 
@@ -34,104 +32,17 @@ struct BodyCandidate {
 
 /// A body that won.
 struct FoundBody {
-  EllipsoidFit fit;       ///< the body, and how well it is known
-  std::string found_by;   ///< the stage that found it; see Fruit::found_by
-  double coverage = 0.0;  ///< share of its surface covered by its points
-  double score = 0.0;     ///< coverage less contradictions
+  EllipsoidFit fit;         ///< the body, and how well it is known
+  std::string found_by;     ///< the stage that found it; see Fruit::found_by
+  double coverage = 0.0;    ///< share of its surface covered by its points
+  double confidence = 0.0;  ///< probability that it is a fruit, see detail::fruit_probability
 };
 
 namespace detail {
 
-/// Points near a body are looked up within this multiple of its mean radius from its center.
-constexpr double kNearBody = 1.35;
-
-/// Cosine of the largest angle between a point's normal and the body's for points that count as nearly on the body.
-inline double loose_cosine(const BodyParameters& parameters) {
-  return std::cos(std::min(kPi / 2, 1.6 * parameters.max_angle));
-}
-
 /// Whether an ellipsoid could be a fruit by its size, however its mean radius is taken.
 inline bool plausible(const Ellipsoid& body, const BodyParameters& parameters) {
   return parameters.plausible(body.mean_radius()) && parameters.plausible(body.mean_semi_axis());
-}
-
-/// How a body fares against the points that are still free.
-struct Verdict {
-  double coverage = 0.0;      ///< share of the surface covered by points on it
-  double inside = 0.0;        ///< share of the directions in which there are points inside the body
-  double seen_through = 0.0;  ///< share of the surface that sight lines went through
-  double roundness = 0.0;     ///< smaller over larger principal curvature of the points on the surface
-  std::size_t support = 0;    ///< points on the surface
-  double score() const { return coverage - 2.0 * inside - 1.5 * seen_through; }
-};
-
-/// Sums over the points on a body's surface or nearly so; positions are relative to the body's center.
-struct SupportSums {
-  Eigen::Vector3d p_mean = Eigen::Vector3d::Zero(), n_mean = Eigen::Vector3d::Zero();
-  Eigen::Matrix3d pp = Eigen::Matrix3d::Zero(), np = Eigen::Matrix3d::Zero();
-  double count = 0.0;
-
-  void add(const Eigen::Vector3d& q, const Eigen::Vector3d& normal) {
-    count += 1.0;
-    p_mean += q;
-    n_mean += normal;
-    pp += q.lazyProduct(q.transpose());
-    np += normal.lazyProduct(q.transpose());
-  }
-
-  /// Smaller over larger principal curvature, 0 where the smaller one is not positive. The normals are taken as a
-  /// linear function of position in the plane of the points' two longest directions; the curvatures are its
-  /// eigenvalues.
-  double roundness() {
-    p_mean /= count;
-    n_mean /= count;
-    pp -= count * p_mean * p_mean.transpose();
-    np -= count * n_mean * p_mean.transpose();
-    const Eigen::Matrix<double, 3, 2> plane = principal_axes<double>(p_mean, pp).axes.rightCols<2>();
-    const Eigen::Matrix2d spread = plane.transpose() * pp * plane + 1e-12 * Eigen::Matrix2d::Identity();
-    const Eigen::Matrix2d k = plane.transpose() * np * plane * spread.inverse();
-    const double mean = 0.5 * (k(0, 0) + k(1, 1));  // eigenvalues of the symmetric part: mean -+ half
-    const double half = std::hypot(0.5 * (k(0, 0) - k(1, 1)), 0.5 * (k(0, 1) + k(1, 0)));
-    return mean + half > 0.0 ? std::max(mean - half, 0.0) / (mean + half) : 0.0;
-  }
-};
-
-/// Judge a body by the points near it.
-/// @param taken whether a point belongs to a body that has won already
-template <typename S>
-Verdict judge(const PointCloud<S>& cloud, const Grid<S>& grid, const std::vector<char>& taken, const Ellipsoid& body,
-              const BodyParameters& parameters, const SeenThrough& seen_through) {
-  Verdict v;
-  const double r = body.mean_radius();
-  const double near = parameters.tolerance * r;
-  const double cos_max = std::cos(parameters.max_angle), cos_loose = loose_cosine(parameters);
-  std::bitset<DirectionBins::kCount> covered, filled;
-  SupportSums sums;
-  grid.visit(body.center.cast<S>(), static_cast<S>(kNearBody * r), [&](Index index, S) {
-    const auto i = static_cast<std::size_t>(index);
-    const Eigen::Vector3d p = cloud.points[i].template cast<double>(), q = p - body.center;
-    const auto foot = body.foot(p);
-    if (foot.distance < -std::max(0.2 * r, 2.0 * near)) {
-      filled.set(static_cast<std::size_t>(DirectionBins::bin(q)));
-      return;
-    }
-    if (taken[i] || std::abs(foot.distance) > 2.0 * near) return;
-    const Eigen::Vector3d normal = cloud.normals[i].template cast<double>();
-    const double cosine = foot.normal.dot(normal);
-    if (cosine >= cos_loose) sums.add(q, normal);
-    if (std::abs(foot.distance) <= near && cosine >= cos_max) {
-      covered.set(static_cast<std::size_t>(DirectionBins::bin(q)));
-      ++v.support;
-    }
-  });
-  for (std::size_t b = 0; b < DirectionBins::kCount; ++b) {
-    if (covered[b]) v.coverage += DirectionBins::shares()[b];
-    if (filled[b]) v.inside += DirectionBins::shares()[b];
-  }
-  if (v.support < 8) return v;
-  v.roundness = sums.roundness();
-  if (seen_through) v.seen_through = seen_through(body);
-  return v;
 }
 
 /// How deep two bodies go into each other along the line between their centers (m); negative when apart.
@@ -151,7 +62,7 @@ class Competition {
       : cloud_(cloud),
         parameters_(parameters),
         seen_through_(seen_through),
-        grid_(cloud, static_cast<S>(0.5 * parameters.radius_min)),
+        grid_(cloud, static_cast<S>(parameters.cell())),
         taken_(cloud.size(), 0) {}
 
   /// Fit and judge the candidates. Those that score enough enter the competition.
@@ -174,12 +85,16 @@ class Competition {
       if (first && std::any_of(known.begin(), known.end(), [&](const Ellipsoid& k) { return alike(k, first->body); }))
         continue;
       if (first) known.push_back(first->body);
+      if (first && hopeless(*first)) {
+        ++(counts_.*(c.doubt ? c.doubt : &BodyCounts::doubtful));
+        continue;
+      }
       const auto fit = first ? refine(first->body, parameters_.fit) : std::nullopt;
       if (!fit) {
         ++(counts_.*(c.doubt ? c.doubt : &BodyCounts::not_fitted));
         continue;
       }
-      Entry e{*fit, &c.found_by, {}, true};
+      Entry e{*fit, &c.found_by, {}, 0.0, true};
       if (std::size_t BodyCounts::*const fault = assess(e)) {
         ++(counts_.*(c.doubt ? c.doubt : fault));
         continue;
@@ -198,10 +113,11 @@ class Competition {
         continue;
       }
       ++counts_.taken;
-      found.push_back({best->fit, *best->found_by, best->verdict.coverage, best->verdict.score()});
+      found.push_back({best->fit, *best->found_by, best->verdict.coverage, best->confidence});
       take_points(best->fit.body);
       judge_anew(best->fit.body);
     }
+    for (const Entry& e : entries_) counts_.doubtful += e.alive;
     return found;
   }
 
@@ -209,10 +125,15 @@ class Competition {
   const BodyCounts& counts() const { return counts_; }
 
  private:
+  /// An entry with less than this share of the confidence that is asked for does not compete. Others may gain some:
+  /// points that a better body takes are no longer clutter about them.
+  static constexpr double kHopeless = 0.2;
+
   struct Entry {
     EllipsoidFit fit;
     const std::string* found_by;
     Verdict verdict;
+    double confidence = 0.0;
     bool alive = true;
   };
 
@@ -231,30 +152,40 @@ class Competition {
     return (a.center - b.center).norm() < gate && std::abs(b.mean_radius() - r) < gate;
   }
 
+  /// Whether a rough fit is so unlike a fruit that a better one is not worth its time.
+  bool hopeless(const EllipsoidFit& fit) const {
+    const Verdict v = judge(cloud_, grid_, taken_, fit.body, parameters_, {});
+    return fruit_probability(v, fit, parameters_) < 0.1 * kHopeless * parameters_.min_confidence;
+  }
+
   /// Judge an entry by the free points; it is alive while it may win.
   /// @return the count of the first test that it fails; null when it is alive
   std::size_t BodyCounts::*assess(Entry& e) const {
     const bool right_size = plausible(e.fit.body, parameters_);
     e.verdict = judge(cloud_, grid_, taken_, e.fit.body, parameters_, seen_through_);
-    e.alive =
-        right_size && e.verdict.score() >= parameters_.min_coverage && e.verdict.roundness >= parameters_.min_roundness;
+    e.confidence = fruit_probability(e.verdict, e.fit, parameters_);
+    e.alive = right_size && e.verdict.score() >= parameters_.min_coverage &&
+              e.verdict.roundness >= parameters_.min_roundness &&
+              e.confidence >= kHopeless * parameters_.min_confidence;
     if (e.alive) return nullptr;
     if (!right_size)
       return e.fit.body.mean_radius() < parameters_.radius_min ? &BodyCounts::too_small : &BodyCounts::too_large;
     if (!(e.verdict.coverage >= parameters_.min_coverage)) return &BodyCounts::little_seen;
     if (!(e.verdict.score() >= parameters_.min_coverage)) return &BodyCounts::contradicted;
-    return &BodyCounts::too_flat;
+    if (!(e.verdict.roundness >= parameters_.min_roundness)) return &BodyCounts::too_flat;
+    return &BodyCounts::doubtful;
   }
 
-  /// The living entry with the largest score times radius squared, the first of equals; null if none is alive.
+  /// Of the living entries with enough confidence that with the largest score times radius squared times confidence,
+  /// the first of equals; null if there is none.
   Entry* best_entry() {
     const auto area = [](const Entry& e) {
       const double r = e.fit.body.mean_radius();
-      return e.verdict.score() * r * r;
+      return e.verdict.score() * r * r * e.confidence;
     };
     Entry* best = nullptr;
     for (Entry& e : entries_)
-      if (e.alive && (!best || area(e) > area(*best))) best = &e;
+      if (e.alive && e.confidence >= parameters_.min_confidence && (!best || area(e) > area(*best))) best = &e;
     return best;
   }
 
@@ -269,7 +200,7 @@ class Competition {
   /// Take the points that a body explains: those on it within a margin, and everything inside it, such as points in the
   /// dimple at its calyx.
   void take_points(const Ellipsoid& body) {
-    const double margin = 1.5 * parameters_.tolerance * body.mean_radius();
+    const double margin = 1.5 * parameters_.near(body.mean_radius());
     const double cos_loose = loose_cosine(parameters_);
     grid_.visit(body.center.cast<S>(), static_cast<S>(kNearBody * body.mean_radius()), [&](Index index, S) {
       const auto i = static_cast<std::size_t>(index);
@@ -335,7 +266,7 @@ std::vector<FoundBody> find_bodies(const PointCloud<S>& cloud, const std::vector
 }
 
 /// Label each point with the body (counted from 1) on whose surface it lies, 0 for none. That is the nearest body whose
-/// surface is within `tolerance` times its radius and whose normal there differs from the point's by at most 1.6 times
+/// surface is near enough (`tolerance`) and whose normal there differs from the point's by at most 1.6 times
 /// `max_angle`; of equally near ones the first.
 /// @param cloud points (m) with normals
 /// @param bodies in the order of their labels
@@ -345,7 +276,7 @@ Labels assign_to_bodies(const PointCloud<S>& cloud, const std::vector<FoundBody>
                         const BodyParameters& parameters = {}) {
   Labels labels(cloud.size(), 0);
   if (bodies.empty()) return labels;
-  const Grid<S> grid(cloud, static_cast<S>(0.5 * parameters.radius_min));
+  const Grid<S> grid(cloud, static_cast<S>(parameters.cell()));
   std::vector<float> best(cloud.size(), std::numeric_limits<float>::infinity());
   const double cos_loose = detail::loose_cosine(parameters);
   for (std::size_t b = 0; b < bodies.size(); ++b) {
@@ -357,7 +288,7 @@ Labels assign_to_bodies(const PointCloud<S>& cloud, const std::vector<FoundBody>
       const Eigen::Vector3d p = cloud.points[i].template cast<double>();
       const auto foot = body.foot(p);
       const double d = std::abs(foot.distance);
-      if (d > parameters.tolerance * r || d >= double(best[i])) return;
+      if (d > parameters.near(r) || d >= double(best[i])) return;
       if (foot.normal.dot(cloud.normals[i].template cast<double>()) < cos_loose) return;
       best[i] = static_cast<float>(d);
       labels[i] = static_cast<int>(b) + 1;

@@ -260,14 +260,14 @@ std::optional<EllipsoidFit> fit_ellipsoid(const PointCloud<S>& cloud, const Indi
   EllipsoidFit fit;
   fit.body = start;
   const double size = start.mean_radius();
-  const double inlier = 3.0 * std::max(parameters.noise, 0.01 * size);
-  double gate = std::max(6.0 * parameters.noise, 0.12 * size);
+  const double noise = parameters.noise_of(size);
+  const double inlier = 3.0 * std::max(noise, 0.01 * size);
+  double gate = std::max(6.0 * noise, 0.12 * size);
   detail::Matrix9 information = detail::Matrix9::Zero();  // of the last step
   for (int iteration = 0; iteration < parameters.iterations; ++iteration) {
     detail::FitSums sums = detail::fit_sums(samples, fit.body, size, gate, cos_max, inlier);
     if (share * sums.weights < 0.3 * static_cast<double>(least)) return std::nullopt;
-    const double certainty =
-        std::min(share, parameters.independent / sums.weights) / (parameters.noise * parameters.noise);
+    const double certainty = std::min(share, parameters.independent / sums.weights) / (noise * noise);
     detail::add_prior(sums, fit.body, size, certainty, parameters.shape_prior);
     const detail::Vector9 step = Eigen::LDLT<detail::Matrix9>(sums.normal_matrix).solve(sums.rhs);
     const auto longest = detail::apply_step(fit.body, step, size);
@@ -275,7 +275,7 @@ std::optional<EllipsoidFit> fit_ellipsoid(const PointCloud<S>& cloud, const Indi
     fit.inliers = static_cast<std::size_t>(share * static_cast<double>(sums.inliers));
     fit.rms = sums.inliers ? std::sqrt(sums.squares / static_cast<double>(sums.inliers)) : 0.0;
     information = sums.normal_matrix;
-    gate = std::max(0.7 * gate, std::max(4.0 * parameters.noise, 0.05 * size));
+    gate = std::max(0.7 * gate, std::max(4.0 * noise, 0.05 * size));
     if (iteration > 3 && *longest < 1e-4) break;
   }
   if (fit.inliers < least / 2) return std::nullopt;

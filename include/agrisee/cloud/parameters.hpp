@@ -152,11 +152,16 @@ struct IcpParameters {
 /// Parameters of fit_ellipsoid.
 struct FitParameters {
   double noise = 0.001;        ///< standard deviation of points about a fruit's ellipsoid, its lobes included (m)
+  double max_noise = 0.05;     ///< but on a small body at most this share of its radius, as its lobes are smaller, too
+  double sensor_noise = 0.0;   ///< and never below this: standard deviation that is the sensor's alone (m)
   double shape_prior = 0.04;   ///< standard deviation of the semi-axes about those of a sphere, relative to its radius
   double max_angle = deg(50);  ///< points whose normals differ from the ellipsoid's by more are ignored (rad)
   int independent = 150;       ///< points beyond this number add no certainty, since errors of neighbors correlate
   int iterations = 12;         ///< upper limit of the number of steps
   int max_points = 400;        ///< larger sets of points are thinned evenly to this many
+
+  /// Standard deviation (m) of points about a body of this mean radius (m).
+  double noise_of(double radius) const { return std::max(sensor_noise, std::min(noise, max_noise * radius)); }
 
   /// @throws FieldError for the first field that is out of its range
   void check() const { check_fields(*this); }
@@ -165,6 +170,8 @@ struct FitParameters {
   template <typename P, typename F>
   static void fields(P& p, F&& f) {
     f("noise", p.noise, Range::positive());
+    f("max_noise", p.max_noise, Range::positive());
+    f("sensor_noise", p.sensor_noise, Range::not_negative().in_metres());
     f("shape_prior", p.shape_prior, Range::positive());
     f("max_angle", p.max_angle, Range::above(0.0).up_to({kPi, "pi"}).in_radians());
     f("independent", p.independent, Range::at_least(1));
@@ -175,17 +182,25 @@ struct FitParameters {
 
 /// Parameters of find_bodies: which ellipsoids may be fruit, and how they compete for points.
 struct BodyParameters {
-  double radius_min = 0.020;    ///< smallest expected radius of a fruit (m)
-  double radius_max = 0.050;    ///< largest expected radius of a fruit (m)
-  double tolerance = 0.08;      ///< points within this share of the radius from the surface may belong to the body
-  double max_angle = deg(35);   ///< if their normals are also within this angle of the body's (rad)
-  double min_coverage = 0.08;   ///< least share of the surface that is covered by points, less what contradicts it
-  double min_roundness = 0.35;  ///< least ratio of the smaller to the larger principal curvature of its points
-  double max_overlap = 0.30;    ///< deepest penetration of two bodies, as a share of the smaller radius
-  FitParameters fit;            ///< fit of the ellipsoids
+  double radius_min = 0.008;      ///< smallest expected radius of a fruit (m)
+  double radius_max = 0.060;      ///< largest expected radius of a fruit (m)
+  double tolerance = 0.08;        ///< points within this share of the radius from the surface may belong to the body
+  double min_tolerance = 0.0014;  ///< on small bodies, points within this distance from the surface (m)
+  double max_angle = deg(35);     ///< if their normals are also within this angle of the body's (rad)
+  double min_coverage = 0.08;     ///< least share of the surface that is covered by points, less what contradicts it
+  double min_roundness = 0.35;    ///< least ratio of the smaller to the larger principal curvature of its points
+  double min_confidence = 0.5;    ///< least probability that it is a fruit (detail::fruit_probability)
+  double max_overlap = 0.30;      ///< deepest penetration of two bodies, as a share of the smaller radius
+  FitParameters fit;              ///< fit of the ellipsoids
 
   /// Whether a body of mean radius r (m) could be a fruit. The expected range is widened by 15 percent at both ends.
   bool plausible(double r) const { return r >= 0.85 * radius_min && r <= 1.15 * radius_max; }
+
+  /// Points within this distance (m) from the surface of a body of mean radius r (m) may belong to it.
+  double near(double r) const { return std::max(tolerance * r, min_tolerance); }
+
+  /// Cell size (m) of a grid in which the points about bodies of all expected radii are looked up.
+  double cell() const { return 0.3 * std::sqrt(radius_min * radius_max); }
 
   /// @throws FieldError for the first field that is out of its range
   void check() const { check_fields(*this); }
@@ -197,9 +212,11 @@ struct BodyParameters {
     f("radius_max", p.radius_max,
       Range::between({p.radius_min, "radius_min"}, {20.0 * p.radius_min, "20 times radius_min"}).in_metres());
     f("tolerance", p.tolerance, Range::above(0.0).below(1.0));
+    f("min_tolerance", p.min_tolerance, Range::not_negative().in_metres());
     f("max_angle", p.max_angle, Range::above(0.0).below({kPi, "pi"}).in_radians());
     f("min_coverage", p.min_coverage, Range::above(0.0).below(1.0));
     f("min_roundness", p.min_roundness, Range::between(0.0, 1.0));
+    f("min_confidence", p.min_confidence, Range::between(0.0, 1.0));
     f("max_overlap", p.max_overlap, Range::not_negative());
     f("fit", p.fit);
   }

@@ -38,7 +38,16 @@ struct StageParameters {
   DbscanParameters clustering;      ///< second stage
   std::size_t min_residual = 0;     ///< DBSCAN runs if the residual holds more points than this
   int min_cluster = 1;              ///< smaller clusters are noise
+  double spacing = 0.0;             ///< of the cloud (m); 0 where the parameters are not adaptive
 };
+
+/// The fewest points that may be a fruit of a given radius: `min_region` of its surface, and at least 12.
+/// @param radius m
+/// @param spacing of the cloud (m)
+inline int least_points(double radius, double spacing, const SplitParameters& parameters) {
+  const double points = parameters.min_region * 4.0 * kPi * radius * radius / (spacing * spacing);
+  return std::max(12, static_cast<int>(std::min(points, 1e9)));
+}
 
 /// Parameters of the two stages for a cloud of a given spacing. If `parameters` are adaptive, lengths and sizes are
 /// derived from the spacing.
@@ -50,10 +59,9 @@ inline std::optional<StageParameters> stages_for(double spacing, const SplitPara
                          1};
   if (!parameters.adaptive) return stages;
   if (!(spacing > 0.0)) return std::nullopt;
-  const double smallest = 4.0 * kPi * parameters.bodies.radius_min * parameters.bodies.radius_min;
-  const double least = parameters.min_region * smallest / (spacing * spacing);
+  stages.spacing = spacing;
   stages.growing.radius = parameters.growing_reach * spacing;
-  stages.growing.min_size = std::max(12, static_cast<int>(std::min(least, 1e9)));
+  stages.growing.min_size = least_points(parameters.bodies.radius_min, spacing, parameters);
   stages.clustering.eps = parameters.clustering_reach * spacing;
   stages.clustering.min_points = 8;
   stages.min_residual = static_cast<std::size_t>(stages.growing.min_size);
@@ -111,13 +119,14 @@ inline std::string found_by(const Indices& points, const Segments& segments, con
 }
 
 /// The distance from a voted center at which most points face away from it (m); 0 if there are none.
+/// @param radius_min, radius_max the range of radii that voted (m)
 template <typename S>
-double likely_radius(const PointCloud<S>& cloud, const Grid<S>& grid, const Eigen::Vector3d& center,
-                     const BodyParameters& parameters) {
+double likely_radius(const PointCloud<S>& cloud, const Grid<S>& grid, const Eigen::Vector3d& center, double radius_min,
+                     double radius_max) {
   constexpr int kBins = 24;
-  const double low = 0.8 * parameters.radius_min, width = (1.2 * parameters.radius_max - low) / kBins;
+  const double low = 0.8 * radius_min, width = (1.2 * radius_max - low) / kBins;
   std::array<double, kBins + 2> count{};
-  grid.visit(center.template cast<S>(), static_cast<S>(1.2 * parameters.radius_max), [&](Index index, S d_sq) {
+  grid.visit(center.template cast<S>(), static_cast<S>(1.2 * radius_max), [&](Index index, S d_sq) {
     const auto i = static_cast<std::size_t>(index);
     const double d = std::sqrt(double(d_sq));
     const Eigen::Vector3d u = cloud.points[i].template cast<double>() - center;
@@ -133,9 +142,6 @@ double likely_radius(const PointCloud<S>& cloud, const Grid<S>& grid, const Eige
   }
   return best == 0 ? 0.0 : low + (best - 0.5) * width;
 }
-
-/// Votes that a center needs to be proposed.
-inline double least_votes(const RegionGrowingParameters& growing) { return 1.5 * growing.min_size; }
 
 /// Propose a sphere, unless its radius is far from what is expected.
 /// @return the count of the reason for which it was not proposed; null if it was
@@ -154,18 +160,36 @@ inline std::size_t BodyCounts::*propose(Sphere sphere, const char* by, const Bod
 
 /// Propose bodies about the centers for which the points of `voters`, a part of `cloud`, vote. Centers that coincide
 /// with one of the `candidates` given are left out: they would only be fitted twice.
+///
+/// A wide range of radii is divided, so that the cells that are voted for, and the votes that are needed, suit the
+/// size.
 template <typename S>
-void propose_voted(const PointCloud<S>& cloud, const PointCloud<S>& voters, const Grid<S>& grid, double min_votes,
-                   const BodyParameters& parameters, std::vector<BodyCandidate>& candidates) {
-  const std::size_t proposed = candidates.size();
-  for (const VotedCenter& v : vote_for_centers(voters, parameters.radius_min, parameters.radius_max, min_votes)) {
-    throw_if_cancelled();
-    const bool known = std::any_of(
-        candidates.begin(), candidates.begin() + static_cast<std::ptrdiff_t>(proposed),
-        [&](const BodyCandidate& c) { return (c.body.center - v.center).norm() < 0.15 * c.body.mean_radius(); });
-    if (!known)
-      propose({v.center, likely_radius(cloud, grid, v.center, parameters)}, "sphere_voting", parameters, candidates);
-    if (candidates.size() >= proposed + 60) break;  // weaker maxima are noise
+void propose_voted(const PointCloud<S>& cloud, const PointCloud<S>& voters, const Grid<S>& grid,
+                   const StageParameters& stages, const SplitParameters& parameters,
+                   std::vector<BodyCandidate>& candidates) {
+  constexpr double kWidest = 2.5;    // largest over smallest radius that vote together
+  constexpr std::size_t kMost = 60;  // proposals; weaker maxima are noise
+  constexpr double kVotes = 1.5;     // votes that a center needs, for each of the fewest points that may be a fruit
+  const BodyParameters& bodies = parameters.bodies;
+  const std::size_t known = candidates.size();
+  const double range = bodies.radius_max / bodies.radius_min;
+  const int parts = std::max(1, static_cast<int>(std::ceil(std::log(range) / std::log(kWidest) - 1e-9)));
+  for (int part = 0; part < parts; ++part) {
+    const double low = bodies.radius_min * std::pow(range, double(part) / parts);
+    const double high = bodies.radius_min * std::pow(range, (part + 1.0) / parts);
+    const int least = stages.spacing > 0.0 ? least_points(low, stages.spacing, parameters) : stages.growing.min_size;
+    const std::size_t proposed = candidates.size();
+    for (const VotedCenter& v : vote_for_centers(voters, low, high, kVotes * least)) {
+      throw_if_cancelled();
+      const double radius = likely_radius(cloud, grid, v.center, low, high);
+      const auto same = [&](const BodyCandidate& c) {
+        const double r = c.body.mean_radius();
+        return (c.body.center - v.center).norm() < 0.15 * r && (parts == 1 || std::abs(r - radius) < 0.3 * r);
+      };
+      if (std::none_of(candidates.begin(), candidates.begin() + static_cast<std::ptrdiff_t>(known), same))
+        propose({v.center, radius}, "sphere_voting", bodies, candidates);
+      if (candidates.size() >= proposed + kMost) break;
+    }
   }
 }
 
@@ -222,7 +246,7 @@ void extend_labels(Labels& labels, const PointCloud<S>& cloud, const std::vector
       const double r = body.mean_radius();
       if ((p - body.center).squaredNorm() > 1.5 * r * r) continue;
       const double d = body.distance(p);
-      if (d < 0.5 * parameters.tolerance * r && d > -0.4 * r && body.normal(p).dot(n) > 0.3)
+      if (d < 0.5 * parameters.near(r) && d > -0.4 * r && body.normal(p).dot(n) > 0.3)
         labels[i] = static_cast<int>(b) + 1;
     }
   }
@@ -230,16 +254,17 @@ void extend_labels(Labels& labels, const PointCloud<S>& cloud, const std::vector
 
 /// Let segments and voted centers propose bodies, and give the points to the bodies that win.
 template <typename S>
-void split_by_bodies(const PointCloud<S>& cloud, const Segments& segments, const RegionGrowingParameters& growing,
-                     const BodyParameters& bodies, const SeenThrough& seen_through, int threads, Split& out) {
+void split_by_bodies(const PointCloud<S>& cloud, const Segments& segments, const StageParameters& stages,
+                     const SplitParameters& parameters, const SeenThrough& seen_through, int threads, Split& out) {
+  const BodyParameters& bodies = parameters.bodies;
   std::vector<BodyCandidate> candidates;
   BodyCounts not_proposed;
   for (std::size_t s = 0; s < segments.members.size(); ++s)
     if (const auto sphere = sphere_from_normals(cloud, segments.members[s]))
       if (std::size_t BodyCounts::*const fault = propose(*sphere, segments.found_by(s + 1), bodies, candidates))
         ++(not_proposed.*fault);
-  const Grid<S> grid(cloud, static_cast<S>(growing.radius), threads);
-  propose_voted(cloud, cloud, grid, least_votes(growing), bodies, candidates);
+  const Grid<S> grid(cloud, static_cast<S>(stages.growing.radius), threads);
+  propose_voted(cloud, cloud, grid, stages, parameters, candidates);
   out.found = find_bodies(cloud, candidates, bodies, seen_through, &out.bodies);
   out.bodies.too_small += not_proposed.too_small;
   out.bodies.too_large += not_proposed.too_large;
@@ -277,7 +302,7 @@ Split split(const PointCloud<S>& cloud, const SplitParameters& parameters = {}, 
 
   const detail::Segments segments = detail::find_segments(cloud, *stages, threads, out);
   if (parameters.fit_bodies) {
-    detail::split_by_bodies(cloud, segments, stages->growing, parameters.bodies, seen_through, threads, out);
+    detail::split_by_bodies(cloud, segments, *stages, parameters, seen_through, threads, out);
     return out;
   }
   out.labels = segments.labels;
@@ -306,13 +331,13 @@ Split track(const PointCloud<S>& cloud, const std::vector<FoundBody>& known, con
   out.labels.assign(cloud.size(), 0);
   if (cloud.empty()) return out;
   const BodyParameters& bodies = parameters.bodies;
-  const Grid<S> grid(cloud, static_cast<S>(0.5 * bodies.radius_min));
+  const Grid<S> grid(cloud, static_cast<S>(bodies.cell()));
   const auto stages = stages_for(estimate_spacing(cloud, grid), parameters);
   if (!stages) return out;
   std::vector<BodyCandidate> candidates;
   for (const FoundBody& k : known) candidates.push_back({k.fit.body, k.found_by});
   const PointCloud<S> off_them = select(cloud, residual(assign_to_bodies(cloud, known, bodies)));
-  detail::propose_voted(cloud, off_them, grid, detail::least_votes(stages->growing), bodies, candidates);
+  detail::propose_voted(cloud, off_them, grid, *stages, parameters, candidates);
   out.found = find_bodies(cloud, candidates, bodies, seen_through);
   out.labels = assign_to_bodies(cloud, out.found, bodies);
   return out;

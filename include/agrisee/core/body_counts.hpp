@@ -17,12 +17,14 @@ struct BodyCounts {
   std::size_t little_seen = 0;   ///< points cover too little of its surface (`split.bodies.min_coverage`)
   std::size_t contradicted = 0;  ///< there are points inside it, or sight lines went through it
   std::size_t too_flat = 0;      ///< its points are flat or ridge-like: leaves and stems (`split.bodies.min_roundness`)
+  std::size_t doubtful = 0;      ///< too little speaks for a fruit (`split.bodies.min_confidence`)
   std::size_t overlapping = 0;   ///< it goes too deep into a better body (`split.bodies.max_overlap`)
   std::size_t not_fitted = 0;    ///< no ellipsoid fits its points
 
   /// Number of bodies that were not taken.
   std::size_t rejected() const {
-    return too_small + too_large + inside_out + little_seen + contradicted + too_flat + overlapping + not_fitted;
+    return too_small + too_large + inside_out + little_seen + contradicted + too_flat + doubtful + overlapping +
+           not_fitted;
   }
 
   /// f(name, field) for every count.
@@ -35,6 +37,7 @@ struct BodyCounts {
     f("little_seen", p.little_seen);
     f("contradicted", p.contradicted);
     f("too_flat", p.too_flat);
+    f("doubtful", p.doubtful);
     f("overlapping", p.overlapping);
     f("not_fitted", p.not_fitted);
   }

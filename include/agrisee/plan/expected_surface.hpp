@@ -8,7 +8,8 @@
 /// the ellipsoids that no sight line has reached stand for fruit that may be hidden there. A view shows a sample when
 /// the sample lies in the image and within the sensor's range, faces the sensor, and no ellipsoid or other point of the
 /// cloud hides it. Each view that should have shown a sample and did not lowers its area, since the prediction seems to
-/// be wrong there. World frame, metres; gains in m2 of fruit surface.
+/// be wrong there. A body of which too little shows to believe it counts by the probability that it is a fruit, so that
+/// a view of it is worth the move. World frame, metres; gains in m2 of fruit surface.
 #pragma once
 
 #include <agrisee/cloud/bodies.hpp>
@@ -46,7 +47,7 @@ class ExpectedSurface {
   /// @param can_be_seen one per sample: not zero when some reachable view shows it
   Completeness completeness(const std::vector<char>& can_be_seen) const;
 
-  /// The fruit found so far.
+  /// The fruit found so far, and what may be fruit.
   const std::vector<FoundBody>& bodies() const { return bodies_; }
   /// Surface (m2) of all fruit found so far, seen or not.
   double area() const { return area_; }
@@ -82,6 +83,8 @@ class ExpectedSurface {
   void add_sample(const Eigen::Vector3d& point, const Eigen::Vector3d& normal, double area, int body);
   /// Whether a point (m) lies inside another fruit than `own`.
   bool inside_other(const Eigen::Vector3d& point, int own) const;
+  /// Whether a body is taken for a fruit, not only for what may be one.
+  bool believed(const FoundBody& body) const { return body.confidence >= min_confidence_; }
   /// Center (m, world) of a voxel.
   Eigen::Vector3d voxel_center(int x, int y, int z) const;
 
@@ -99,10 +102,11 @@ class ExpectedSurface {
   std::vector<char> known_;                         // per voxel: some sight line has reached it
   std::size_t images_read_ = 0;                     // views whose sight lines are marked in `known_`
   std::vector<FoundBody> bodies_;
+  double min_confidence_ = 0.0;   // a body is believed from this probability on
   std::size_t segmented_at_ = 0;  // size of the cloud when it was last segmented from scratch
   std::vector<Sample> samples_;
   std::vector<float> areas_;                // one per sample (m2)
-  std::vector<Occluder> occluders_;         // spheres a little smaller than the fruit
+  std::vector<Occluder> occluders_;         // spheres a little smaller than the fruit, in the order of `bodies_`
   std::vector<Eigen::Vector3f> obstacles_;  // points that belong to no fruit, thinned (m)
   double area_ = 0.0, covered_ = 0.0;
   std::vector<double> area_of_, covered_of_;  // one per fruit (m2)

@@ -17,8 +17,9 @@ struct ExpectedSurfaceParameters {
   double voxel = 0.015;            ///< edge of the voxels of unknown space (m)
   double neighborhood = 0.06;      ///< unknown space counts if it is at most this far from a body's surface (m)
   double unknown_weight = 0.08;  ///< fruit surface expected behind the face of an unknown voxel, as a share of the face
-  double missed_factor = 0.35;   ///< a sample's area is multiplied by this for every view that should have shown it but
-                                 ///< did not
+  double least_confidence = 0.1;  ///< a body that is a fruit with at least this probability is worth a look
+  double missed_factor = 0.35;  ///< a sample's area is multiplied by this for every view that should have shown it but
+                                ///< did not
 
   /// @throws FieldError for the first field that is out of its range
   void check() const { check_fields(*this); }
@@ -32,6 +33,7 @@ struct ExpectedSurfaceParameters {
     f("voxel", p.voxel, Range::positive());
     f("neighborhood", p.neighborhood, Range::not_negative());
     f("unknown_weight", p.unknown_weight, Range::not_negative());
+    f("least_confidence", p.least_confidence, Range::between(0.0, 1.0));
     f("missed_factor", p.missed_factor, Range::between(0.0, 1.0));
   }
 };

@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <agrisee/cloud/body_verdict.hpp>
+
+#include <random>
+
+#include "catch.hpp"
+
+using namespace agrisee;
+using namespace agrisee::detail;
+
+namespace {
+
+constexpr double kRadius = 0.03;
+
+/// Points of a sphere about the origin within an angle of the direction -y, from where a camera might look.
+Cloud cap(double angle, double noise = 0.0) {
+  Cloud cloud;
+  std::mt19937 random(1);
+  std::normal_distribution<double> error(0.0, 1.0);
+  const double golden = kPi * (3.0 - std::sqrt(5.0));
+  constexpr int kAll = 2000;
+  for (int i = 0; i < kAll; ++i) {
+    const double y = 1.0 - 2.0 * (i + 0.5) / kAll, across = std::sqrt(1.0 - y * y);
+    const Eigen::Vector3d d(across * std::cos(golden * i), y, across * std::sin(golden * i));
+    if (-d.y() < std::cos(angle)) continue;
+    const Eigen::Vector3d tilt(error(random), error(random), error(random));
+    cloud.points.push_back(((kRadius + 0.02 * noise * error(random)) * d).cast<float>());
+    cloud.normals.push_back((d + noise * tilt).normalized().cast<float>());
+  }
+  return cloud;
+}
+
+EllipsoidFit fit_of(double rms) {
+  EllipsoidFit fit;
+  fit.body = Ellipsoid(Sphere{Eigen::Vector3d::Zero(), kRadius});
+  fit.rms = rms;
+  return fit;
+}
+
+Verdict verdict_of(const Cloud& cloud, const SeenThrough& through = {}) {
+  const Grid<float> grid(cloud, 0.006f);
+  return judge(cloud, grid, std::vector<char>(cloud.size(), 0), fit_of(0.0).body, BodyParameters(), through);
+}
+
+}  // namespace
+
+TEST_CASE("a verdict measures what it says, on half a sphere") {
+  const Cloud cloud = cap(kPi / 2);
+  const Verdict v = verdict_of(cloud);
+  CHECK(v.support == cloud.size());
+  CHECK(v.coverage == Approx(0.5).margin(0.06));
+  CHECK(v.roundness > 0.95);
+  CHECK(v.normal_spread < 1e-3);
+  CHECK(v.clutter == 0.0);
+  CHECK(v.inside == 0.0);
+}
+
+TEST_CASE("normals that differ, and points nearby that do not fit, are counted") {
+  Cloud cloud = cap(kPi / 2, 0.2);
+  CHECK(verdict_of(cloud).normal_spread == Approx(std::sin(std::atan(0.2 * std::sqrt(2.0)))).margin(0.05));
+  cloud = cap(kPi / 2);
+  const std::size_t own = cloud.size();
+  for (std::size_t i = 0; i < own / 2; ++i) {  // a leaf 6 mm above the surface
+    cloud.points.push_back(cloud.points[i] * 1.2f);
+    cloud.normals.push_back(cloud.normals[i]);
+  }
+  CHECK(verdict_of(cloud).clutter == Approx(0.5).margin(0.01));
+}
+
+TEST_CASE("whatever speaks against a fruit lowers its probability") {
+  const Verdict good = verdict_of(cap(kPi / 2));
+  const double believed = fruit_probability(good, fit_of(0.0005), BodyParameters());
+  CHECK(believed > 0.95);
+  CHECK(fruit_probability(good, fit_of(0.002), BodyParameters()) < believed);
+  const auto with = [&](auto&& change) {
+    Verdict v = good;
+    change(v);
+    return fruit_probability(v, fit_of(0.0005), BodyParameters());
+  };
+  CHECK(with([](Verdict& v) { v.normal_spread = 0.4; }) < believed);
+  CHECK(with([](Verdict& v) { v.clutter = 3.0; }) < believed);
+  CHECK(with([](Verdict& v) { v.normal_spread = 0.4, v.clutter = 3.0, v.support = 60; }) < 0.05);  // a tuft of leaves
+  CHECK(with([](Verdict& v) { v.inside = 0.1; }) < believed);
+  CHECK(with([](Verdict& v) { v.seen_through = 0.1; }) < believed);
+  CHECK(with([](Verdict& v) { v.roundness = 0.35; }) < believed);
+  CHECK(with([](Verdict& v) { v.support = 20; }) < believed);
+  CHECK(fruit_probability(Verdict(), fit_of(0.0), BodyParameters()) == 0.0);
+}
