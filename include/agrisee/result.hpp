@@ -57,7 +57,7 @@ struct Body {
   Eigen::Matrix3d center_covariance = Eigen::Matrix3d::Zero();  ///< m2
   double rms = 0.0;                                             ///< root mean square distance of its points (m)
   double completeness = 0.0;                                    ///< share of its surface that was observed, 0..1
-  double confidence = 0.0;                                      ///< 0..1
+  double confidence = 0.0;                                      ///< probability that it is a fruit, 0..1
   double volume = 0.0;                                          ///< m3
   double volume_error = 0.0;                                    ///< its standard error (m3); 0 = not known
   double mass = 0.0;                                            ///< kg, through a density parameter
