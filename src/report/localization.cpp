@@ -96,12 +96,9 @@ std::string paper_truss(const Group& group) {
     return "The truss of the paper's table (" + std::to_string(study::kPaperLocalizationTotal) + " fruit, " +
            std::to_string(study::kPaperLocalizationHidden) + " hidden) is not among the scenes.\n\n";
   return "The truss of the paper's table, here " + text(row->scene) +
-         ", in the world frame (the base of the arm). The centres of the fruit in our scene are those of the paper, "
-         "except that fruit do not overlap and the last fruit is behind the others:\n\n" +
-         fruit_table(*row, true) +
+         ", in the world frame (the base of the arm):\n\n" + fruit_table(*row, true) +
          "\nThe same fruit in the cluster frame, whose origin is the lower left far corner of the scan volume. The "
-         "paper's columns cannot be compared with ours: no rigid motion takes its world columns to its cluster "
-         "columns.\n\n" +
+         "paper's columns cannot be compared: no rigid motion takes its world columns to them.\n\n" +
          fruit_table(*row, false) + "\n";
 }
 
@@ -133,17 +130,11 @@ std::string group_section(const Group& group) {
   const Located l = located(group);
   if (l.found == 0) return out + "None of " + std::to_string(l.all) + " fruit (counted once a scan) was located.\n\n";
   out += paper_truss(group);
-  out +=
-      std::to_string(l.found) + " of " + std::to_string(l.all) + " fruit (counted once a scan) were located, " +
-      std::to_string(l.missing()) +
-      " are missing from the rows below. All in millimetres, `mean / worst` over fruit and trials: the repeatability; "
-      "the distance of the centroid from the mean of the observable surface of the fruit, and from the mean of that "
-      "part of it which the views saw; the errors of the centre and the radius of the fitted body.\n\n";
+  out += std::to_string(l.found) + " of " + std::to_string(l.all) + " fruit (counted once a scan) were located, " +
+         std::to_string(l.missing()) +
+         " are missing from the rows below. All in millimetres, `mean / worst` over fruit and trials:\n\n";
   out += distance_table(group);
-  out +=
-      "\nThe angle between the z axis of the pose and the true calyx axis (`median / worst`, degrees); the error of "
-      "the completeness of the fitted body (`mean / worst`, percentage points); and the least recall of the observable "
-      "surface of any fruit, including missing ones:\n\n";
+  out += "\nAxis, completeness and the least recall:\n\n";
   return out + axis_table(group) + "\n";
 }
 
@@ -160,6 +151,13 @@ std::string localization_section(const Data& data) {
                  "Repeatability per fruit, ours and the paper's, and errors of centroids per scene");
   out += "As files, with a row per scan: [localization.csv](" + data.folder +
          "/localization.csv); with a row per fruit and scan: [fruits.csv](" + data.folder + "/fruits.csv).\n\n";
+  out +=
+      "The tables of errors: the RMSE; the distance of the centroid from the mean of the observable surface of the "
+      "fruit, and from the mean of that part of it which the views saw; the errors of the centre and the radius of "
+      "the fitted body; the angle between the z axis of the pose and the true calyx axis (`median / worst`, degrees); "
+      "the error of the completeness of the fitted body (`mean / worst`, percentage points); and the least recall of "
+      "the observable surface of any fruit, including missing ones. The truss of the paper's table has its fruit "
+      "where the paper has them, except that fruit do not overlap and the last fruit is behind the others.\n\n";
   for (const Group* group : main_groups(data)) out += group_section(*group);
   return out;
 }
