@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <agrisee/cloud/fit.hpp>
+#include <agrisee/cloud/share_seen_through.hpp>
 #include <agrisee/fuse/free_space.hpp>
-#include <agrisee/geometry/direction_bins.hpp>
 
-#include <cmath>
+#include <algorithm>
 
 namespace agrisee::fuse {
 
@@ -25,24 +24,10 @@ bool refutes(const sensor::SurfaceImage& view, const Eigen::Vector3d& p, const F
 
 double seen_through(const std::vector<sensor::SurfaceImage>& views, const Ellipsoid& body,
                     const FreeSpaceParameters& parameters) {
-  const auto& directions = DirectionBins::directions();
-  const auto& shares = DirectionBins::shares();
-  const double cos_max = std::cos(parameters.max_incidence);
-  double share = 0.0;
-  for (std::size_t b = 0; b < directions.size(); ++b) {
-    const Eigen::Vector3d p = body.surface(directions[b]);
-    const Eigen::Vector3d n = body.normal(p);
-    int through = 0, surface = 0;
-    for (const auto& view : views) {
-      const Eigen::Vector3d ray = (p - view.world_T_optical.translation()).normalized();
-      if (-ray.dot(n) < cos_max) continue;
-      const Sight s = sight(view, p, parameters);
-      through += s == Sight::through;
-      surface += s == Sight::surface;
-    }
-    if (through > surface) share += shares[b];
-  }
-  return share;
+  return share_seen_through(
+      views, body, parameters.max_incidence,
+      [](const sensor::SurfaceImage& view) -> Eigen::Vector3d { return view.world_T_optical.translation(); },
+      [&](const sensor::SurfaceImage& view, const Eigen::Vector3d& p) { return sight(view, p, parameters); });
 }
 
 }  // namespace agrisee::fuse

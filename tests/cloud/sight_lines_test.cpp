@@ -4,7 +4,6 @@
 #include "catch.hpp"
 
 using namespace agrisee;
-using Place = SightLines::Place;
 
 namespace {
 
@@ -20,12 +19,12 @@ Cloud wall() {
 
 TEST_CASE("sight lines pass what is before a wall, end at it, and say nothing of what is behind or beside it") {
   const SightLines lines(wall(), Eigen::Vector3d::Zero());
-  CHECK(lines.at({0.01, 0.4, 0.02}, 0.005) == Place::passed);
-  CHECK(lines.at({0.01, 0.5, 0.02}, 0.005) == Place::surface);
-  CHECK(lines.at({0.01, 0.497, 0.02}, 0.005) == Place::surface);
-  CHECK(lines.at({0.01, 0.6, 0.02}, 0.005) == Place::unknown);
-  CHECK(lines.at({0.3, 0.4, 0.0}, 0.005) == Place::unknown);
-  CHECK(lines.at({0.0, -0.4, 0.0}, 0.005) == Place::unknown);
+  CHECK(lines.at({0.01, 0.4, 0.02}, 0.005) == Sight::through);
+  CHECK(lines.at({0.01, 0.5, 0.02}, 0.005) == Sight::surface);
+  CHECK(lines.at({0.01, 0.497, 0.02}, 0.005) == Sight::surface);
+  CHECK(lines.at({0.01, 0.6, 0.02}, 0.005) == Sight::unknown);
+  CHECK(lines.at({0.3, 0.4, 0.0}, 0.005) == Sight::unknown);
+  CHECK(lines.at({0.0, -0.4, 0.0}, 0.005) == Sight::unknown);
 }
 
 TEST_CASE("a body before a wall was seen through on the side of the sensor, one in the wall was not") {

@@ -7,12 +7,11 @@
 /// the frame of the cloud. Cost: linear in the points; a body is tested in constant time for each sensor.
 #pragma once
 
-#include <agrisee/cloud/fit.hpp>
+#include <agrisee/cloud/share_seen_through.hpp>
 #include <agrisee/cloud/spacing.hpp>
 #include <agrisee/core/cloud.hpp>
 #include <agrisee/core/median.hpp>
 #include <agrisee/core/pose.hpp>
-#include <agrisee/geometry/direction_bins.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -24,13 +23,6 @@ namespace agrisee {
 /// What the sight lines from one sensor say.
 class SightLines {
  public:
-  /// What is known of a place.
-  enum class Place {
-    unknown,  ///< no sight line came near, or it ended before the place
-    surface,  ///< sight lines end there
-    passed    ///< all sight lines nearby went on behind it
-  };
-
   /// @param cloud the points that the sensor saw (m)
   /// @param sensor its position (m)
   template <typename S>
@@ -42,26 +34,28 @@ class SightLines {
       middle += d.normalized();
       ranges.push_back(static_cast<float>(d.norm()));
     }
-    const double typical = static_cast<double>(median(ranges)), spacing = estimate_spacing(cloud);
+    std::vector<float> reordered = ranges;
+    const double typical = static_cast<double>(median(reordered)), spacing = estimate_spacing(cloud);
     if (!(middle.norm() > 1e-6) || !(typical > 0.0) || !(spacing > 0.0)) return;
     axes_.col(2) = middle.normalized();
     axes_.col(0) = any_orthogonal<double>(axes_.col(2));
     axes_.col(1) = axes_.col(2).cross(axes_.col(0));
     pitch_ = std::max(kCell * spacing / typical, kPi / kMost);
+    std::vector<Eigen::Vector2d> angles_of;
+    angles_of.reserve(cloud.size());
     Eigen::Vector2d low = Eigen::Vector2d::Constant(kPi), high = -low;
     for (const auto& p : cloud.points) {
-      const Eigen::Vector2d a = angles(p.template cast<double>() - sensor);
-      low = low.cwiseMin(a), high = high.cwiseMax(a);
+      angles_of.push_back(angles(p.template cast<double>() - sensor));
+      low = low.cwiseMin(angles_of.back()), high = high.cwiseMax(angles_of.back());
     }
     low_ = low;
     width_ = static_cast<int>((high.x() - low.x()) / pitch_) + 1;
     height_ = static_cast<int>((high.y() - low.y()) / pitch_) + 1;
     nearest_.assign(static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_),
                     std::numeric_limits<float>::infinity());
-    for (const auto& p : cloud.points) {
-      const Eigen::Vector3d d = p.template cast<double>() - sensor;
-      float& range = nearest_[static_cast<std::size_t>(cell(angles(d)))];
-      range = std::min(range, static_cast<float>(d.norm()));
+    for (std::size_t i = 0; i < cloud.size(); ++i) {
+      float& range = nearest_[static_cast<std::size_t>(cell(angles_of[i]))];
+      range = std::min(range, ranges[i]);
     }
   }
 
@@ -70,8 +64,8 @@ class SightLines {
 
   /// What is known of the place p (m).
   /// @param margin sight lines that end within this distance (m) of it end there
-  Place at(const Eigen::Vector3d& p, double margin) const {
-    if (nearest_.empty()) return Place::unknown;
+  Sight at(const Eigen::Vector3d& p, double margin) const {
+    if (nearest_.empty()) return Sight::unknown;
     const Eigen::Vector3d d = p - sensor_;
     const Eigen::Vector2d a = (angles(d) - low_) / pitch_;
     const int u = static_cast<int>(std::floor(a.x())), v = static_cast<int>(std::floor(a.y()));
@@ -84,12 +78,12 @@ class SightLines {
         const double seen = double(
             nearest_[static_cast<std::size_t>(y) * static_cast<std::size_t>(width_) + static_cast<std::size_t>(x)]);
         if (std::isinf(seen)) continue;
-        if (seen < range - margin) return Place::unknown;
+        if (seen < range - margin) return Sight::unknown;
         ends |= seen <= range + margin;
         ++behind;
       }
-    if (ends) return Place::surface;
-    return behind >= kEnough ? Place::passed : Place::unknown;
+    if (ends) return Sight::surface;
+    return behind >= kEnough ? Sight::through : Sight::unknown;
   }
 
  private:
@@ -122,22 +116,9 @@ class SightLines {
 /// @param margin m, see SightLines::at
 inline double seen_through(const std::vector<SightLines>& sensors, const Ellipsoid& body, double max_incidence,
                            double margin) {
-  const auto& directions = DirectionBins::directions();
-  const auto& shares = DirectionBins::shares();
-  const double cos_max = std::cos(max_incidence);
-  double share = 0.0;
-  for (std::size_t b = 0; b < directions.size(); ++b) {
-    const Eigen::Vector3d p = body.surface(directions[b]), n = body.normal(p);
-    int passed = 0, surface = 0;
-    for (const SightLines& lines : sensors) {
-      if ((lines.sensor() - p).normalized().dot(n) < cos_max) continue;
-      const SightLines::Place place = lines.at(p, margin);
-      passed += place == SightLines::Place::passed;
-      surface += place == SightLines::Place::surface;
-    }
-    if (passed > surface) share += shares[b];
-  }
-  return share;
+  return share_seen_through(
+      sensors, body, max_incidence, [](const SightLines& lines) -> const Eigen::Vector3d& { return lines.sensor(); },
+      [&](const SightLines& lines, const Eigen::Vector3d& p) { return lines.at(p, margin); });
 }
 
 }  // namespace agrisee

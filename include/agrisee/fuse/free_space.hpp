@@ -7,6 +7,7 @@
 /// world. Cost: one projection a view.
 #pragma once
 
+#include <agrisee/cloud/seen_through.hpp>
 #include <agrisee/fuse/parameters.hpp>
 #include <agrisee/sensor/surface_image.hpp>
 
@@ -14,20 +15,9 @@
 #include <cstddef>
 #include <vector>
 
-namespace agrisee {
-struct Ellipsoid;
-}
-
 namespace agrisee::fuse {
 
-/// What one view says of a place.
-enum class Sight {
-  unknown,  ///< outside the image, or hidden behind something
-  surface,  ///< the sight line ends there
-  through   ///< the sight line goes on behind it
-};
-
-/// What `view` says of the point p (m, world).
+/// What `view` says of the point p (m, world): unknown outside the image, too.
 inline Sight sight(const sensor::SurfaceImage& view, const Eigen::Vector3d& p, const FreeSpaceParameters& parameters) {
   double z = 0.0;
   const std::ptrdiff_t c = view.cell(p, &z);
