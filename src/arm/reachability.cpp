@@ -23,14 +23,15 @@ struct Candidate {
 };
 
 Candidate candidate(const Mount& mount, const Joints& present, const Joints& q, int pose) {
-  return {q, move_time(present, q, mount.limits), joint_distance(present, q), pose};
+  return {q, move_time(present, q, mount.model.limits), joint_distance(present, q), pose};
 }
 
 // Appends all solutions for a pose of the tool, each at the joint angles nearest to the present ones.
 void add_solutions(const Mount& mount, const Pose& base_T_tool0, const Joints& present, int pose,
                    std::vector<Candidate>& out) {
   for (const Joints& q : solve(base_T_tool0, present[5], mount.model))
-    if (const auto near = nearest(q, present, mount.limits)) out.push_back(candidate(mount, present, *near, pose));
+    if (const auto near = nearest(q, present, mount.model.limits))
+      out.push_back(candidate(mount, present, *near, pose));
 }
 
 // The sense in which the view rolls when the last joint turns: +1 or -1 if the optical axis is the axis of that joint,
@@ -56,15 +57,16 @@ bool add_rolled_solutions(const Mount& mount, const Pose& base_T_tool0, const Jo
     int roll = -1;
     double least = std::numeric_limits<double>::infinity();
     for (int i = 0; i < rolls; ++i) {
-      const auto last =
-          nearest(wrap(q[5] + sense * kTwoPi * i / rolls), present[5], mount.limits.min[5], mount.limits.max[5]);
+      const auto last = nearest(wrap(q[5] + sense * kTwoPi * i / rolls), present[5], mount.model.limits.min[5],
+                                mount.model.limits.max[5]);
       if (!last || !(std::abs(*last - present[5]) < least)) continue;
       least = std::abs(*last - present[5]);
       turned[5] = *last;
       roll = i;
     }
     if (roll < 0) continue;
-    if (const auto near = nearest(turned, present, mount.limits)) out.push_back(candidate(mount, present, *near, roll));
+    if (const auto near = nearest(turned, present, mount.model.limits))
+      out.push_back(candidate(mount, present, *near, roll));
   }
   if (!regular) out.resize(before);
   return regular;

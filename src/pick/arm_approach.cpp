@@ -60,7 +60,7 @@ struct StraightApproach {
       std::optional<Joints> next;
       double least = parameters.max_joint_step;
       for (const Joints& solution : arm::solve(tool0_at(position, roll), q[5], mount.model)) {
-        const auto near = arm::nearest(solution, q, mount.limits);
+        const auto near = arm::nearest(solution, q, mount.model.limits);
         if (!near) continue;
         const double turn = (*near - q).cwiseAbs().maxCoeff();
         if (turn < least) least = turn, next = near;
@@ -119,7 +119,7 @@ class ArmApproach {
   /// Adds the number of their groups to `groups`.
   std::vector<StartPosture> start_postures(const StraightApproach& approach, const Joints& current, int& groups) const {
     std::vector<StartPosture> postures;
-    const arm::JointLimits& limits = approach.mount.limits;
+    const arm::JointLimits& limits = approach.mount.model.limits;
     const auto add = [&](const Joints& q, int roll, int group) {
       if (const auto near = arm::nearest(q, current, limits))
         postures.push_back(

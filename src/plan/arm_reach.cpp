@@ -9,7 +9,6 @@ namespace agrisee::plan {
 arm::Mount mount_of(const Workcell& workcell) {
   arm::Mount mount;
   mount.model = workcell.arm;
-  mount.limits = workcell.arm.limits;
   mount.world_T_base = workcell.world_T_base;
   mount.tool0_T_optical = workcell.tool0_T_optical;
   mount.keep_out = workcell.keep_out;

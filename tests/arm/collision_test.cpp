@@ -160,7 +160,6 @@ TEST_CASE("longer arms have longer and wider solids, and are free in common post
     CAPTURE(std::string(model.name));
     Mount mount;
     mount.model = model;
-    mount.limits = model.limits;
     CHECK_FALSE(collides((Joints() << 0.0, -1.57, 1.57, -1.57, -1.57, 0.0).finished(), mount));
     CHECK_FALSE(collides((Joints() << 0.0, -0.8, 1.2, -0.4, -1.57, 0.0).finished(), mount));
     // Folded onto itself: the wrist in the upper arm.

@@ -34,9 +34,9 @@ Vector3d sight(double azimuth_deg, double elevation_deg) {
 void check_reached(const Mount& mount, const Joints& present, const Reached& r) {
   const Pose stands = mount.world_T_base * forward(r.joints) * mount.tool0_T_optical;
   REQUIRE((stands.matrix() - r.world_T_optical.matrix()).cwiseAbs().maxCoeff() < 1e-9);
-  REQUIRE(mount.limits.contain(r.joints));
+  REQUIRE(mount.model.limits.contain(r.joints));
   REQUIRE_FALSE(collides(r.joints, mount));
-  REQUIRE(r.move_time == move_time(present, r.joints, mount.limits));
+  REQUIRE(r.move_time == move_time(present, r.joints, mount.model.limits));
 }
 
 }  // namespace
@@ -75,7 +75,7 @@ TEST_CASE("reach: the first distance that serves, and there the shortest move") 
       for (int i = 0; i < parameters.rolls; ++i) {
         const Pose view = look_along(kTruss - r * d, d, kTwoPi * i / parameters.rolls);
         for (const Joints& q : inverse(view * mount.tool0_T_optical.inverse())) {
-          const auto near = nearest(q, kStart, mount.limits);
+          const auto near = nearest(q, kStart, mount.model.limits);
           if (near && !collides(*near, mount)) best = std::min(best, move_time(kStart, *near));
         }
       }

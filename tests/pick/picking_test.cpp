@@ -75,7 +75,7 @@ void check_pick(const Picking& pick, const Fruit& f, const PickingScene& s, cons
   CHECK(pick.direction.dot(-f.orientation.col(2)) <= std::cos(p.pedicel_angle) + 1e-9);
   const Pose tool = mount.tool0_T_optical;
   CHECK((mount.world_T_base * arm::forward(*pick.joints) * tool).isApprox(pose, 1e-9));
-  CHECK(mount.limits.contain(*pick.joints));
+  CHECK(mount.model.limits.contain(*pick.joints));
   mount.keep_out = counting(s.keep_out, f.body->center);
   // The whole way, in finer steps than it was planned in.
   Joints q = *pick.joints;
@@ -85,8 +85,8 @@ void check_pick(const Picking& pick, const Fruit& f, const PickingScene& s, cons
     here.translation() += i * (p.stand_off - p.contact) / kSteps * pick.direction;
     std::optional<Joints> next;
     for (const Joints& solution :
-         arm::inverse(mount.world_T_base.inverse() * here * tool.inverse(), mount.limits, q[5])) {
-      const auto near = arm::nearest(solution, q, mount.limits);
+         arm::inverse(mount.world_T_base.inverse() * here * tool.inverse(), mount.model.limits, q[5])) {
+      const auto near = arm::nearest(solution, q, mount.model.limits);
       if (near && (!next || (*near - q).norm() < (*next - q).norm())) next = near;
     }
     REQUIRE(next);

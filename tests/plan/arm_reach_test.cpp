@@ -62,8 +62,8 @@ TEST_CASE("arm reach: the mount is the workcell's, its limits and housing are th
   CHECK(mount.tool0_T_optical.matrix() == w.tool0_T_optical.matrix());
   REQUIRE(mount.keep_out.size() == 1);
   CHECK(mount.keep_out[0].name == "plant");
-  CHECK(mount.limits.min == plain.limits.min);
-  CHECK(mount.limits.max == plain.limits.max);
+  CHECK(mount.model.limits.min == plain.model.limits.min);
+  CHECK(mount.model.limits.max == plain.model.limits.max);
   CHECK(mount.sensor.radius == plain.sensor.radius);
   CHECK(mount.sensor.depth == plain.sensor.depth);
   Workcell large = w;

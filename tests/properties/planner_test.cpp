@@ -36,8 +36,8 @@ void check_pick(const Fruit& fruit, const std::vector<Fruit>& all, const Workcel
     // The posture nearest to the last; that it is one at all, and free, is for the verifier to say.
     std::optional<Joints> next;
     double least = p.max_joint_step;
-    for (const Joints& solution : arm::inverse(base_T_world * tool * tool_T_tool0, mount.limits, q[5]))
-      if (const auto near = arm::nearest(solution, q, mount.limits))
+    for (const Joints& solution : arm::inverse(base_T_world * tool * tool_T_tool0, mount.model.limits, q[5]))
+      if (const auto near = arm::nearest(solution, q, mount.model.limits))
         if (const double turn = (*near - q).cwiseAbs().maxCoeff(); turn < least) least = turn, next = near;
     REQUIRE(next);
     if (i == 0) REQUIRE((*next - q).cwiseAbs().maxCoeff() < 1e-6);

@@ -172,7 +172,7 @@ inline std::string fault_of(const agrisee::Joints& q, const agrisee::arm::Mount&
                             double touch = 1e-5) {
   using agrisee::arm::Part;
   for (int j = 0; j < 6; ++j)
-    if (!(q[j] >= mount.limits.min[j] && q[j] <= mount.limits.max[j]))
+    if (!(q[j] >= mount.model.limits.min[j] && q[j] <= mount.model.limits.max[j]))
       return "joint " + std::to_string(j) + " out of limits";
   const auto parts = solids(q, mount, spacing);
   for (const Solid& part : parts) {

@@ -24,8 +24,7 @@ struct Mount {
   Pose world_T_base = Pose::Identity();       ///< pose of base_link in world
   Pose tool0_T_optical = default_hand_eye();  ///< hand-eye transform
   std::vector<KeepOut> keep_out;              ///< forbidden spaces in world
-  UrModel model;                              ///< which arm it is; its own limits are not used, `limits` are
-  JointLimits limits;                         ///< of joint angles and speeds
+  UrModel model;                              ///< which arm it is, with its limits
   SensorBody sensor;                          ///< housing of the sensor
 
   /// @throws ParameterError with the name of the field that is out of range

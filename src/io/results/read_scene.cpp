@@ -3,7 +3,6 @@
 #include <agrisee/io/files.hpp>
 #include <agrisee/io/mesh_file.hpp>
 #include <agrisee/io/scene.hpp>
-#include <agrisee/plan/arm_reach.hpp>
 
 #include <map>
 #include <set>
@@ -32,7 +31,7 @@ void read_robot(const YamlValue& robot, Workcell& cell, std::vector<std::string>
   if (robot.has("tool")) cell.tool0_T_optical = read_pose(robot.at("tool"), warnings);
   if (robot.has("gripper")) cell.tool0_T_tool = read_pose(robot.at("gripper"), warnings);
   if (robot.has("start")) cell.start = robot.at("start").numbers<6>();
-  if (const std::string fault = plan::mount_of(cell).limits.complaint(cell.start); !fault.empty())
+  if (const std::string fault = cell.arm.limits.complaint(cell.start); !fault.empty())
     (robot.has("start") ? robot.at("start") : robot).fail(fault);
   const double held = cell.tool0_T_optical.translation().norm();
   constexpr double kFarthest = 3.0;  // m; no arm holds its camera farther ahead
