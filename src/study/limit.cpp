@@ -73,8 +73,7 @@ Observability observe_from(const TracedScene& scene, const Samples& samples, con
 Observability observable(const TracedScene& scene, const Samples& samples, const Workcell& cell,
                          const LimitParameters& parameters, int threads) {
   parameters.check();
-  Aabb box;
-  for (const Eigen::Vector3f& p : samples.points) box.extend(p.cast<double>());
+  const Aabb box = bounding_box(samples.points);
   if (box.empty()) return {};
   const plan::Reach reach = plan::reach_of(cell);
   return observe_from(scene, samples, cell.sensor, reachable_views(reach, cell.start, box, parameters, threads),

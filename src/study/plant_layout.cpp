@@ -36,16 +36,7 @@ namespace {
 
 /// A fruit at `center`, whose calyx points along `axis`.
 PlacedFruit hang(const FruitShape& shape, const Eigen::Vector3d& center, const Eigen::Vector3d& axis) {
-  PlacedFruit fruit;
-  fruit.shape = shape;
-  const Eigen::Vector3d z = axis.normalized(), x = any_orthogonal(z);
-  fruit.world_T_body.linear().col(0) = x;
-  fruit.world_T_body.linear().col(1) = z.cross(x);
-  fruit.world_T_body.linear().col(2) = z;
-  fruit.world_T_body.translation() = center;
-  for (const Eigen::Vector3f& v : fruit_mesh(shape, 48, 28).vertices)
-    fruit.surface.push_back(fruit.world_T_body.linear() * v.cast<double>());
-  return fruit;
+  return place_fruit(shape, center, axis, 0.0, 48, 28);
 }
 
 /// Draws a growth axis: up, towards the stem by `inward`, and a little at random.

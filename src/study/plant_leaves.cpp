@@ -6,6 +6,8 @@
 #include <set>
 #include <utility>
 
+#include "leaf_sheet.hpp"
+
 namespace agrisee::study {
 
 Mesh thickened(const Mesh& sheet, double thickness) {
@@ -46,8 +48,7 @@ Mesh draw_leaflet(const LeafStyle& style, double length, Rng& rng) {
   Mesh mesh;
   for (int i = 0; i <= kRows; ++i) {
     const double t = static_cast<double>(i) / kRows;
-    const double outline = std::pow(std::sin(kPi * std::pow(t, 0.75)), 0.8);
-    const double half = 0.5 * width * (outline * (i % 3 == 2 ? 1.0 - style.teeth : 1.0) + 0.02);
+    const double half = leaf_half_width(i, kRows, width, 1.0 - style.teeth);
     for (int j = -kAcross; j <= kAcross; ++j) {
       const double s = static_cast<double>(j) / kAcross;
       const double wave = ruffle * std::abs(s) * std::sin(phase + 14.0 * t + (j < 0 ? 2.0 : 0.0));
@@ -58,13 +59,7 @@ Mesh draw_leaflet(const LeafStyle& style, double length, Rng& rng) {
                                   .cast<float>());
     }
   }
-  constexpr std::uint32_t kColumns = 2 * kAcross + 1;
-  for (std::uint32_t i = 0; i < kRows; ++i)
-    for (std::uint32_t j = 0; j + 1 < kColumns; ++j) {
-      const std::uint32_t a = i * kColumns + j, b = a + kColumns;
-      mesh.triangles.push_back({a, b, b + 1});
-      mesh.triangles.push_back({a, b + 1, a + 1});
-    }
+  connect_rows(mesh, kRows, 2 * kAcross + 1);
   return mesh;
 }
 

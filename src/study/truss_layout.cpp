@@ -52,10 +52,8 @@ FruitShape draw_shape(const TrussParameters& parameters, double size, Rng& rng) 
   return s;
 }
 
-namespace {
-
-/// A fruit at `center` whose calyx points along `axis`, turned about that axis by `turn` (rad).
-PlacedFruit place(const FruitShape& shape, const Eigen::Vector3d& center, const Eigen::Vector3d& axis, double turn) {
+PlacedFruit place_fruit(const FruitShape& shape, const Eigen::Vector3d& center, const Eigen::Vector3d& axis,
+                        double turn, int around, int rows) {
   PlacedFruit f;
   f.shape = shape;
   const Eigen::Vector3d z = axis.normalized(), x = any_orthogonal(z);
@@ -63,11 +61,13 @@ PlacedFruit place(const FruitShape& shape, const Eigen::Vector3d& center, const 
   f.world_T_body.linear().col(1) = z.cross(x);
   f.world_T_body.linear().col(2) = z;
   f.world_T_body.translation() = center;
-  f.world_T_body.rotate(Eigen::AngleAxisd(turn, Eigen::Vector3d::UnitZ()));
-  const Mesh mesh = fruit_mesh(shape, 26, 18);
+  if (turn != 0.0) f.world_T_body.rotate(Eigen::AngleAxisd(turn, Eigen::Vector3d::UnitZ()));
+  const Mesh mesh = fruit_mesh(shape, around, rows);
   for (const Eigen::Vector3f& v : mesh.vertices) f.surface.push_back(f.world_T_body.linear() * v.cast<double>());
   return f;
 }
+
+namespace {
 
 /// Draws the direction of a fruit's growth axis: up, towards the rachis, and a little at random.
 Eigen::Vector3d draw_growth_axis(const std::vector<Eigen::Vector3d>& rachis, const Eigen::Vector3d& center, Rng& rng) {
@@ -116,7 +116,7 @@ PlacedFruit draw_fruit(const FruitShape& shape, const Eigen::Vector3d& center,
                        const std::vector<Eigen::Vector3d>& rachis, Rng& rng) {
   const double turn = rng.uniform(0.0, kTwoPi);
   const Eigen::Vector3d axis = draw_growth_axis(rachis, center, rng);
-  return place(shape, center, axis, turn);
+  return place_fruit(shape, center, axis, turn, 26, 18);
 }
 
 Eigen::Vector3d at_height(const std::vector<Eigen::Vector3d>& polyline, double z) {

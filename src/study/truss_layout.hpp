@@ -28,6 +28,12 @@ struct PlacedFruit {
   double depth(const Eigen::Vector3d& p) const;
 };
 
+/// Puts a fruit at `center` (m, world), its calyx along `axis` (of any length but zero), turned about that by `turn`
+/// (rad).
+/// @param around, rows how many points its surface gets: around the axis, and from pole to pole
+PlacedFruit place_fruit(const FruitShape& shape, const Eigen::Vector3d& center, const Eigen::Vector3d& axis,
+                        double turn, int around, int rows);
+
 /// Interpenetration depth of two fruit (m): the largest depth() of a point of either surface below the other. Depth
 /// along the radius is never less than the true depth, so only the spacing of the points can make the result too small.
 /// A negative result is roughly the gap between the fruit; it is never below -`far`.

@@ -5,6 +5,8 @@
 
 #include <cmath>
 
+#include "leaf_sheet.hpp"
+
 namespace agrisee::study {
 
 double FruitShape::radius(const Eigen::Vector3d& d) const {
@@ -126,8 +128,7 @@ Mesh leaf_mesh(double length, double width, double fold, double droop) {
   Mesh mesh;
   for (int i = 0; i <= kRows; ++i) {
     const double t = static_cast<double>(i) / kRows;
-    const double outline = std::pow(std::sin(kPi * std::pow(t, 0.75)), 0.8);
-    const double half = 0.5 * width * (outline * (i % 3 == 2 ? 0.86 : 1.0) + 0.02);  // every third row cuts a tooth
+    const double half = leaf_half_width(i, kRows, width, 0.86);
     for (int j = -kAcross; j <= kAcross; ++j) {
       const double across = half * j / kAcross;
       mesh.vertices.push_back(
@@ -135,13 +136,7 @@ Mesh leaf_mesh(double length, double width, double fold, double droop) {
               .cast<float>());
     }
   }
-  constexpr std::uint32_t kColumns = 2 * kAcross + 1;
-  for (std::uint32_t i = 0; i < kRows; ++i)
-    for (std::uint32_t j = 0; j + 1 < kColumns; ++j) {
-      const std::uint32_t a = i * kColumns + j, b = a + kColumns;
-      mesh.triangles.push_back({a, b, b + 1});
-      mesh.triangles.push_back({a, b + 1, a + 1});
-    }
+  connect_rows(mesh, kRows, 2 * kAcross + 1);
   return mesh;
 }
 

@@ -12,6 +12,7 @@
 
 #include "../io/io_support.hpp"
 #include "catch.hpp"
+#include "support/meshes.hpp"
 
 using namespace agrisee;
 using namespace agrisee::study;
@@ -29,27 +30,6 @@ bool watertight(const Mesh& mesh) {
   for (const auto& edge : edges)
     if (edge.second != 0) return false;
   return !edges.empty();
-}
-
-/// Parity of crossings along a crooked direction.
-bool inside(const Bvh& bvh, const Eigen::Vector3f& p) {
-  const Eigen::Vector3f direction(0.317f, 0.731f, 0.604f);
-  int crossings = 0;
-  float from = 0.0f;
-  while (const auto hit = bvh.closest(p, direction, from)) {
-    ++crossings;
-    from = std::nextafter(hit->t, 1e9f) + 1e-6f;
-  }
-  return crossings % 2 == 1;
-}
-
-/// How deep the vertices of a mesh reach below the surface of a fruit (m).
-double mesh_depth(const Mesh& mesh, const Bvh& fruit) {
-  double deepest = 0.0;
-  const Aabb box = fruit.bounds();
-  for (const Eigen::Vector3f& v : mesh.vertices)
-    if (box.contains(v) && inside(fruit, v)) deepest = std::max(deepest, double(fruit.nearest(v)->distance));
-  return deepest;
 }
 
 /// Whether an edge of a mesh passes through a surface.
@@ -135,14 +115,14 @@ void check_plant(const Plant& plant, const PlantParameters& parameters) {
     const float top = trees.back().closest(truth.center.cast<float>(), truth.growth_axis->cast<float>())->t;
     const Eigen::Vector3d calyx = truth.center + double(top) * *truth.growth_axis;
     CHECK(stem_tree.nearest(calyx.cast<float>())->distance < 0.004f);
-    CHECK(mesh_depth(stems, trees.back()) < 0.004);
-    CHECK(mesh_depth(leaves, trees.back()) < 1e-4);
-    CHECK(mesh_depth(others, trees.back()) == 0.0);
+    CHECK(shapes::mesh_depth(stems, trees.back()) < 0.004);
+    CHECK(shapes::mesh_depth(leaves, trees.back()) < 1e-4);
+    CHECK(shapes::mesh_depth(others, trees.back()) == 0.0);
   }
   CHECK((box.center() - parameters.center).norm() < 2e-3);
   for (std::size_t i = 0; i < total; ++i)
     for (std::size_t j = 0; j < total; ++j)
-      if (i != j) CHECK(mesh_depth(plant.scene.objects[i].mesh, trees[j]) <= 1e-3);
+      if (i != j) CHECK(shapes::mesh_depth(plant.scene.objects[i].mesh, trees[j]) <= 1e-3);
   // No leaf floats: each grows out of a stem.
   for (const Object& object : plant.scene.objects) {
     if (object.cls != ObjectClass::leaf) continue;

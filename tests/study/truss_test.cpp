@@ -8,6 +8,7 @@
 #include <map>
 
 #include "catch.hpp"
+#include "support/meshes.hpp"
 
 using namespace agrisee;
 using namespace agrisee::study;
@@ -24,27 +25,6 @@ bool watertight(const Mesh& mesh) {
     if (n != 1 || other == edges.end() || other->second != 1) return false;
   }
   return !edges.empty();
-}
-
-/// Parity of crossings along a crooked direction.
-bool inside(const Bvh& bvh, const Eigen::Vector3f& p) {
-  const Eigen::Vector3f direction(0.317f, 0.731f, 0.604f);
-  int crossings = 0;
-  float from = 0.0f;
-  while (const auto hit = bvh.closest(p, direction, from)) {
-    ++crossings;
-    from = std::nextafter(hit->t, 1e9f) + 1e-6f;
-  }
-  return crossings % 2 == 1;
-}
-
-/// How deep the vertices of one mesh reach below the surface of another: true distances to the triangles (m).
-double mesh_depth(const Mesh& a, const Bvh& b_tree) {
-  double deepest = 0.0;
-  const Aabb box = b_tree.bounds();
-  for (const Eigen::Vector3f& v : a.vertices)
-    if (box.contains(v) && inside(b_tree, v)) deepest = std::max(deepest, double(b_tree.nearest(v)->distance));
-  return deepest;
 }
 
 /// Share of a fruit's surface seen from a point, by closest hits of rays from the eye to the middle of each triangle,
@@ -110,7 +90,7 @@ void check_truss(const Truss& truss, int total, int hidden, const Eigen::Vector3
   CHECK(hidden_seen == hidden);
   for (int i = 0; i < total; ++i)
     for (int j = 0; j < total; ++j)
-      if (i != j) CHECK(mesh_depth(truss.scene.objects[std::size_t(i)].mesh, trees[std::size_t(j)]) <= 1e-3);
+      if (i != j) CHECK(shapes::mesh_depth(truss.scene.objects[std::size_t(i)].mesh, trees[std::size_t(j)]) <= 1e-3);
   // Every fruit hangs: the stem comes as near as its calyx.
   const Object& stem = truss.scene.objects[std::size_t(total)];
   CHECK(stem.cls == ObjectClass::stem);
