@@ -82,8 +82,7 @@ Indices shown(const std::vector<Eigen::Vector3f>& points, std::size_t max_points
 /// above 10 m.
 std::string positions_to(Json& j, const std::vector<Eigen::Vector3f>& points) {
   constexpr double kSteps = 65535.0, kLargest = 10.0;
-  Aabb box;
-  for (const auto& p : points) box.extend(p.cast<double>());
+  const Aabb box = bounding_box(points);
   if (points.empty() || box.size().maxCoeff() > kLargest) {
     std::vector<float> values;
     for (const auto& p : points) values.insert(values.end(), p.data(), p.data() + 3);

@@ -4,13 +4,12 @@
 #include <agrisee/io/recorded_views.hpp>
 
 #include <cmath>
-#include <cstdio>
 
 #include "io/formats/text.hpp"
 #include "io/formats/yaml_camera.hpp"
-#include "io/formats/yaml_list.hpp"
 #include "io/formats/yaml_map.hpp"
 #include "io/formats/yaml_pose.hpp"
+#include "io/formats/yaml_text.hpp"
 
 namespace agrisee::io {
 namespace {
@@ -57,22 +56,6 @@ void check_scale(const std::string& place, const sensor::DepthFrame& frame, doub
   if (!median || (*median >= 0.02 && *median <= 50.0)) return;
   throw FileError(place + ": the median depth is " + metres(*median) + ": is camera.depth_scale right? It is " +
                   format(scale) + " (metres per unit; for an image in millimetres 0.001)");
-}
-
-/// A text as a YAML scalar in double quotes.
-std::string quoted(const std::string& text) {
-  std::string out = "\"";
-  for (const char c : text) {
-    if (c == '"' || c == '\\') out += '\\';
-    if (static_cast<unsigned char>(c) < ' ' || c == 127) {
-      char escape[8];
-      std::snprintf(escape, sizeof escape, "\\x%02x", static_cast<unsigned>(c));
-      out += escape;
-    } else {
-      out += c;
-    }
-  }
-  return out + "\"";
 }
 
 std::string rows_of(const Pose& pose) {
@@ -132,7 +115,7 @@ void write_recorded_views(const fs::path& path, const RecordedViews& recorded) {
   const Workcell& cell = recorded.workcell;
   const sensor::Intrinsics& k = cell.sensor.intrinsics;
   std::string out;
-  if (!cell.name.empty()) out += "name: " + quoted(cell.name) + "\n";
+  if (!cell.name.empty()) out += "name: " + yaml_quoted(cell.name) + "\n";
   out += "camera:\n  width: " + std::to_string(k.width) + "\n  height: " + std::to_string(k.height) + "\n";
   for (const auto& [key, value] : {std::pair{"fx", k.fx}, {"fy", k.fy}, {"cx", k.cx}, {"cy", k.cy}}) {
     check_input(std::isfinite(value), "write_recorded_views: the intrinsics are not finite");
@@ -147,7 +130,7 @@ void write_recorded_views(const fs::path& path, const RecordedViews& recorded) {
         "scan_volume: {min: " + yaml_list(cell.scan_volume.min) + ", max: " + yaml_list(cell.scan_volume.max) + "}\n";
   out += "views:\n";
   for (const RecordedView& view : recorded.views)
-    out += "  - depth: " + quoted(view.depth.string()) + "\n    pose: " + rows_of(view.world_T_optical) + "\n";
+    out += "  - depth: " + yaml_quoted(view.depth.string()) + "\n    pose: " + rows_of(view.world_T_optical) + "\n";
   write_file(path, out);
 }
 

@@ -7,7 +7,7 @@
 #include <set>
 
 #include "io/formats/text.hpp"
-#include "io/formats/yaml_list.hpp"
+#include "io/formats/yaml_text.hpp"
 
 namespace agrisee::io {
 namespace {
@@ -38,19 +38,9 @@ std::string scalar(const std::string& text) {
   static const std::set<std::string> kReserved = {"null", "true", "false", "yes", "no", "on", "off", "y", "n"};
   check_input(!text.empty(), "write_scene: a name is empty");
   bool plain = std::isalpha(static_cast<unsigned char>(text[0])) && kReserved.count(lower(text)) == 0;
-  std::string quoted = "\"";
-  for (const char c : text) {
+  for (const char c : text)
     plain = plain && (std::isalnum(static_cast<unsigned char>(c)) || c == '_' || c == '-' || c == '.');
-    if (c == '"' || c == '\\') quoted += '\\';
-    if (static_cast<unsigned char>(c) < ' ' || c == 127) {
-      char escape[8];
-      std::snprintf(escape, sizeof escape, "\\x%02x", static_cast<unsigned>(c));
-      quoted += escape;
-    } else {
-      quoted += c;
-    }
-  }
-  return plain ? text : quoted + "\"";
+  return plain ? text : yaml_quoted(text);
 }
 
 std::string sensor_map(const sensor::DepthCamera& sensor) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// @file
-/// Writes numbers as a YAML list.
+/// Writes texts and lists of numbers as YAML.
 #pragma once
 
 #include <agrisee/core/error.hpp>
@@ -13,6 +13,9 @@
 #include "io/formats/text.hpp"
 
 namespace agrisee::io {
+
+/// A text as a YAML scalar in double quotes.
+std::string yaml_quoted(const std::string& text);
 
 /// The numbers of an Eigen vector as "[1, 2, 3]", which reads back to the same. @throws InputError if one is not finite
 template <typename V>
