@@ -15,7 +15,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <string>
 #include <utility>
 
@@ -43,7 +42,7 @@ void check_volume(const Aabb& volume) {
 /// @throws InputError for joint angles outside of the limits of the workcell's arm
 /// @param slack how far they may be outside (rad)
 void check_joints(const char* name, const Workcell& workcell, const Joints& joints, double slack = 0.0) {
-  const std::string complaint = plan::mount_of(workcell).limits.complaint(joints, slack);
+  const std::string complaint = workcell.arm.limits.complaint(joints, slack);
   if (!complaint.empty()) throw InputError(std::string(name) + ": " + complaint);
 }
 
@@ -127,8 +126,7 @@ std::optional<plan::ReachableView> Pipeline::next_view(const Joints& current) {
 std::vector<std::string> Pipeline::warnings() const {
   std::vector<std::string> all = warnings_;
   if (rounded_poses_ == 0) return all;
-  char off[32];
-  std::snprintf(off, sizeof off, "%.2g", worst_rounding_);
+  const std::string off = number_text(worst_rounding_, 2);
   all.push_back("world_T_optical of " + std::to_string(rounded_poses_) + " of " + std::to_string(views_.size()) +
                 " views: the rotation matrix was off by up to " + off + " and has been made orthonormal");
   return all;

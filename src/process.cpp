@@ -167,12 +167,23 @@ std::vector<SightLines> sight_lines(const Cloud& cloud, const CloudOrigin& origi
   return lines;
 }
 
+/// Evidence of free space from the points of a cloud; empty where no body asks for it, or no sensor's place is known.
+/// @param noise standard deviation (m) of the points about their own surface
+SeenThrough free_space_of(const Cloud& cloud, const Parameters& parameters, const CloudOrigin& origin, double noise) {
+  if (!parameters.split.fit_bodies) return {};
+  std::vector<SightLines> lines = sight_lines(cloud, origin);
+  if (lines.empty()) return {};
+  const double least = std::max(parameters.free_space.margin, 3.0 * noise);
+  return [lines = std::move(lines), least](const Ellipsoid& body) {
+    constexpr double kMargin = 0.12, kMaxIncidence = deg(70);  // of the radius; a single view sees much at a slant
+    return seen_through(lines, body, kMaxIncidence, std::max(least, kMargin * body.mean_radius()));
+  };
+}
+
 /// @throws InputError if a sensor stood farther from all points than any sensor sees
 void check_distance(const Cloud& cloud, const std::vector<Eigen::Vector3d>& sensors) {
   constexpr double kFarthest = 20.0;  // m; depth cameras see less far, and 20 mm are nearer than any of them sees
-  Aabb box;
-  for (const auto& p : cloud.points)
-    if (is_finite(p)) box.extend(p.cast<double>());
+  const Aabb box = bounding_box(cloud.points);
   if (box.empty()) return;
   for (const Eigen::Vector3d& sensor : sensors) {
     const double distance = (sensor - sensor.cwiseMax(box.min).cwiseMin(box.max)).norm();
@@ -185,15 +196,9 @@ void check_distance(const Cloud& cloud, const std::vector<Eigen::Vector3d>& sens
 
 /// The origin of the cluster frame where no scan volume is known.
 Eigen::Vector3d corner_of(const Cloud& cloud) {
-  Aabb box;
-  for (const auto& p : cloud.points) box.extend(p.cast<double>());
+  const Aabb box = bounding_box(cloud.points);
   const Eigen::Vector3d robot = Eigen::Vector3d::Zero();
   return box.empty() ? robot : cluster_origin(box, robot);
-}
-
-/// "34 % of the points"
-std::string percent_of(double share, const char* what) {
-  return std::to_string(std::lround(100.0 * share)) + " % of " + what;
 }
 
 /// What speaks against one viewpoint. @throws InputError with it, unless the viewpoint is trusted or the doubt is small
@@ -219,9 +224,8 @@ void check_hidden(const Cloud& cloud, const Parameters& parameters, const CloudO
   const double deep = kMedium * bodies.radius_max, noise = noise_within(cloud, 0.5 * deep, bodies);
   const double hidden = hidden_share(cloud, *origin.viewpoint, deep + 4.0 * noise);
   if (hidden > kMost)
-    doubt(percent_of(hidden,
-                     "the points lie hidden behind others as seen from the viewpoint, so they were seen from "
-                     "elsewhere"),
+    doubt(percentage(hidden) +
+              " of the points lie hidden behind others as seen from the viewpoint, so they were seen from elsewhere",
           false, origin, warnings);
 }
 
@@ -233,9 +237,8 @@ void check_side(const Cloud& cloud, const Parameters& parameters, const CloudOri
   const BodyParameters& bodies = parameters.split.bodies;
   const auto convex = convex_share(cloud, kMedium * bodies.radius_max, bodies.radius_max);
   if (convex && *convex < kUsual)
-    doubt(percent_of(1.0 - *convex,
-                     "what is curved as fruit is hollow as seen from the viewpoint, so it may lie behind "
-                     "the cloud"),
+    doubt(percentage(1.0 - *convex) +
+              " of what is curved as fruit is hollow as seen from the viewpoint, so it may lie behind the cloud",
           *convex >= kLeast, origin, warnings);
 }
 
@@ -276,9 +279,7 @@ std::size_t normals_facing_away(const Cloud& cloud, const CloudOrigin& origin) {
 
 void check_units(const Cloud& cloud, const Parameters& parameters) {
   constexpr double kLarge = 10.0;  // m; clouds of scanned trusses are smaller, and in millimetres they are larger
-  Aabb box;
-  for (const auto& p : cloud.points)
-    if (is_finite(p)) box.extend(p.cast<double>());
+  const Aabb box = bounding_box(cloud.points);
   if (box.empty() || !(box.size().norm() > kLarge)) return;
   const Cloud finite = select(cloud, finite_indices(cloud));
   const double spacing = estimate_spacing(finite), largest = 2.0 * parameters.split.bodies.radius_max;
@@ -311,12 +312,10 @@ ScanResult process(Cloud&& cloud, const Parameters& parameters, const CloudOrigi
   check_side(result.cloud, parameters, origin, result.warnings);
   SplitParameters fitted = parameters.split;
   fitted.bodies.fit.sensor_noise = std::max(fitted.bodies.fit.sensor_noise, 4.0 * noise);
-  const std::vector<SightLines> lines = seen_through ? std::vector<SightLines>() : sight_lines(result.cloud, origin);
-  const double margin = std::max(parameters.free_space.margin, 3.0 * noise);
-  const SeenThrough through = seen_through || lines.empty() ? seen_through : [&](const Ellipsoid& body) {
-    return agrisee::seen_through(lines, body, deg(70), std::max(margin, 0.12 * body.mean_radius()));
-  };
-  const Split found = timed(t.segment, [&] { return split(result.cloud, fitted, through, threads); });
+  const Split found = timed(t.segment, [&] {
+    return split(result.cloud, fitted,
+                 seen_through ? seen_through : free_space_of(result.cloud, parameters, origin, noise), threads);
+  });
   result.bodies = found.bodies;
 
   // Locate: centroids, pose frames, fitted bodies.

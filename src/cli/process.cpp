@@ -90,7 +90,7 @@ Processed process_cloud(const ProcessOptions& options, const Parameters& paramet
   const Cloud cloud = parameters.fuse_surfaces ? thinned(file.cloud, parameters) : file.cloud;
   Processed out;
   out.workcell.name = name_of(options.cloud);
-  for (const auto& p : cloud.points) out.workcell.scan_volume.extend(p.cast<double>());
+  out.workcell.scan_volume = bounding_box(cloud.points);
   try {
     out.result = process(cloud, parameters, origin, {}, threads_of(options.threads));
   } catch (const InputError& e) {  // the rest was checked before

@@ -64,8 +64,6 @@ Aabb all_that_is_seen(const std::string& path, Aabb seen) {
   return seen;
 }
 
-std::string percent(double share) { return std::to_string(std::lround(100.0 * share)) + " %"; }
-
 /// Test the poses. @return a warning if the views hardly agree
 /// @throws FileError if the poses are not world_T_optical
 std::optional<std::string> doubt_of_poses(const std::string& path, const Survey& first, const Aabb& volume) {
@@ -75,14 +73,14 @@ std::optional<std::string> doubt_of_poses(const std::string& path, const Survey&
   if (!check.mistake.empty())
     throw FileError(path + ": it seems that the poses " + check.mistake +
                     (check.mended > 0.0
-                         ? ". Taken so, " + percent(check.mended) + " of what a view shows is shown by another, " +
-                               "too; as they stand, " + percent(check.as_reported) + ". "
+                         ? ". Taken so, " + percentage(check.mended) + " of what a view shows is shown by another, " +
+                               "too; as they stand, " + percentage(check.as_reported) + ". "
                          : ". Only so does the view see the scan volume. ") +
                     rule);
   const auto shows = [](const fuse::ViewSample& sample) { return !sample.points.empty(); };
   if (check.as_reported >= kHardly || std::count_if(first.samples.begin(), first.samples.end(), shows) < 2)
     return std::nullopt;
-  return "only " + percent(check.as_reported) +
+  return "only " + percentage(check.as_reported) +
          " of what a view shows is shown by another, too: are the poses right? " + rule;
 }
 

@@ -4,7 +4,6 @@
 #include <Eigen/SVD>
 
 #include <cmath>
-#include <cstdio>
 
 namespace agrisee {
 
@@ -19,8 +18,7 @@ Pose made_rigid(const Pose& pose, const std::string& name, std::vector<std::stri
   if (is_rigid(pose)) return pose;
   if (!pose.matrix().allFinite()) throw InputError(name + " is not a rigid transform: it holds NaN or infinity");
   const double error = rigid_error(pose);
-  char off[32];
-  std::snprintf(off, sizeof off, "%.2g", error);
+  const std::string off = number_text(error, 2);
   if (!(error <= kRigidTolerance))
     throw InputError(name + " is not a rigid transform: its rotation matrix is off by " + off +
                      " (largest difference from the nearest rotation; up to 0.001 is put right). Is it rounded too "
@@ -45,8 +43,7 @@ Pose pose_from_matrix(const Eigen::Matrix4d& matrix, const std::string& name, st
 Pose pose_from_xyz_quaternion(const Eigen::Vector3d& xyz, const Eigen::Vector4d& xyzw, const std::string& name,
                               std::vector<std::string>* notes) {
   const double error = std::abs(xyzw.norm() - 1.0);
-  char off[32];
-  std::snprintf(off, sizeof off, "%.2g", error);
+  const std::string off = number_text(error, 2);
   if (!(error <= kRigidTolerance) || !xyz.allFinite())
     throw InputError(name + " is not a rigid transform: the length of its quaternion is off by " + off +
                      " (up to 0.001 is put right)");

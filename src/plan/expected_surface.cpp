@@ -104,7 +104,7 @@ void ExpectedSurface::mark_known(const sensor::SurfaceImage& image, const fuse::
   for (int z = 0; z < dims_[2]; ++z)
     for (int y = 0; y < dims_[1]; ++y)
       for (int x = 0; x < dims_[0]; ++x, ++i)
-        if (!known_[i] && fuse::sight(image, voxel_center(x, y, z), free_space) != fuse::Sight::unknown) known_[i] = 1;
+        if (!known_[i] && fuse::sight(image, voxel_center(x, y, z), free_space) != Sight::unknown) known_[i] = 1;
 }
 
 Labels ExpectedSurface::find_fruit(const Progress& progress, const SplitParameters& split_parameters,
@@ -136,10 +136,8 @@ void ExpectedSurface::collect_samples(const Cloud& cloud) {
   area_ = covered_ = 0.0;
   area_of_.clear();
   covered_of_.clear();
-  extent_ = {};
-  for (const auto& p : cloud.points) extent_.extend(p.cast<double>());
-  const Aabb cloud_extent = extent_;
-  if (extent_.empty()) extent_ = volume_;
+  const Aabb cloud_extent = bounding_box(cloud.points);
+  extent_ = cloud_extent.empty() ? volume_ : cloud_extent;
   center_ = extent_.center();
   if (!bodies_.empty()) extent_ = {}, center_.setZero();
   sample_bodies(cloud);

@@ -3,6 +3,7 @@
 /// The exceptions that AgriSEE throws, two checks that throw them, and lengths as their messages show them.
 #pragma once
 
+#include <cmath>
 #include <cstdio>
 #include <stdexcept>
 #include <string>
@@ -45,11 +46,17 @@ inline void check_input(bool ok, const char* message) {
   if (!ok) throw InputError(message);
 }
 
-/// A length (m) as messages show it: "0.0125 m".
-inline std::string metres(double length) {
+/// A number as messages show it, to at most 17 significant digits.
+inline std::string number_text(double value, int digits) {
   char text[32];
-  std::snprintf(text, sizeof text, "%.3g m", length);
+  std::snprintf(text, sizeof text, "%.*g", digits, value);
   return text;
 }
+
+/// A length (m) as messages show it: "0.0125 m".
+inline std::string metres(double length) { return number_text(length, 3) + " m"; }
+
+/// A share (0..1) as messages show it: "34 %".
+inline std::string percentage(double share) { return std::to_string(std::lround(100.0 * share)) + " %"; }
 
 }  // namespace agrisee

@@ -22,7 +22,6 @@
 
 #include <array>
 #include <cmath>
-#include <cstdio>
 #include <limits>
 #include <string>
 #include <type_traits>
@@ -126,11 +125,7 @@ class Range {
   }
 
   /// A number as messages show it.
-  static std::string number(double x) {
-    char digits[32];
-    std::snprintf(digits, sizeof digits, "%.9g", x);
-    return digits;
-  }
+  static std::string number(double x) { return number_text(x, 9); }
 
  private:
   static constexpr double kInfinity = std::numeric_limits<double>::infinity();

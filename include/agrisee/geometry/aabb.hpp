@@ -36,4 +36,13 @@ struct Aabb {
   double distance(const Eigen::Vector3d& p) const { return (min - p).cwiseMax(p - max).cwiseMax(0.0).norm(); }
 };
 
+/// The box about points (m) of any type of vector; those that are not finite are left out.
+template <typename Points>
+Aabb bounding_box(const Points& points) {
+  Aabb box;
+  for (const auto& p : points)
+    if (p.allFinite()) box.extend(p.template cast<double>());
+  return box;
+}
+
 }  // namespace agrisee
