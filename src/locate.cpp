@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <agrisee/cloud/closed_surface.hpp>
 #include <agrisee/cloud/labels.hpp>
-#include <agrisee/cloud/measured_volume.hpp>
 #include <agrisee/cloud/poses.hpp>
 #include <agrisee/cloud/split.hpp>
 #include <agrisee/cloud/volume.hpp>
@@ -31,20 +31,52 @@ double completeness_of(const Cloud& cloud, const Indices& points, const Eigen::V
   return std::min(share, 1.0);
 }
 
-/// The fitted body of a fruit: its size, how much of it was seen, how far it can be trusted, its volume and mass.
-Body body_of(const Cloud& cloud, const Indices& points, const FoundBody& found, const Parameters& parameters) {
+/// The ellipsoid of a body.
+Ellipsoid ellipsoid_of(const Body& body) {
+  Ellipsoid out;
+  out.center = body.center;
+  out.A = body.axes * body.radii.cwiseInverse().asDiagonal() * body.axes.transpose();
+  return out;
+}
+
+/// Take over, as far as it has weight, what a closed surface says of a fruit that is no ellipsoid. The body becomes the
+/// ellipsoid with the surface's center and second moments.
+void take_over(const ClosedSurface& surface, const Ellipsoid& ellipsoid, const MassParameters& mass, Body& body,
+               Estimate& volume) {
+  const double w = surface.weight, v = 1.0 - w;
+  if (!(w > 0.0)) return;
+  const Eigen::Vector3d apart = surface.center - body.center;
+  body.center += w * apart;
+  body.center_covariance =
+      v * body.center_covariance + w * surface.center_covariance + v * w * apart * apart.transpose();
+  // positions inside an ellipsoid with the semi-axes a have the variances a^2 / 5
+  const Eigen::Matrix3d inside = (ellipsoid.A * ellipsoid.A).inverse() / 5.0;
+  const auto pca = principal_axes<double>(body.center, Eigen::Matrix3d(v * inside + w * surface.spread));
+  body.radii = (5.0 * pca.variance).cwiseSqrt();
+  body.axes = pca.axes;
+  std::tie(body.radii, body.axes) = semi_axes(ellipsoid_of(body));  // in the usual order, with the usual signs
+  body.rms = v * body.rms + w * surface.rms;
+  const double error = surface.volume * std::hypot(surface.volume_error, mass.shape_error);
+  const double between = surface.volume - volume.value;
+  volume = {v * volume.value + w * surface.volume,
+            std::sqrt(v * volume.error * volume.error + w * error * error + v * w * between * between)};
+}
+
+/// The body of a fruit: its size, how much of it was seen, how far it can be trusted, its volume and mass.
+/// @param surface its closed surface; null if there is none
+Body body_of(const Cloud& cloud, const Indices& points, const FoundBody& found, const ClosedSurface* surface,
+             const Parameters& parameters) {
   const Ellipsoid& ellipsoid = found.fit.body;
   Body body;
   body.center = ellipsoid.center;
   std::tie(body.radii, body.axes) = semi_axes(ellipsoid);
   body.center_covariance = found.fit.center_covariance;
   body.rms = found.fit.rms;
-  body.completeness = completeness_of(cloud, points, body.center);
-  body.confidence = found.confidence;
   const double fit_error = relative_volume_error(cloud, points, ellipsoid, parameters.split.bodies.fit);
   Estimate volume = volume_of(ellipsoid, fit_error, parameters.mass);
-  if (const auto measured = measured_volume(cloud, points, ellipsoid.center))
-    volume = {*measured, volume.error * *measured / volume.value};
+  if (surface) take_over(*surface, ellipsoid, parameters.mass, body, volume);
+  body.completeness = completeness_of(cloud, points, body.center);
+  body.confidence = found.confidence;
   const Estimate mass = mass_of(volume, parameters.mass);
   std::tie(body.volume, body.volume_error) = std::tie(volume.value, volume.error);
   std::tie(body.mass, body.mass_error) = std::tie(mass.value, mass.error);
@@ -53,7 +85,7 @@ Body body_of(const Cloud& cloud, const Indices& points, const FoundBody& found, 
 
 /// A fruit without its id.
 Fruit fruit_of(const Cloud& cloud, const Labels& labels, const Indices& points, const FoundBody& found,
-               const Eigen::Vector3d& cluster_origin, const Parameters& parameters) {
+               const ClosedSurface* surface, const Eigen::Vector3d& cluster_origin, const Parameters& parameters) {
   Fruit fruit;
   fruit.points = points.size();
   fruit.found_by = found.found_by;
@@ -61,15 +93,40 @@ Fruit fruit_of(const Cloud& cloud, const Labels& labels, const Indices& points, 
   fruit.centroid = c.mean;
   fruit.sigma = c.sigma;
   fruit.centroid_cluster = c.mean - cluster_origin;  // {R} is parallel to world
-  if (parameters.split.fit_bodies) fruit.body = body_of(cloud, points, found, parameters);
+  if (parameters.split.fit_bodies) fruit.body = body_of(cloud, points, found, surface, parameters);
   if (parameters.growth_axis && parameters.split.fit_bodies) {
-    const Eigen::Vector3d z = growth_axis(cloud, labels, found.fit, parameters.axis);
+    BodyAxis round = symmetry_axis(found.fit);
+    if (surface && surface->weight > 0.5) round = {surface->axis, surface->axis_variance};
+    const Eigen::Vector3d z = growth_axis(cloud, labels, ellipsoid_of(*fruit.body), round, parameters.axis);
     const double near = 0.2 * (fruit.body ? fruit.body->radii.mean() : parameters.split.bodies.radius_min);
     fruit.orientation = frame_from_z_and_x(z, densest_point(cloud, points, near) - c.mean);
   } else {
     fruit.orientation = paper_pose_frame(cloud, points, c.mean);
   }
   return fruit;
+}
+
+/// The closed surface of each found fruit, empty where there is none. Points of no fruit that are on one join it.
+/// @param members the points of each fruit
+/// @param labels one per point: the fruit's number from 1, or 0
+std::vector<std::optional<ClosedSurface>> closed_surfaces(const Cloud& cloud, const Split& split,
+                                                          const Parameters& parameters, std::vector<Indices>& members,
+                                                          Labels& labels) {
+  std::vector<std::optional<ClosedSurface>> surfaces(members.size());
+  if (!parameters.split.fit_bodies) return surfaces;
+  for (std::size_t f = 0; f < members.size(); ++f) {
+    if (members[f].empty()) continue;
+    const EllipsoidFit& fit = split.found[f].fit;
+    const Eigen::Vector3d axis = growth_axis(cloud, split.labels, fit, parameters.axis);
+    surfaces[f] = closed_surface(cloud, members[f], residual(labels), fit.body, axis);
+    if (!surfaces[f]) continue;
+    for (const Index i : surfaces[f]->joined) {
+      labels[static_cast<std::size_t>(i)] = static_cast<int>(f) + 1;
+      members[f].push_back(i);
+    }
+    std::sort(members[f].begin(), members[f].end());
+  }
+  return surfaces;
 }
 
 /// The radius of a fruit (m), roughly where no body was fitted.
@@ -159,11 +216,14 @@ std::vector<Fruit> locate(const Cloud& cloud, const Split& split, const Eigen::V
                           const Parameters& parameters, Labels& labels) {
   auto members = indices_by_label(split.labels);
   members.resize(split.found.size());
+  Labels with_joined = split.labels;
+  const auto surfaces = closed_surfaces(cloud, split, parameters, members, with_joined);
   std::vector<Fruit> fruits;
   std::vector<std::size_t> source;  // the entry of split.found that each fruit comes from
   for (std::size_t f = 0; f < members.size(); ++f) {
     if (members[f].empty()) continue;
-    fruits.push_back(fruit_of(cloud, split.labels, members[f], split.found[f], cluster_origin, parameters));
+    fruits.push_back(fruit_of(cloud, with_joined, members[f], split.found[f], surfaces[f] ? &*surfaces[f] : nullptr,
+                              cluster_origin, parameters));
     source.push_back(f);
   }
   std::vector<std::size_t> order(fruits.size());
@@ -184,7 +244,7 @@ std::vector<Fruit> locate(const Cloud& cloud, const Split& split, const Eigen::V
     numbered.back().truss = truss[p] + 1;
     id[source[order[p]] + 1] = numbered.back().id;
   }
-  labels = split.labels;
+  labels = std::move(with_joined);
   for (int& l : labels) l = id[static_cast<std::size_t>(l)];
   return numbered;
 }

@@ -132,17 +132,17 @@ inline BodyAxis symmetry_axis(const EllipsoidFit& fit) {
 }
 
 /// Direction (unit, world) from a fruit's center towards its calyx. Fruit are round about their growth axis, so the
-/// fitted body gives the line, except where it is a sphere. The direction along that line follows from the points just
+/// axis of its body gives the line, as far as that is known. The direction along that line follows from the points just
 /// outside the body that belong to no fruit (calyx, pedicel; the nearer, the more they weigh) and from gravity, a weak
 /// prior; where the body is a sphere, these two give the whole direction.
 /// @param cloud points (m, world)
 /// @param labels one per point; 0: the point belongs to no fruit
-/// @param fit the fruit's body
+/// @param body the fruit's body
+/// @param round the axis about which it is round
 /// @param parameters see their struct
 template <typename S>
-Eigen::Vector3d growth_axis(const PointCloud<S>& cloud, const Labels& labels, const EllipsoidFit& fit,
-                            const GrowthAxisParameters& parameters = {}) {
-  const Ellipsoid& body = fit.body;
+Eigen::Vector3d growth_axis(const PointCloud<S>& cloud, const Labels& labels, const Ellipsoid& body,
+                            const BodyAxis& round, const GrowthAxisParameters& parameters = {}) {
   const double r = body.mean_radius();
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
   double weights = 0.0;
@@ -160,7 +160,6 @@ Eigen::Vector3d growth_axis(const PointCloud<S>& cloud, const Labels& labels, co
   }
   Eigen::Vector3d axis = parameters.up_weight * Eigen::Vector3d::UnitZ();
   if (weights > 0.0) axis += std::min(1.0, weights / 10.0) * sum / weights;
-  const BodyAxis round = symmetry_axis(fit);
   constexpr double kLeastVariance = 1e-3;  // rad2: no fruit's axis is known to better than 2 degrees
   if (std::isfinite(round.variance)) {
     const double certainty = 1.0 / (std::max(round.variance, kLeastVariance) * parameters.stem_certainty);
@@ -168,6 +167,13 @@ Eigen::Vector3d growth_axis(const PointCloud<S>& cloud, const Labels& labels, co
     axis += (up < 0.0 ? -certainty : certainty) * round.direction;
   }
   return axis.norm() > 1e-9 ? Eigen::Vector3d(axis.normalized()) : Eigen::Vector3d(Eigen::Vector3d::UnitZ());
+}
+
+/// The same for a fitted body; see symmetry_axis.
+template <typename S>
+Eigen::Vector3d growth_axis(const PointCloud<S>& cloud, const Labels& labels, const EllipsoidFit& fit,
+                            const GrowthAxisParameters& parameters = {}) {
+  return growth_axis(cloud, labels, fit.body, symmetry_axis(fit), parameters);
 }
 
 }  // namespace agrisee

@@ -11,9 +11,30 @@
 
 namespace agrisee {
 
-/// Bins of directions: 6 x 6 on each face of a cube, at equal angular steps.
-struct DirectionBins {
-  static constexpr int kSide = 6;                   ///< bins along an edge of the cube
+namespace detail {
+
+/// Tangents of the borders between bins, as angles from the middle of a face; written out, so that a direction has the
+/// same bin on every computer.
+template <int Side>
+struct BinBorders;
+/// Borders every 15 degrees.
+template <>
+struct BinBorders<6> {
+  static constexpr std::array<double, 2> kTangents = {0.26794919243112270647, 0.57735026918962576451};
+};
+/// Borders every 11.25 degrees.
+template <>
+struct BinBorders<8> {
+  static constexpr std::array<double, 3> kTangents = {0.19891236737965800691, 0.41421356237309504880,
+                                                      0.66817863791929891999};
+};
+
+}  // namespace detail
+
+/// Bins of directions: Side x Side on each face of a cube, at equal angular steps. Side is 6 or 8.
+template <int Side>
+struct CubeBins {
+  static constexpr int kSide = Side;                ///< bins along an edge of the cube
   static constexpr int kCount = 6 * kSide * kSide;  ///< bins in total
 
   /// The bin of a direction of any length but zero.
@@ -21,10 +42,10 @@ struct DirectionBins {
     Eigen::Index axis;
     const double largest = d.cwiseAbs().maxCoeff(&axis);
     const int face = static_cast<int>(axis) * 2 + (d[axis] < 0.0 ? 1 : 0);
-    const auto cell = [&](double x) {  // borders at -30, -15, 0, 15 and 30 degrees
-      constexpr double kTan15 = 0.26794919243112270647, kTan30 = 0.57735026918962576451;
-      const double a = std::abs(x), steps = (a >= kTan15 * largest) + (a >= kTan30 * largest);
-      return static_cast<int>(x >= 0.0 ? 3.0 + steps : 2.0 - steps);
+    const auto cell = [&](double x) {
+      int steps = 0;  // from the middle of the face
+      for (const double border : detail::BinBorders<Side>::kTangents) steps += std::abs(x) >= border * largest;
+      return x >= 0.0 ? kSide / 2 + steps : kSide / 2 - 1 - steps;
     };
     return (face * kSide + cell(d[(axis + 1) % 3])) * kSide + cell(d[(axis + 2) % 3]);
   }
@@ -73,5 +94,8 @@ struct DirectionBins {
     return d.normalized();
   }
 };
+
+/// The usual bins, 15 degrees wide.
+using DirectionBins = CubeBins<6>;
 
 }  // namespace agrisee

@@ -1,0 +1,551 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// @file
+/// Closes the surface of a fruit that is no ellipsoid behind what was seen of it: center of volume, volume, moments.
+///
+/// Peppers have lobes, pears a neck, strawberries a point. What they have in common is an axis: seen along it they look
+/// the same after each turn by a fraction of a circle. So the side that nobody saw follows from the sides that were
+/// seen. The surface is r(u) = exp(sum of c_k Y_k(u)): the logarithm of its distance from the center in real spherical
+/// harmonics about that axis. The c_k are normal with means 0 and with variances that say what fruit look like: large
+/// for order 0, the profile of a body of revolution; large for the orders n and 2 n, if the fruit has n lobes; small for
+/// all others. This is Gaussian process regression with a covariance that knows of the axis (Rasmussen & Williams,
+/// Gaussian Processes for Machine Learning, 2006, 2.1 and 5.4.1). n is the one with the largest evidence. A shift and a
+/// tilt of the axis are unknowns of the same least squares and are applied after each step; points far from the surface
+/// or with other normals lose their weight (Tukey's biweight). Points of no fruit that lie on the surface are joined:
+/// the neck of a pear is too far from any ellipsoid to have got its label.
+///
+/// Metres, any frame. Cost: see docs/benchmarks.md; thinned points, so it hardly grows with them.
+#pragma once
+
+#include <agrisee/cloud/fit.hpp>
+#include <agrisee/core/cancellation.hpp>
+#include <agrisee/core/cloud.hpp>
+#include <agrisee/core/error.hpp>
+#include <agrisee/core/parameter_range.hpp>
+#include <agrisee/core/pose.hpp>
+#include <agrisee/geometry/direction_bins.hpp>
+#include <agrisee/geometry/spherical_harmonics.hpp>
+
+#include <Eigen/Cholesky>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <optional>
+#include <vector>
+
+namespace agrisee {
+
+/// Parameters of closed_surface. Standard deviations are of the logarithm of the radius, so relative to it.
+struct ClosedSurfaceParameters {
+  double profile = 0.1;    ///< standard deviation of degree 2 of the profile; falls with degree^-1.5
+  double lobes = 0.05;     ///< standard deviation of the lobes at their lowest degree; falls with 1 / degree
+  double uneven = 0.0015;  ///< standard deviation of degree 2 of what no symmetry explains; falls with 1 / degree
+  double noise = 0.0025;   ///< standard deviation of a point, relative to the radius, is never below this
+  double join = 0.02;      ///< points of no fruit this near to the surface, relative to the radius, are joined
+  double doubtful = 100;   ///< up to this evidence (nats) against the ellipsoid, the ellipsoid is right
+  double certain = 200;    ///< from this evidence on, the closed surface is; in between it is a mixture
+  double error_scale = 4;  ///< standard errors are this multiple of those that independent points would give
+  int max_points = 1500;   ///< larger sets of points are thinned evenly to this many
+
+  /// @throws FieldError for the first field that is out of its range
+  void check() const { check_fields(*this); }
+
+  /// f(name, field, range) for every field.
+  template <typename P, typename F>
+  static void fields(P& p, F&& f) {
+    f("profile", p.profile, Range::positive());
+    f("lobes", p.lobes, Range::positive());
+    f("uneven", p.uneven, Range::positive());
+    f("noise", p.noise, Range::positive());
+    f("join", p.join, Range::not_negative());
+    f("doubtful", p.doubtful, Range::not_negative());
+    f("certain", p.certain, Range::above({p.doubtful, "doubtful"}));
+    f("error_scale", p.error_scale, Range::positive());
+    f("max_points", p.max_points, Range::at_least(100));
+  }
+};
+
+/// A fruit's closed surface.
+struct ClosedSurface {
+  /// 0: the ellipsoid explains the points; 1: only this surface does; in between by the evidence.
+  double weight = 0.0;
+  double evidence = 0.0;                             ///< logarithm of its probability over the ellipsoid's (nats)
+  int lobes = 0;                                     ///< how many, 3 to 9; 0: a body of revolution
+  Eigen::Vector3d axis = Eigen::Vector3d::UnitZ();   ///< of symmetry, unit; its sign means nothing
+  double axis_variance = 0.0;                        ///< of its direction (rad2)
+  Eigen::Vector3d center = Eigen::Vector3d::Zero();  ///< of the volume (m)
+  Eigen::Matrix3d center_covariance = Eigen::Matrix3d::Zero();  ///< m2
+  double volume = 0.0;                                          ///< m3
+  double volume_error = 0.0;                                    ///< its standard error, relative
+  Eigen::Matrix3d spread = Eigen::Matrix3d::Zero();             ///< covariance of the positions inside it (m2)
+  double rms = 0.0;                                             ///< root mean square distance of its points (m)
+  Indices joined;  ///< points of no fruit that are on it, ascending; none without weight
+};
+
+namespace detail {
+
+/// Mean distances of points in bins of directions.
+struct RadialBin {
+  Eigen::Vector3d direction = Eigen::Vector3d::Zero();  ///< mean of its points, unit
+  double logarithm = 0.0;                               ///< mean logarithm of their distances (of m)
+  double weight = 0.0;                                  ///< sum of their weights
+};
+
+/// A Gaussian posterior: y = B c + noise, c normal about 0.
+struct LinearPosterior {
+  Eigen::VectorXd mean;           ///< of c
+  Eigen::LLT<Eigen::MatrixXd> information;  ///< inverse covariance of c, factorised
+  double evidence = 0.0;          ///< logarithm of the probability density of y
+};
+
+/// @param B one column for each value (the transpose of the B above)
+/// @param y the values
+/// @param variance of the noise of each value
+/// @param prior variance of each c
+inline LinearPosterior linear_posterior(const Eigen::MatrixXd& B, const Eigen::VectorXd& y,
+                                        const Eigen::VectorXd& variance, const Eigen::VectorXd& prior) {
+  const Eigen::VectorXd root = variance.cwiseSqrt().cwiseInverse();
+  const Eigen::MatrixXd scaled = B * root.asDiagonal();
+  const Eigen::VectorXd values = root.cwiseProduct(y);
+  Eigen::MatrixXd H = Eigen::MatrixXd(prior.cwiseInverse().asDiagonal());
+  H.selfadjointView<Eigen::Lower>().rankUpdate(scaled);
+  LinearPosterior out;
+  out.information.compute(H);
+  const Eigen::VectorXd rhs = scaled * values;
+  out.mean = out.information.solve(rhs);
+  const double log_det = out.information.matrixLLT().diagonal().array().log().sum();
+  out.evidence = -0.5 * (values.squaredNorm() - rhs.dot(out.mean)) - log_det - 0.5 * prior.array().log().sum() -
+                 0.5 * variance.array().log().sum() - 0.5 * static_cast<double>(y.size()) * std::log(kTwoPi);
+  return out;
+}
+
+/// The harmonics of a body with some number of lobes (0: of revolution) and the variances of their coefficients.
+struct SurfaceModel {
+  SphericalHarmonics basis;
+  Eigen::VectorXd prior;
+
+  static constexpr int kProfile = 12;  ///< highest degree of the profile
+  static constexpr int kUneven = 4;    ///< highest degree of what no symmetry explains
+
+  static std::vector<int> top(int lobes) {
+    std::vector<int> degrees(static_cast<std::size_t>(std::max(kUneven, 2 * lobes)) + 1, -1);
+    degrees[0] = kProfile;
+    for (std::size_t m = 1; m <= kUneven; ++m) degrees[m] = kUneven;
+    if (lobes > 0) {
+      const auto n = static_cast<std::size_t>(lobes);
+      degrees[n] = std::max(10, lobes + 1);
+      degrees[2 * n] = 2 * lobes + 2;
+    }
+    return degrees;
+  }
+
+  SurfaceModel(int lobes, const ClosedSurfaceParameters& parameters) : basis(top(lobes)), prior(basis.size()) {
+    for (std::size_t k = 0; k < basis.size(); ++k) {
+      const auto [l, m] = basis.terms()[k];
+      const double degree = std::max(2, l);
+      double deviation = 0.0;
+      if (m == 0)
+        deviation = l == 0 ? 2.0 : l == 1 ? 0.2 : parameters.profile * std::pow(2.0 / degree, 1.5);
+      else if (l <= kUneven)
+        deviation = parameters.uneven * 2.0 / degree;
+      if (lobes > 0 && m == lobes) deviation = std::hypot(deviation, parameters.lobes * lobes / degree);
+      if (lobes > 0 && m == 2 * lobes) deviation = std::hypot(deviation, 0.5 * parameters.lobes * lobes / degree);
+      prior[static_cast<Eigen::Index>(k)] = deviation * deviation;
+    }
+  }
+};
+
+/// Direction i of `count` that are spread evenly over the sphere, on a spiral (Gonzalez, Mathematical Geosciences 42,
+/// 2010).
+inline Eigen::Vector3d spiral_direction(int i, int count) {
+  const double z = 1.0 - (2.0 * i + 1.0) / count, phi = 2.399963229728653322 * i, s = std::sqrt(1.0 - z * z);
+  return {s * std::cos(phi), s * std::sin(phi), z};
+}
+
+/// Logarithm of the distance (of m) from a point inside an ellipsoid to its surface, in the direction `u` (unit).
+inline double log_distance(const Ellipsoid& body, const Eigen::Vector3d& from, const Eigen::Vector3d& u) {
+  const Eigen::Vector3d o = body.times(from - body.center), a = body.times(u);  // |o + r a| = 1
+  const double aa = a.squaredNorm(), ao = a.dot(o), root = ao * ao - aa * (o.squaredNorm() - 1.0);
+  return std::log(std::max(1e-9, (std::sqrt(std::max(0.0, root)) - ao) / aa));
+}
+
+/// Fits a closed surface from one first guess of its axis.
+class SurfaceFit {
+ public:
+  /// The points of a fruit and of what belongs to no fruit around it.
+  struct Samples {
+    std::vector<Eigen::Vector3d> points, normals;
+    std::size_t own = 0;  ///< the first ones are the fruit's
+  };
+
+  static constexpr int kExtra = 4;  ///< unknowns beside the harmonics: shift and tilt of the axis, two each
+
+  /// @param model of revolution
+  SurfaceFit(const Samples& samples, const Ellipsoid& start, const Eigen::Vector3d& axis, const SurfaceModel& model,
+             const ClosedSurfaceParameters& parameters)
+      : samples_(samples), parameters_(parameters), center_(start.center), weights_(samples.points.size(), 0.0) {
+    size_ = -std::log(start.A.determinant()) / 3.0;
+    turn_.row(2) = axis.normalized();
+    turn_.row(0) = any_orthogonal<double>(axis.normalized());
+    turn_.row(1) = turn_.row(2).cross(turn_.row(0));
+    std::fill_n(weights_.begin(), samples.own, 1.0);
+    constexpr int kDirections = 200;  // to project the ellipsoid onto the harmonics of order 0
+    coefficients_ = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(model.basis.size()));
+    Eigen::VectorXd values(coefficients_.size());
+    for (int i = 0; i < kDirections; ++i) {
+      const Eigen::Vector3d u = spiral_direction(i, kDirections);
+      model.basis.values(u, values.data());
+      coefficients_ += (log_distance(start, center_, turn_.transpose() * u) - size_) / kDirections * values;
+    }
+    coefficients_.tail(coefficients_.size() - SurfaceModel::kProfile - 1).setZero();
+    residuals_.assign(samples.points.size(), 0.0);
+  }
+
+  /// Steps with `model`; see the constants of closed_surface.
+  /// @return false if the surface degenerates
+  bool step(const SurfaceModel& model, double gate, bool join) {
+    const std::vector<RadialBin> bins = radial_bins(weights_);
+    if (bins.size() < 12) return false;
+    const LinearPosterior posterior = solve(model, bins, noise_, 1.0);
+    if (!posterior.mean.allFinite()) return false;
+    const Eigen::Vector4d extra = posterior.mean.tail<kExtra>();
+    Eigen::Vector2d shift = extra.head<2>(), tilt = extra.tail<2>();
+    shift /= std::max(1.0, shift.norm() / 0.15);
+    tilt /= std::max(1.0, tilt.norm() / 0.3);
+    center_ += std::exp(size_) * turn_.topRows<2>().transpose() * shift;
+    const Eigen::Vector3d axis = (turn_.row(2).transpose() + turn_.topRows<2>().transpose() * tilt).normalized();
+    turn_.row(0) = (turn_.row(0) - axis.dot(turn_.row(0)) * axis.transpose()).normalized();
+    turn_.row(2) = axis;
+    turn_.row(1) = turn_.row(2).cross(turn_.row(0));
+    coefficients_ = posterior.mean.head(posterior.mean.size() - kExtra);
+    return weigh(model, gate, join);
+  }
+
+  /// Evidence for `model` from the fruit's points, and its coefficients become those of `from` where it has them.
+  double evidence_for(const SurfaceModel& model, const SurfaceModel& from, const std::vector<RadialBin>& bins,
+                      double noise) {
+    const Eigen::VectorXd kept = coefficients_;
+    coefficients_ = mapped(model, from, kept);
+    const double evidence = solve(model, bins, noise, 1.0).evidence;
+    coefficients_ = kept;
+    return evidence;
+  }
+
+  /// Go on with another model.
+  void change(const SurfaceModel& model, const SurfaceModel& from) {
+    coefficients_ = mapped(model, from, coefficients_);
+    noise_ = 0.01;
+  }
+
+  /// Points closer to the surface than `far` (relative) count fully, others not; only the fruit's.
+  std::vector<double> plain_weights(double far) const {
+    std::vector<double> weights(samples_.points.size(), 0.0);
+    for (std::size_t i = 0; i < samples_.own; ++i) weights[i] = std::abs(residuals_[i]) < far ? 1.0 : 0.0;
+    return weights;
+  }
+  void set_weights(std::vector<double> weights) { weights_ = std::move(weights); }
+
+  /// Mean distance of the fruit's points from the surface, relative, each at most 0.05.
+  double misfit() const {
+    double sum = 0.0;
+    for (std::size_t i = 0; i < samples_.own; ++i) sum += std::min(std::abs(residuals_[i]), 0.05);
+    return sum / static_cast<double>(samples_.own);
+  }
+
+  /// Bins of the points by direction from the center, in the axis' frame.
+  std::vector<RadialBin> radial_bins(const std::vector<double>& weights) const {
+    using Bins = CubeBins<8>;
+    std::array<RadialBin, Bins::kCount> all;
+    for (std::size_t i = 0; i < weights.size(); ++i) {
+      if (!(weights[i] > 0.0)) continue;
+      const Eigen::Vector3d q = samples_.points[i] - center_;
+      const double r = q.norm();
+      if (!(r > 1e-9)) continue;
+      RadialBin& bin = all[static_cast<std::size_t>(Bins::bin(q))];
+      bin.direction += weights[i] / r * q;
+      bin.logarithm += weights[i] * std::log(r);
+      bin.weight += weights[i];
+    }
+    std::vector<RadialBin> out;
+    for (RadialBin& bin : all) {
+      if (!(bin.weight > 1e-6) || !(bin.direction.norm() > 0.0)) continue;
+      bin.logarithm /= bin.weight;
+      bin.direction = (turn_ * bin.direction).normalized();
+      out.push_back(bin);
+    }
+    return out;
+  }
+
+  /// Values of the harmonics, and of the shift and tilt, in a direction of the axis' frame.
+  /// @param out receives them: those of the harmonics, then kExtra
+  void values(const SurfaceModel& model, const Eigen::Vector3d& u, double* out) const {
+    model.basis.values(u, out);
+    out += model.basis.size();
+    const double s = std::hypot(u.x(), u.y()), slope = model.basis.slope(u.z(), coefficients_);
+    const double c = s > 0.0 ? u.x() / s : 1.0, d = s > 0.0 ? u.y() / s : 0.0;
+    // A body of revolution r(theta), shifted by t (in units of its size) or tilted by a (rad) towards phi = 0: to first
+    // order ln r changes by t cos(phi) (sin(theta) - slope cos(theta)) and by -a slope cos(phi).
+    const double by_shift = s - slope * u.z();
+    out[0] = c * by_shift;
+    out[1] = d * by_shift;
+    out[2] = -slope * c;
+    out[3] = -slope * d;
+  }
+
+  /// Variances of the bins' logarithms: errors of neighbouring points are correlated.
+  static Eigen::VectorXd variances(const std::vector<RadialBin>& bins, double noise) {
+    Eigen::VectorXd out(static_cast<Eigen::Index>(bins.size()));
+    for (std::size_t i = 0; i < bins.size(); ++i)
+      out[static_cast<Eigen::Index>(i)] = noise * noise * (1.0 / std::min(bins[i].weight, 6.0) + 0.25);
+    return out;
+  }
+
+  /// @param freedom scales the standard deviations of shift and tilt
+  LinearPosterior solve(const SurfaceModel& model, const std::vector<RadialBin>& bins, double noise,
+                        double freedom) const {
+    const auto n = static_cast<Eigen::Index>(bins.size()), terms = static_cast<Eigen::Index>(model.basis.size());
+    Eigen::MatrixXd B(terms + kExtra, n);
+    Eigen::VectorXd y(n), prior(terms + kExtra);
+    for (Eigen::Index i = 0; i < n; ++i) {
+      const RadialBin& bin = bins[static_cast<std::size_t>(i)];
+      values(model, bin.direction, B.col(i).data());
+      y[i] = bin.logarithm - size_;
+    }
+    prior << model.prior, Eigen::Vector4d(0.04, 0.04, 0.09, 0.09) * (freedom * freedom);
+    return linear_posterior(B, y, variances(bins, noise), prior);
+  }
+
+  const Eigen::Vector3d& center() const { return center_; }
+  const Eigen::Matrix3d& turn() const { return turn_; }  ///< from the given frame to the axis' frame
+  double size() const { return size_; }
+  double noise() const { return noise_; }
+  const std::vector<double>& weights() const { return weights_; }
+  const std::vector<double>& residuals() const { return residuals_; }
+
+ private:
+  static Eigen::VectorXd mapped(const SurfaceModel& model, const SurfaceModel& from, const Eigen::VectorXd& old) {
+    Eigen::VectorXd out = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(model.basis.size()));
+    const auto& to = model.basis.terms();
+    const auto& have = from.basis.terms();
+    for (std::size_t k = 0, j = 0; k < have.size(); ++k, ++j) {  // both ascend by order, then degree; `to` has all
+      while (to[j].order != have[k].order || to[j].degree != have[k].degree) ++j;
+      out[static_cast<Eigen::Index>(j)] = old[static_cast<Eigen::Index>(k)];
+    }
+    return out;
+  }
+
+  /// New residuals, noise and weights of all points.
+  bool weigh(const SurfaceModel& model, double gate, bool join) {
+    constexpr double kOwnCosine = 0.6, kJoinedCosine = 0.8;  // of the angle between normals of point and surface
+    std::vector<double> cosines(samples_.points.size(), 0.0), sorted;
+    sorted.reserve(samples_.own);
+    std::vector<double> values(model.basis.size());
+    for (std::size_t i = 0; i < samples_.points.size(); ++i) {
+      const Eigen::Vector3d q = turn_ * (samples_.points[i] - center_);
+      const double r = q.norm();
+      if (!(r > 1e-9)) {
+        residuals_[i] = 1.0;
+        continue;
+      }
+      const Eigen::Vector3d u = q / r;
+      model.basis.values(u, values.data());
+      residuals_[i] = std::log(r) - size_ -
+                      Eigen::Map<const Eigen::VectorXd>(values.data(), coefficients_.size()).dot(coefficients_);
+      const double s = std::hypot(u.x(), u.y()), slope = model.basis.slope(u.z(), coefficients_);
+      const double c = s > 0.0 ? u.x() / s : 1.0, d = s > 0.0 ? u.y() / s : 0.0;
+      const Eigen::Vector3d normal = u - slope * Eigen::Vector3d(u.z() * c, u.z() * d, -s);
+      cosines[i] = normal.normalized().dot(turn_ * samples_.normals[i]);
+      if (i < samples_.own) sorted.push_back(std::abs(residuals_[i]));
+    }
+    if (sorted.empty()) return false;
+    const auto middle = sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2);
+    std::nth_element(sorted.begin(), middle, sorted.end());
+    noise_ = std::clamp(1.4826 * *middle, parameters_.noise, std::max(parameters_.noise, 0.03));
+    const double far = std::max(4.0 * noise_, gate);
+    for (std::size_t i = 0; i < samples_.points.size(); ++i) {
+      const double t = residuals_[i] / far;
+      const bool own = i < samples_.own;
+      const bool counts = own ? cosines[i] > kOwnCosine
+                              : join && cosines[i] > kJoinedCosine && std::abs(residuals_[i]) < parameters_.join;
+      weights_[i] = counts && std::abs(t) < 1.0 ? (1.0 - t * t) * (1.0 - t * t) : 0.0;
+    }
+    return true;
+  }
+
+  const Samples& samples_;
+  const ClosedSurfaceParameters& parameters_;
+  Eigen::Vector3d center_;
+  Eigen::Matrix3d turn_ = Eigen::Matrix3d::Identity();
+  double size_ = 0.0;    ///< logarithm of the start's mean radius (of m)
+  double noise_ = 0.02;  ///< standard deviation of a point, relative
+  Eigen::VectorXd coefficients_;
+  std::vector<double> weights_, residuals_;
+};
+
+/// Evidence for an ellipsoid with small, even deviations, from the same bins.
+inline double ellipsoid_evidence(const Ellipsoid& body, const SurfaceFit& fit, const std::vector<RadialBin>& bins,
+                                 double noise, double uneven) {
+  static const SphericalHarmonics basis({4, 4, 4, 4, 4});
+  const auto n = static_cast<Eigen::Index>(bins.size()), terms = static_cast<Eigen::Index>(basis.size());
+  Eigen::MatrixXd B(terms, n);
+  Eigen::VectorXd y(n), prior(terms);
+  for (Eigen::Index i = 0; i < n; ++i) {
+    const RadialBin& bin = bins[static_cast<std::size_t>(i)];
+    basis.values(bin.direction, B.col(i).data());
+    y[i] = bin.logarithm - log_distance(body, fit.center(), fit.turn().transpose() * bin.direction);
+  }
+  for (Eigen::Index k = 0; k < terms; ++k) {
+    const int l = basis.terms()[static_cast<std::size_t>(k)].degree;
+    const double deviation = l == 0 ? 0.02 : uneven * 2.0 / std::max(2, l);
+    prior[k] = deviation * deviation;
+  }
+  return linear_posterior(B, y, SurfaceFit::variances(bins, noise), prior).evidence;
+}
+
+/// Integrate the surface: center, volume and moments with their standard errors.
+inline void integrate(const SurfaceModel& model, const SurfaceFit& fit, const LinearPosterior& posterior,
+                      double error_scale, ClosedSurface& out) {
+  constexpr int kDirections = 800;
+  const Eigen::Index terms = posterior.mean.size();
+  double volume = 0.0;
+  Eigen::Vector3d first = Eigen::Vector3d::Zero();
+  Eigen::Matrix3d second = Eigen::Matrix3d::Zero();
+  Eigen::VectorXd values(terms), by_volume = Eigen::VectorXd::Zero(terms);  // of the volume by the coefficients
+  Eigen::MatrixXd by_first = Eigen::MatrixXd::Zero(terms, 3);
+  for (int i = 0; i < kDirections; ++i) {
+    const Eigen::Vector3d u = spiral_direction(i, kDirections);
+    fit.values(model, u, values.data());
+    const double r = std::exp(fit.size() + values.dot(posterior.mean)), r3 = r * r * r;
+    volume += r3 / 3.0;
+    first += r3 * r / 4.0 * u;
+    second += r3 * r * r / 5.0 * u * u.transpose();
+    by_volume += r3 * values;
+    by_first += values * (r3 * r * u).transpose();
+  }
+  const Eigen::Vector3d mean = first / volume;
+  const Eigen::Matrix3d& turn = fit.turn();
+  out.volume = volume * 2.0 * kTwoPi / kDirections;
+  out.center = fit.center() + turn.transpose() * mean;
+  out.spread = turn.transpose() * (second / volume - mean * mean.transpose()) * turn;
+  by_volume /= volume;
+  by_first = (by_first / volume - by_volume * mean.transpose()).eval();
+  const double scale = error_scale * error_scale;
+  const Eigen::Matrix3d covariance = by_first.transpose() * posterior.information.solve(by_first);
+  out.center_covariance = scale * turn.transpose() * (0.5 * (covariance + covariance.transpose())) * turn;
+  out.volume_error = std::sqrt(scale * by_volume.dot(posterior.information.solve(by_volume)));
+  Eigen::MatrixXd tilt = Eigen::MatrixXd::Zero(terms, 2);
+  tilt(terms - 2, 0) = tilt(terms - 1, 1) = 1.0;
+  out.axis_variance = scale * (tilt.transpose() * posterior.information.solve(tilt)).diagonal().maxCoeff();
+  out.axis = turn.row(2);
+}
+
+}  // namespace detail
+
+/// Closes the surface of a fruit.
+/// @param cloud points (m) with normals
+/// @param own the fruit's points
+/// @param others points that belong to no fruit; those far away are not used
+/// @param body the fitted ellipsoid
+/// @param axis first guess of the axis of symmetry; the ellipsoid's own axes are tried, too
+/// @param parameters see their struct
+/// @return empty if the points are too few or fit no closed surface
+/// @throws InputError if the cloud has no normals; ParameterError; Cancelled
+template <typename S>
+std::optional<ClosedSurface> closed_surface(const PointCloud<S>& cloud, const Indices& own, const Indices& others,
+                                            const Ellipsoid& body, const Eigen::Vector3d& axis,
+                                            const ClosedSurfaceParameters& parameters = {}) {
+  parameters.check();
+  check_input(cloud.normals.size() == cloud.points.size(), "closed_surface: the cloud has no normals");
+  constexpr std::size_t kLeast = 30;
+  if (own.size() < kLeast) return std::nullopt;
+  const auto [radii, axes] = semi_axes(body);
+
+  detail::SurfaceFit::Samples samples;
+  Indices near;  // of `others`
+  const auto add = [&](Index index) {
+    const auto i = static_cast<std::size_t>(index);
+    samples.points.push_back(cloud.points[i].template cast<double>());
+    samples.normals.push_back(cloud.normals[i].template cast<double>());
+  };
+  const std::size_t used = std::min(own.size(), static_cast<std::size_t>(parameters.max_points));
+  for (std::size_t k = 0; k < used; ++k) add(own[k * own.size() / used]);
+  samples.own = used;
+  for (const Index i : others) {
+    const Eigen::Vector3d p = cloud.points[static_cast<std::size_t>(i)].template cast<double>();
+    if (!((p - body.center).squaredNorm() < 4.84 * radii[0] * radii[0])) continue;
+    add(i);
+    near.push_back(i);
+  }
+
+  constexpr std::array<double, 4> kGates = {0.15, 0.08, 0.05, 0.04};  // relative distances beyond which points lose weight
+  constexpr int kSteps = 4;                                            // as a body of revolution, then with its lobes
+  constexpr std::array<int, 8> kLobes = {0, 3, 4, 5, 6, 7, 8, 9};
+  std::vector<detail::SurfaceModel> models;
+  for (const int n : kLobes) models.emplace_back(n, parameters);
+
+  std::vector<Eigen::Vector3d> starts{axis};
+  for (int k = 0; k < 3; ++k)
+    if (std::abs(axes.col(k).dot(axis)) < 0.9) starts.push_back(axes.col(k));
+  std::optional<detail::SurfaceFit> best;
+  std::size_t best_model = 0;
+  for (const Eigen::Vector3d& start : starts) {
+    throw_if_cancelled();
+    detail::SurfaceFit fit(samples, body, start, models[0], parameters);
+    bool good = true;
+    for (int k = 0; k < kSteps && good; ++k) good = fit.step(models[0], kGates[static_cast<std::size_t>(k)], k >= 2);
+    if (!good) continue;
+    const std::vector<double> plain = fit.plain_weights(0.2);
+    const std::vector<detail::RadialBin> bins = fit.radial_bins(plain);
+    if (bins.empty()) continue;
+    std::size_t model = 0;
+    double largest = 0.0;
+    for (std::size_t m = 0; m < models.size(); ++m) {
+      const double evidence = fit.evidence_for(models[m], models[0], bins, 0.006);
+      if (m > 0 && !(evidence > largest)) continue;
+      largest = evidence;
+      model = m;
+    }
+    fit.change(models[model], models[0]);
+    if (model > 0) fit.set_weights(plain);
+    for (std::size_t k = 0; k < kSteps && good; ++k) good = fit.step(models[model], kGates[std::min<std::size_t>(k + 1, 3)], true);
+    if (!good || (best && !(fit.misfit() < best->misfit()))) continue;
+    best.emplace(fit);
+    best_model = model;
+  }
+  if (!best) return std::nullopt;
+  const detail::SurfaceModel& model = models[best_model];
+
+  ClosedSurface out;
+  out.lobes = kLobes[best_model];
+  const std::vector<detail::RadialBin> bins = best->radial_bins(best->weights());
+  if (bins.size() < 12) return std::nullopt;
+  detail::integrate(model, *best, best->solve(model, bins, best->noise(), 1.0), parameters.error_scale, out);
+  const double ratio = out.volume / (4.0 / 3.0 * kPi * radii.prod());
+  if (!(ratio > 0.4) || !(ratio < 2.5) || !((out.center - body.center).norm() < 0.6 * radii[0])) return std::nullopt;
+
+  // Evidence from the points that either of the two bodies explains.
+  std::vector<double> explained(samples.points.size(), 0.0);
+  for (std::size_t i = 0; i < samples.own; ++i)
+    explained[i] = std::abs(best->residuals()[i]) < 0.05 ||
+                   std::abs(body.distance(samples.points[i])) < 0.05 * body.mean_radius();
+  const std::vector<detail::RadialBin> common = best->radial_bins(explained);
+  const double noise = std::max(0.01, best->noise());
+  out.evidence = best->solve(model, common, noise, 0.05).evidence -
+                 detail::ellipsoid_evidence(body, *best, common, noise, parameters.uneven);
+  const double t =
+      std::clamp((out.evidence - parameters.doubtful) / (parameters.certain - parameters.doubtful), 0.0, 1.0);
+  out.weight = t * t * (3.0 - 2.0 * t);
+
+  double squares = 0.0, weights = 0.0;
+  for (std::size_t i = 0; i < samples.points.size(); ++i) {
+    const double distance = best->residuals()[i] * (samples.points[i] - best->center()).norm();
+    squares += best->weights()[i] * distance * distance;
+    weights += best->weights()[i];
+    if (out.weight > 0.0 && i >= samples.own && best->weights()[i] > 0.0) out.joined.push_back(near[i - samples.own]);
+  }
+  out.rms = weights > 0.0 ? std::sqrt(squares / weights) : 0.0;
+  std::sort(out.joined.begin(), out.joined.end());
+  return out;
+}
+
+}  // namespace agrisee

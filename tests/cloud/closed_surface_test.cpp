@@ -1,0 +1,201 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <agrisee/cloud/closed_surface.hpp>
+#include <agrisee/core/random.hpp>
+
+#include "catch.hpp"
+
+using namespace agrisee;
+
+namespace {
+
+/// A body r(direction), m; its axis of symmetry is z.
+using Radius = double (*)(const Eigen::Vector3d&);
+
+double ball(const Eigen::Vector3d&) { return 0.03; }
+
+double tomato(const Eigen::Vector3d& d) {
+  return 1.0 / std::sqrt((d.x() * d.x() + d.y() * d.y()) / 12.25e-4 + d.z() * d.z() / 9e-4);
+}
+
+/// A pear with its neck at z > 0.
+double pear(const Eigen::Vector3d& d) {
+  const double s2 = 1.0 - d.z() * d.z(), across = 0.032 * (1.0 - 0.45 * d.z());
+  return 1.0 / std::sqrt(s2 / (across * across) + d.z() * d.z() / (0.048 * 0.048));
+}
+
+/// A strawberry with its point at z < 0.
+double strawberry(const Eigen::Vector3d& d) {
+  const double s2 = 1.0 - d.z() * d.z(), across = 0.02 * (1.0 + 0.35 * d.z());
+  return 1.0 / std::sqrt(s2 / (across * across) + d.z() * d.z() / (0.026 * 0.026));
+}
+
+double egg(const Eigen::Vector3d& d) { return 0.025 * (1.0 + 0.14 * d.z() + 0.1 * d.z() * d.z()); }
+
+/// A block of superelliptic outline (Lame's curve with exponent 2.8) with four lobes.
+double pepper(const Eigen::Vector3d& d) {
+  const double s = std::hypot(d.x(), d.y()), s2 = 1.0 - d.z() * d.z();
+  const double block = std::pow(std::pow(s / 0.04, 2.8) + std::pow(std::abs(d.z()) / 0.048, 2.8), -1.0 / 2.8);
+  return block * (1.0 + 0.09 * std::sqrt(s2) * std::cos(4.0 * std::atan2(d.y(), d.x()) + 0.7));
+}
+
+/// Volume and its center, from a fine grid of directions.
+std::pair<double, Eigen::Vector3d> truth(Radius radius) {
+  double volume = 0.0;
+  Eigen::Vector3d first = Eigen::Vector3d::Zero();
+  const int n = 20000;
+  for (int i = 0; i < n; ++i) {
+    const double z = 1.0 - (2.0 * i + 1.0) / n, phi = 2.399963229728653 * i, q = std::sqrt(1.0 - z * z);
+    const Eigen::Vector3d d(q * std::cos(phi), q * std::sin(phi), z);
+    const double r = radius(d);
+    volume += r * r * r / 3.0;
+    first += r * r * r * r / 4.0 * d;
+  }
+  return {volume * 4.0 * kPi / n, first / volume};
+}
+
+/// Where the tests put bodies: turned and off the origin.
+Pose world_T_body() {
+  Pose pose = Pose::Identity();
+  pose.linear() = (Eigen::AngleAxisd(0.3, Eigen::Vector3d::UnitX()) * Eigen::AngleAxisd(0.5, Eigen::Vector3d::UnitZ()))
+                      .toRotationMatrix();
+  pose.translation() = Eigen::Vector3d(0.1, 0.5, 0.2);
+  return pose;
+}
+
+/// Points with normals where the body's surface faces -y in world, to `beyond` (cosine) behind its edge.
+Cloud seen(Radius radius, double beyond, double noise = 0.0002, std::size_t points = 1500) {
+  Cloud cloud;
+  Rng rng(3);
+  const Pose pose = world_T_body();
+  const auto at = [&](const Eigen::Vector3d& e) -> Eigen::Vector3d { return radius(e.normalized()) * e.normalized(); };
+  while (cloud.size() < points) {
+    const Eigen::Vector3d d = Eigen::Vector3d(rng.normal(), rng.normal(), rng.normal()).normalized();
+    const Eigen::Vector3d u = d.unitOrthogonal(), v = d.cross(u);
+    const double h = 1e-4;
+    const Eigen::Vector3d n = pose.linear() * (at(d + h * u) - at(d - h * u)).cross(at(d + h * v) - at(d - h * v)).normalized();
+    if (n.y() > beyond) continue;
+    cloud.points.push_back((pose * at(d) + noise * rng.normal() * n).cast<float>());
+    cloud.normals.push_back(n.cast<float>());
+  }
+  return cloud;
+}
+
+Indices range(std::size_t from, std::size_t to) {
+  Indices out;
+  for (std::size_t i = from; i < to; ++i) out.push_back(static_cast<Index>(i));
+  return out;
+}
+
+/// The surface through all points of a cloud; the first guess of the axis is 20 degrees off.
+std::optional<ClosedSurface> close(const Cloud& cloud) {
+  const auto sphere = sphere_from_normals(cloud, range(0, cloud.size()));
+  REQUIRE(sphere);
+  const auto fit = fit_ellipsoid(cloud, range(0, cloud.size()), Ellipsoid(*sphere));
+  REQUIRE(fit);
+  const Eigen::Vector3d guess = world_T_body().linear() * Eigen::AngleAxisd(deg(20), Eigen::Vector3d::UnitX()) *
+                                Eigen::Vector3d::UnitZ();
+  return closed_surface(cloud, range(0, cloud.size()), {}, fit->body, guess);
+}
+
+}  // namespace
+
+TEST_CASE("fruit that are no ellipsoids, seen from a bit more than one side: center and volume") {
+  struct Case {
+    Radius radius;
+    int lobes;
+  };
+  for (const Case& c : {Case{pear, 0}, Case{strawberry, 0}, Case{pepper, 4}})
+    for (const double beyond : {0.3, 0.6}) {
+      CAPTURE(c.lobes, beyond);
+      const auto [volume, center] = truth(c.radius);
+      const auto surface = close(seen(c.radius, beyond));
+      REQUIRE(surface);
+      CHECK(surface->weight == 1.0);
+      CHECK(surface->lobes == c.lobes);
+      CHECK((surface->center - world_T_body() * center).norm() < 0.0006);
+      CHECK(surface->volume == Approx(volume).epsilon(0.025));
+      CHECK(std::abs(surface->axis.dot(world_T_body().linear().col(2))) > std::cos(deg(2)));
+      CHECK(surface->rms < 0.0005);
+      CHECK(surface->center_covariance.trace() > 0.0);
+      CHECK(surface->center_covariance.trace() < 1e-6);
+      CHECK(surface->volume_error < 0.05);
+    }
+}
+
+TEST_CASE("the ellipsoid stays where it explains the points") {
+  for (const Radius radius : {ball, tomato}) {
+    const auto [volume, center] = truth(radius);
+    for (const double beyond : {0.0, 0.6}) {
+      const auto surface = close(seen(radius, beyond));
+      REQUIRE(surface);
+      CHECK(surface->weight == 0.0);
+      CHECK(surface->joined.empty());
+      // and if it were asked, the surface would be right, too
+      CHECK((surface->center - world_T_body() * center).norm() < 0.0006);
+      CHECK(surface->volume == Approx(volume).epsilon(0.03));
+    }
+  }
+}
+
+TEST_CASE("a closed surface: the covariance of positions inside is that of the body") {
+  const auto surface = close(seen(egg, 2.0, 0.0));
+  REQUIRE(surface);
+  Eigen::Matrix3d second = Eigen::Matrix3d::Zero();
+  const auto [volume, center] = truth(egg);
+  const int n = 20000;
+  for (int i = 0; i < n; ++i) {
+    const double z = 1.0 - (2.0 * i + 1.0) / n, phi = 2.399963229728653 * i, q = std::sqrt(1.0 - z * z);
+    const Eigen::Vector3d d(q * std::cos(phi), q * std::sin(phi), z);
+    second += std::pow(egg(d), 5) / 5.0 * d * d.transpose() * 4.0 * kPi / n;
+  }
+  const Eigen::Matrix3d r = world_T_body().linear();
+  const Eigen::Matrix3d expected = r * (second / volume - center * center.transpose()) * r.transpose();
+  CHECK((surface->spread - expected).norm() < 0.01 * expected.norm());
+}
+
+TEST_CASE("points of no fruit on the surface are joined, others not") {
+  Cloud cloud = seen(pear, 0.5, 0.0001);
+  Cloud own, all;
+  const Pose body_T_world = world_T_body().inverse();
+  for (const bool neck : {false, true})
+    for (std::size_t i = 0; i < cloud.size(); ++i) {
+      const bool high = (body_T_world * cloud.points[i].cast<double>()).z() > 0.038;
+      if (high != neck) continue;
+      all.points.push_back(cloud.points[i]);
+      all.normals.push_back(cloud.normals[i]);
+      if (!neck) own.points.push_back(cloud.points[i]), own.normals.push_back(cloud.normals[i]);
+    }
+  const std::size_t tip = all.size();
+  for (int i = 0; i < 50; ++i) {  // a leaf in front
+    all.points.push_back(Eigen::Vector3f(0.1f + 0.001f * static_cast<float>(i), 0.455f, 0.2f));
+    all.normals.push_back(-Eigen::Vector3f::UnitY());
+  }
+  REQUIRE(tip > own.size() + 20);
+  const auto sphere = sphere_from_normals(own, range(0, own.size()));
+  const auto fit = fit_ellipsoid(own, range(0, own.size()), Ellipsoid(*sphere));
+  REQUIRE(fit);
+  const auto surface = closed_surface(all, range(0, own.size()), range(own.size(), all.size()), fit->body,
+                                      world_T_body().linear().col(2));
+  REQUIRE(surface);
+  CHECK(surface->joined.size() > (tip - own.size()) * 2 / 3);
+  CHECK(std::all_of(surface->joined.begin(), surface->joined.end(), [&](Index i) {
+    return static_cast<std::size_t>(i) >= own.size() && static_cast<std::size_t>(i) < tip;
+  }));
+}
+
+TEST_CASE("no closed surface of too few points; bad input is refused") {
+  const Cloud cloud = seen(egg, 0.0, 0.0, 200);
+  const Ellipsoid body(Sphere{world_T_body().translation(), 0.025});
+  const Eigen::Vector3d up = Eigen::Vector3d::UnitZ();
+  CHECK_FALSE(closed_surface(cloud, {}, {}, body, up));
+  CHECK_FALSE(closed_surface(cloud, range(0, 20), {}, body, up));
+  Cloud flat = cloud;  // all in one direction
+  for (auto& p : flat.points) p = Eigen::Vector3f(0.1f, 0.47f, 0.2f);
+  CHECK_FALSE(closed_surface(flat, range(0, flat.size()), {}, body, up));
+  Cloud bare;
+  bare.points = cloud.points;
+  CHECK_THROWS_AS(closed_surface(bare, range(0, bare.size()), {}, body, up), InputError);
+  ClosedSurfaceParameters bad;
+  bad.certain = bad.doubtful;
+  CHECK_THROWS_AS(closed_surface(cloud, range(0, cloud.size()), {}, body, up, bad), ParameterError);
+}
