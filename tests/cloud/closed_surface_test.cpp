@@ -72,7 +72,8 @@ Cloud seen(Radius radius, double beyond, double noise = 0.0002, std::size_t poin
     const Eigen::Vector3d d = Eigen::Vector3d(rng.normal(), rng.normal(), rng.normal()).normalized();
     const Eigen::Vector3d u = d.unitOrthogonal(), v = d.cross(u);
     const double h = 1e-4;
-    const Eigen::Vector3d n = pose.linear() * (at(d + h * u) - at(d - h * u)).cross(at(d + h * v) - at(d - h * v)).normalized();
+    const Eigen::Vector3d n =
+        pose.linear() * (at(d + h * u) - at(d - h * u)).cross(at(d + h * v) - at(d - h * v)).normalized();
     if (n.y() > beyond) continue;
     cloud.points.push_back((pose * at(d) + noise * rng.normal() * n).cast<float>());
     cloud.normals.push_back(n.cast<float>());
@@ -92,8 +93,8 @@ std::optional<ClosedSurface> close(const Cloud& cloud) {
   REQUIRE(sphere);
   const auto fit = fit_ellipsoid(cloud, range(0, cloud.size()), Ellipsoid(*sphere));
   REQUIRE(fit);
-  const Eigen::Vector3d guess = world_T_body().linear() * Eigen::AngleAxisd(deg(20), Eigen::Vector3d::UnitX()) *
-                                Eigen::Vector3d::UnitZ();
+  const Eigen::Vector3d guess =
+      world_T_body().linear() * Eigen::AngleAxisd(deg(20), Eigen::Vector3d::UnitX()) * Eigen::Vector3d::UnitZ();
   return closed_surface(cloud, range(0, cloud.size()), {}, fit->body, guess);
 }
 

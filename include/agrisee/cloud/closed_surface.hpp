@@ -6,8 +6,8 @@
 /// the same after each turn by a fraction of a circle. So the side that nobody saw follows from the sides that were
 /// seen. The surface is r(u) = exp(sum of c_k Y_k(u)): the logarithm of its distance from the center in real spherical
 /// harmonics about that axis. The c_k are normal with means 0 and with variances that say what fruit look like: large
-/// for order 0, the profile of a body of revolution; large for the orders n and 2 n, if the fruit has n lobes; small for
-/// all others. This is Gaussian process regression with a covariance that knows of the axis (Rasmussen & Williams,
+/// for order 0, the profile of a body of revolution; large for the orders n and 2 n, if the fruit has n lobes; small
+/// for all others. This is Gaussian process regression with a covariance that knows of the axis (Rasmussen & Williams,
 /// Gaussian Processes for Machine Learning, 2006, 2.1 and 5.4.1). n is the one with the largest evidence. A shift and a
 /// tilt of the axis are unknowns of the same least squares and are applied after each step; points far from the surface
 /// or with other normals lose their weight (Tukey's biweight). Points of no fruit that lie on the surface are joined:
@@ -93,9 +93,9 @@ struct RadialBin {
 
 /// A Gaussian posterior: y = B c + noise, c normal about 0.
 struct LinearPosterior {
-  Eigen::VectorXd mean;           ///< of c
+  Eigen::VectorXd mean;                     ///< of c
   Eigen::LLT<Eigen::MatrixXd> information;  ///< inverse covariance of c, factorised
-  double evidence = 0.0;          ///< logarithm of the probability density of y
+  double evidence = 0.0;                    ///< logarithm of the probability density of y
 };
 
 /// @param B one column for each value (the transpose of the B above)
@@ -280,8 +280,8 @@ class SurfaceFit {
   /// @param out receives them: those of the harmonics, then kExtra
   void values(const SurfaceModel& model, const Eigen::Vector3d& u, double* out) const {
     model.basis.values(u, out);
+    const double slope = model.basis.slope(u, out, coefficients_), s = std::sqrt(u.x() * u.x() + u.y() * u.y());
     out += model.basis.size();
-    const double s = std::hypot(u.x(), u.y()), slope = model.basis.slope(u.z(), coefficients_);
     const double c = s > 0.0 ? u.x() / s : 1.0, d = s > 0.0 ? u.y() / s : 0.0;
     // A body of revolution r(theta), shifted by t (in units of its size) or tilted by a (rad) towards phi = 0: to first
     // order ln r changes by t cos(phi) (sin(theta) - slope cos(theta)) and by -a slope cos(phi).
@@ -351,7 +351,8 @@ class SurfaceFit {
       model.basis.values(u, values.data());
       residuals_[i] = std::log(r) - size_ -
                       Eigen::Map<const Eigen::VectorXd>(values.data(), coefficients_.size()).dot(coefficients_);
-      const double s = std::hypot(u.x(), u.y()), slope = model.basis.slope(u.z(), coefficients_);
+      const double slope = model.basis.slope(u, values.data(), coefficients_);
+      const double s = std::sqrt(u.x() * u.x() + u.y() * u.y());
       const double c = s > 0.0 ? u.x() / s : 1.0, d = s > 0.0 ? u.y() / s : 0.0;
       const Eigen::Vector3d normal = u - slope * Eigen::Vector3d(u.z() * c, u.z() * d, -s);
       cosines[i] = normal.normalized().dot(turn_ * samples_.normals[i]);
@@ -477,8 +478,10 @@ std::optional<ClosedSurface> closed_surface(const PointCloud<S>& cloud, const In
     near.push_back(i);
   }
 
-  constexpr std::array<double, 4> kGates = {0.15, 0.08, 0.05, 0.04};  // relative distances beyond which points lose weight
-  constexpr int kSteps = 4;                                            // as a body of revolution, then with its lobes
+  constexpr std::array<double, 4> kGates = {0.15, 0.08, 0.05,
+                                            0.04};  // relative distances beyond which points lose weight
+  constexpr int kSteps = 4;                         // as a body of revolution, then with its lobes
+  constexpr double kGoodFit = 0.006;                // misfit of a fit after which no other start is tried
   constexpr std::array<int, 8> kLobes = {0, 3, 4, 5, 6, 7, 8, 9};
   std::vector<detail::SurfaceModel> models;
   for (const int n : kLobes) models.emplace_back(n, parameters);
@@ -507,10 +510,12 @@ std::optional<ClosedSurface> closed_surface(const PointCloud<S>& cloud, const In
     }
     fit.change(models[model], models[0]);
     if (model > 0) fit.set_weights(plain);
-    for (std::size_t k = 0; k < kSteps && good; ++k) good = fit.step(models[model], kGates[std::min<std::size_t>(k + 1, 3)], true);
+    for (std::size_t k = 0; k < kSteps && good; ++k)
+      good = fit.step(models[model], kGates[std::min<std::size_t>(k + 1, 3)], true);
     if (!good || (best && !(fit.misfit() < best->misfit()))) continue;
     best.emplace(fit);
     best_model = model;
+    if (best->misfit() < kGoodFit) break;
   }
   if (!best) return std::nullopt;
   const detail::SurfaceModel& model = models[best_model];
@@ -526,8 +531,8 @@ std::optional<ClosedSurface> closed_surface(const PointCloud<S>& cloud, const In
   // Evidence from the points that either of the two bodies explains.
   std::vector<double> explained(samples.points.size(), 0.0);
   for (std::size_t i = 0; i < samples.own; ++i)
-    explained[i] = std::abs(best->residuals()[i]) < 0.05 ||
-                   std::abs(body.distance(samples.points[i])) < 0.05 * body.mean_radius();
+    explained[i] =
+        std::abs(best->residuals()[i]) < 0.05 || std::abs(body.distance(samples.points[i])) < 0.05 * body.mean_radius();
   const std::vector<detail::RadialBin> common = best->radial_bins(explained);
   const double noise = std::max(0.01, best->noise());
   out.evidence = best->solve(model, common, noise, 0.05).evidence -

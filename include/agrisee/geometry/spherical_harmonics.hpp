@@ -30,6 +30,7 @@ class SphericalHarmonics {
   /// @param top for each order, from 0, its highest degree; an order whose entry is below it is left out. Order 0 must
   ///   be there.
   explicit SphericalHarmonics(std::vector<int> top) : top_(std::move(top)) {
+    for (int l = 0; l <= at(0); ++l) scales_.push_back(l == 0 ? 0.0 : std::sqrt((2.0 * l + 1.0) / (2.0 * l - 1.0)));
     for (int m = 0; m < static_cast<int>(top_.size()); ++m) {
       sectoral_.push_back(m == 0 ? 1.0 : std::sqrt((2.0 * m + 1.0) / (2.0 * m)));
       for (int l = m; l <= at(m); ++l) {
@@ -49,7 +50,7 @@ class SphericalHarmonics {
   /// @param u unit vector
   /// @param out receives size() values: order by order, degree by degree, the cosine before the sine
   void values(const Eigen::Vector3d& u, double* out) const {
-    const double z = u.z(), s = std::hypot(u.x(), u.y());
+    const double z = u.z(), s = std::sqrt(u.x() * u.x() + u.y() * u.y());
     const double cos_phi = s > 0.0 ? u.x() / s : 1.0, sin_phi = s > 0.0 ? u.y() / s : 0.0;
     double sectoral = 1.0, cos_m = 1.0, sin_m = 0.0;  // of degree m and order m
     std::size_t k = 0;
@@ -77,20 +78,17 @@ class SphericalHarmonics {
     }
   }
 
-  /// Derivative, by the angle from the z axis (rad), of the sum of the functions of order 0.
-  /// @param cosine of that angle
+  /// Derivative, by the angle from the z axis (rad), of the sum of the functions of order 0; 0 on the axis.
+  /// @param u direction (unit)
+  /// @param values those in this direction
   /// @param coefficients of all functions; those of order 0 come first
-  double slope(double cosine, const Eigen::VectorXd& coefficients) const {
-    const double s = std::sqrt(std::max(0.0, 1.0 - cosine * cosine));
+  double slope(const Eigen::Vector3d& u, const double* values, const Eigen::VectorXd& coefficients) const {
+    const double s = std::sqrt(u.x() * u.x() + u.y() * u.y());
     if (s < 1e-9) return 0.0;
-    double before = 0.0, value = 1.0, sum = 0.0;  // Legendre polynomials
-    for (int l = 1; l <= at(0); ++l) {
-      const double next = ((2.0 * l - 1.0) * cosine * value - (l - 1.0) * before) / l;
-      before = value;
-      value = next;
-      sum += coefficients[l] * std::sqrt(2.0 * l + 1.0) * l * (cosine * value - before) / s;
-    }
-    return sum;
+    double sum = 0.0;
+    for (int l = 1; l <= at(0); ++l)
+      sum += coefficients[l] * l * (u.z() * values[l] - scales_[static_cast<std::size_t>(l)] * values[l - 1]);
+    return sum / s;
   }
 
  private:
@@ -98,6 +96,7 @@ class SphericalHarmonics {
 
   std::vector<int> top_;
   std::vector<Term> terms_;
+  std::vector<double> scales_;    ///< of one degree over that of the one before, at order 0
   std::vector<double> sectoral_;  ///< of the recurrence from order to order
   std::vector<double> factors_;   ///< of that from degree to degree: one for each order and degree
 };
