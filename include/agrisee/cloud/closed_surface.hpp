@@ -41,10 +41,10 @@ struct ClosedSurfaceParameters {
   double lobes = 0.05;     ///< standard deviation of the lobes at their lowest degree; falls with 1 / degree
   double uneven = 0.0015;  ///< standard deviation of degree 2 of what no symmetry explains; falls with 1 / degree
   double noise = 0.0025;   ///< standard deviation of a point, relative to the radius, is never below this
-  double join = 0.02;      ///< points of no fruit this near to the surface, relative to the radius, are joined
+  double join = 0.035;     ///< points of no fruit this near to the surface, relative to the radius, are joined
   double doubtful = 100;   ///< up to this evidence (nats) against the ellipsoid, the ellipsoid is right
   double certain = 200;    ///< from this evidence on, the closed surface is; in between it is a mixture
-  double error_scale = 4;  ///< standard errors are this multiple of those that independent points would give
+  double error_scale = 5;  ///< standard errors are this multiple of those that independent points would give
   int max_points = 1500;   ///< larger sets of points are thinned evenly to this many
 
   /// @throws FieldError for the first field that is out of its range
