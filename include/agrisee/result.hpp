@@ -49,19 +49,20 @@ struct View {
   DiscardReason discard_reason = DiscardReason::none;  ///< why it is not
 };
 
-/// A body fitted to a fruit: an ellipsoid.
+/// The body of a fruit as an ellipsoid: the one fitted to its points or, where they speak against it, the one with the
+/// center of volume and the second moments of its closed surface (cloud/closed_surface.hpp).
 struct Body {
   Eigen::Vector3d center = Eigen::Vector3d::Zero();             ///< m, world
   Eigen::Vector3d radii = Eigen::Vector3d::Zero();              ///< semi-axes (m), largest first
   Eigen::Matrix3d axes = Eigen::Matrix3d::Identity();           ///< columns: directions of the semi-axes, right-handed
   Eigen::Matrix3d center_covariance = Eigen::Matrix3d::Zero();  ///< m2
-  double rms = 0.0;                                             ///< root mean square distance of its points (m)
-  double completeness = 0.0;                                    ///< share of its surface that was observed, 0..1
-  double confidence = 0.0;                                      ///< probability that it is a fruit, 0..1
-  double volume = 0.0;                                          ///< m3
-  double volume_error = 0.0;                                    ///< its standard error (m3); 0 = not known
-  double mass = 0.0;                                            ///< kg, through a density parameter
-  double mass_error = 0.0;  ///< its standard error (kg), the density's included; 0 = not known
+  double rms = 0.0;           ///< root mean square distance of its points from the surface (m)
+  double completeness = 0.0;  ///< share of its surface that was observed, 0..1
+  double confidence = 0.0;    ///< probability that it is a fruit, 0..1
+  double volume = 0.0;        ///< m3
+  double volume_error = 0.0;  ///< its standard error (m3); 0 = not known
+  double mass = 0.0;          ///< kg, through a density parameter
+  double mass_error = 0.0;    ///< its standard error (kg), the density's included; 0 = not known
 };
 
 /// Whether a fruit can be picked, or what prevents it. An approach passes the tests in this order; of all directions
