@@ -13,7 +13,7 @@ Evidence compare_one_way(const sensor::SurfaceImage& points, const sensor::Surfa
   const std::size_t step = compared_step(points);
   for (std::size_t i = 0; i < points.points.size(); i += step) {
     const Eigen::Vector3d p = points.points[i].cast<double>();
-    if (refutes(view, p, parameters))
+    if (refutes(view, p, points.normals[i].cast<double>(), parameters))
       ++out.refute;
     else if (sight(view, p, parameters) == Sight::surface)
       ++out.agree;

@@ -3,10 +3,17 @@
 #include <agrisee/fuse/free_space.hpp>
 
 #include <algorithm>
+#include <cmath>
 
 namespace agrisee::fuse {
+namespace {
 
-bool refutes(const sensor::SurfaceImage& view, const Eigen::Vector3d& p, const FreeSpaceParameters& parameters) {
+constexpr double kSlanted = deg(70);  // a surface seen at a larger angle of incidence may return nothing
+
+}  // namespace
+
+bool refutes(const sensor::SurfaceImage& view, const Eigen::Vector3d& p, const Eigen::Vector3d& normal,
+             const FreeSpaceParameters& parameters) {
   double z = 0.0;
   const std::ptrdiff_t c = view.cell(p, &z);
   if (c < 0) return false;
@@ -14,10 +21,13 @@ bool refutes(const sensor::SurfaceImage& view, const Eigen::Vector3d& p, const F
   const std::ptrdiff_t u = c % width, v = c / width;
   if (u < 1 || v < 1 || u + 1 >= width || v + 1 >= view.intrinsics.height) return false;
   const double margin = std::max(parameters.margin, 3.0 * view.noise);
+  const Eigen::Vector3d to_sensor = view.world_T_optical.translation() - p;
+  const bool slanted = std::abs(normal.dot(to_sensor)) < std::cos(kSlanted) * to_sensor.norm();
+  const bool empty_is_unknown = slanted || view.fill < parameters.min_fill;
   for (std::ptrdiff_t dv = -1; dv <= 1; ++dv)
     for (std::ptrdiff_t du = -1; du <= 1; ++du) {
       const double measured = double(view.depth[static_cast<std::size_t>((v + dv) * width + u + du)]);
-      if (measured > 0.0 ? measured <= z + margin : view.fill < parameters.min_fill) return false;
+      if (measured > 0.0 ? measured <= z + margin : empty_is_unknown) return false;
     }
   return true;
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <agrisee/cloud/icp.hpp>
 #include <agrisee/core/cancellation.hpp>
+#include <agrisee/core/parallel.hpp>
 #include <agrisee/fuse/fused_views.hpp>
 #include <agrisee/sensor/reconstruct_surface.hpp>
 
@@ -46,16 +47,19 @@ Change FusedViews::take(Observation seen, const Pose& world_T_optical) {
   change.observed = seen.surface.points;
   if (seen.consistent) {
     add(std::move(seen.surface), id, change.added);
+    count_refuting();
     return change;
   }
   // Do more of the discarded views agree with this one than there are views in the map?
   std::vector<std::size_t> group = views_that_agree(seen.surface);
   withheld_.emplace(id, std::move(seen.surface));
   group.push_back(id);
-  if (group.size() > views_in_map())
+  if (group.size() > views_in_map()) {
     start_again(group, change);
-  else
+    count_refuting();
+  } else {
     views_[id].discarded = true;
+  }
   return change;
 }
 
@@ -67,9 +71,9 @@ Cloud FusedViews::all() const {
 
 Cloud FusedViews::cloud() const {
   Cloud out;
-  for (const Surfel& s : surfels_.surfels()) {
-    int through = 0;
-    for (const auto& image : images_) through += refutes(image, s.position.cast<double>(), parameters_.free_space);
+  for (std::size_t i = 0; i < surfels_.size(); ++i) {
+    const Surfel& s = surfels_.surfels()[i];
+    const int through = refuting_[i].views;
     if (through >= parameters_.free_space.min_refuting && through >= s.seen_by) continue;
     out.points.push_back(s.position);
     out.normals.push_back(s.normal);
@@ -131,6 +135,7 @@ std::size_t FusedViews::views_in_map() const {
 void FusedViews::start_again(const std::vector<std::size_t>& views, Change& change) {
   const std::size_t before = surfels_.size();
   surfels_ = SurfelMap(parameters_.surfels);
+  refuting_.clear();
   for (std::size_t v = 0; v < views_.size(); ++v) {
     views_[v].discarded |= views_[v].points_in > 0;
     images_[v] = {};
@@ -152,13 +157,32 @@ void FusedViews::add(sensor::SurfaceImage image, std::size_t id, std::vector<Eig
     if (surfels_.add(image.points[c], image.normals[c], image.sigma[c], static_cast<int>(id)))
       added.push_back(image.points[c]);
   // From now on only the depths are needed, as evidence of free space, and some points to compare later views with.
-  std::vector<Eigen::Vector3f> some;
+  std::vector<Eigen::Vector3f> points, normals;
   const std::size_t step = compared_step(image);
-  for (std::size_t c = 0; c < image.points.size(); c += step) some.push_back(image.points[c]);
-  image.points = std::move(some);
-  image.normals = {};
+  for (std::size_t c = 0; c < image.points.size(); c += step) {
+    points.push_back(image.points[c]);
+    normals.push_back(image.normals[c]);
+  }
+  image.points = std::move(points);
+  image.normals = std::move(normals);
   image.sigma = {};
   images_[id] = std::move(image);
+}
+
+/// Count the views that looked through each surfel. A surfel that has hardly moved since it was counted is only
+/// compared with the views that came after.
+void FusedViews::count_refuting() {
+  const auto hardly = static_cast<float>(0.1 * parameters_.free_space.margin);
+  refuting_.resize(surfels_.size());
+  parallel_for(surfels_.size(), threads_, [&](std::size_t i) {
+    const Surfel& s = surfels_.surfels()[i];
+    Refuting& r = refuting_[i];
+    if (r.compared > 0 && (s.position - r.position).norm() > hardly) r = {};
+    if (r.compared == 0) r.position = s.position;
+    for (; r.compared < images_.size(); ++r.compared)
+      r.views +=
+          refutes(images_[r.compared], s.position.cast<double>(), s.normal.cast<double>(), parameters_.free_space);
+  });
 }
 
 /// Register an image to the map (ICP). It stays where it is when the registration is not accepted.

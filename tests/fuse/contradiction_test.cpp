@@ -18,7 +18,10 @@ FreeSpaceParameters quarter() {
 }
 
 void add(SurfaceImage& view, int u, int v, double z, int count = 1) {
-  for (int i = 0; i < count; ++i) view.points.push_back(test::at(view, u, v, z).cast<float>());
+  for (int i = 0; i < count; ++i) {
+    view.points.push_back(test::at(view, u, v, z).cast<float>());
+    view.normals.push_back(Eigen::Vector3f(0.0f, -1.0f, 0.0f));  // towards the camera
+  }
 }
 
 }  // namespace
@@ -89,6 +92,7 @@ TEST_CASE("of many points every second or third is compared") {
   CHECK(every_second.agree == 1000);
   CHECK(every_second.refute == 0);
   points.points.pop_back();
+  points.normals.pop_back();
   const Evidence all = compare(points, view, quarter());
   CHECK(all.agree == 1000);
   CHECK(all.refute == 999);

@@ -35,6 +35,11 @@ SurfaceImage view_of(const std::vector<Sphere>& spheres, const Vector3d& from) {
   return view;
 }
 
+/// Whether a view looked through a surface at p that faces it.
+bool refutes(const SurfaceImage& view, const Vector3d& p, const FreeSpaceParameters& parameters) {
+  return fuse::refutes(view, p, (view.world_T_optical.translation() - p).normalized(), parameters);
+}
+
 /// Share of the ball's surface that is seen from a place at less than an angle of incidence.
 double share_seen(const Vector3d& from, double max_incidence) {
   double share = 0.0;
@@ -123,6 +128,22 @@ TEST_CASE("one cell without return is no proof where many are missing") {
   view.fill = 0.5;
   CHECK_FALSE(refutes(view, p, quarter()));
   CHECK(refutes(view, at(view, 3, 2, 1.0), quarter()));
+}
+
+TEST_CASE("a surface seen at a slant is not refuted by sight lines without return") {
+  const FreeSpaceParameters parameters = quarter();
+  for (const float behind : {0.0f, 2.0f}) {
+    SurfaceImage view = wall(behind);
+    view.fill = 1.0;
+    const Vector3d p = at(view, 4, 3, 1.0), to_sensor = (view.world_T_optical.translation() - p).normalized();
+    const Vector3d across = any_orthogonal<double>(to_sensor);
+    for (const double angle : {deg(0), deg(69), deg(71), deg(89), deg(111), deg(180)}) {
+      CAPTURE(behind, angle);
+      const Vector3d normal = std::cos(angle) * to_sensor + std::sin(angle) * across;
+      CHECK(fuse::refutes(view, p, normal, parameters) ==
+            (behind > 0.0f || std::abs(std::cos(angle)) > std::cos(deg(70))));
+    }
+  }
 }
 
 TEST_CASE("nothing is refuted at the border of the image or outside") {

@@ -32,7 +32,7 @@ std::size_t compared_step(const sensor::SurfaceImage& image);
 
 /// What view `b` says of some of the surface points of view `a`, and the other way round. Defined in
 /// `agrisee::agrisee`.
-/// @pre the images hold their points, or the ones that are compared
+/// @pre the images hold their points with normals, or the ones that are compared
 Evidence compare(const sensor::SurfaceImage& a, const sensor::SurfaceImage& b, const FreeSpaceParameters& parameters);
 
 }  // namespace agrisee::fuse

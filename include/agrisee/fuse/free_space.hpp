@@ -29,9 +29,14 @@ inline Sight sight(const sensor::SurfaceImage& view, const Eigen::Vector3d& p, c
   return measured > z - margin ? Sight::surface : Sight::unknown;
 }
 
-/// True when all sight lines of `view` around the point p (m, world) went through it: the 3 x 3 cells about p. At a
-/// surface's border, where a cell sees both sides, nothing is refuted. Defined in `agrisee::agrisee`.
-bool refutes(const sensor::SurfaceImage& view, const Eigen::Vector3d& p, const FreeSpaceParameters& parameters);
+/// True when all sight lines of `view` around a point of a surface went through it: the 3 x 3 cells about the point. At
+/// a surface's border, where a cell sees both sides, nothing is refuted. A surface that is seen at a slant returns
+/// little light, so a sight line without return counts only where the view would see the surface at less than
+/// `max_incidence`. Defined in `agrisee::agrisee`.
+/// @param p the point (m, world)
+/// @param normal of the surface there (unit, world)
+bool refutes(const sensor::SurfaceImage& view, const Eigen::Vector3d& p, const Eigen::Vector3d& normal,
+             const FreeSpaceParameters& parameters);
 
 /// Share (0..1) of a body's surface that more views looked through than saw. Only views count that see a place of the
 /// surface at less than `max_incidence`. Defined in `agrisee::agrisee`.

@@ -43,6 +43,12 @@ class FusedViews : public Views {
     bool discarded;
   };
 
+  struct Refuting {                                      // the views that looked through a surfel
+    Eigen::Vector3f position = Eigen::Vector3f::Zero();  // of the surfel when it was compared with the first (m, world)
+    std::size_t compared = 0;                            // views that it has been compared with
+    int views = 0;                                       // of these, those that looked through it
+  };
+
   std::size_t begin(const Pose& world_T_optical, std::size_t points_in, bool discarded);
   bool agree(const Evidence& evidence) const;
   bool contradicted(const sensor::SurfaceImage& image) const;
@@ -50,12 +56,14 @@ class FusedViews : public Views {
   std::size_t views_in_map() const;
   void start_again(const std::vector<std::size_t>& views, Change& change);
   void add(sensor::SurfaceImage image, std::size_t id, std::vector<Eigen::Vector3f>& added);
+  void count_refuting();
   void lay_on_map(sensor::SurfaceImage& image) const;
 
   Aabb scan_volume_;
   FusionParameters parameters_;
   int threads_;
   SurfelMap surfels_;
+  std::vector<Refuting> refuting_;  // one a surfel
   std::vector<Taken> views_;
   std::vector<sensor::SurfaceImage> images_;              // what each view saw; of discarded ones only the pose
   std::map<std::size_t, sensor::SurfaceImage> withheld_;  // what discarded views saw, by number

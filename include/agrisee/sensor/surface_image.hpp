@@ -53,7 +53,7 @@ struct SurfaceImage {
   /// @param p_world the point (m)
   /// @param z if given, receives the depth of the point (m), unless it is behind the sensor or outside the image
   std::ptrdiff_t cell(const Eigen::Vector3d& p_world, double* z = nullptr) const {
-    const Eigen::Vector3d p = world_T_optical.inverse(Eigen::Isometry) * p_world;
+    const Eigen::Vector3d p = world_T_optical.linear().transpose() * (p_world - world_T_optical.translation());
     if (!(p.z() > 0.0)) return -1;
     const Eigen::Vector2d uv = intrinsics.project(p);
     const double u = std::floor(uv.x() + 0.5), v = std::floor(uv.y() + 0.5);
