@@ -230,3 +230,34 @@ TEST_CASE("too little to split is nothing") {
   bad.bodies.radius_min = -1.0;
   CHECK_THROWS_AS(split(cloud, bad), ParameterError);
 }
+
+TEST_CASE("bodies are tracked where a cloud has grown") {
+  const Sphere old{{-0.05, 0.5, 0.2}, 0.03}, grown{{0.05, 0.5, 0.2}, 0.03};
+  const auto front_of = [](const Eigen::Vector3d& d) { return d.dot(front()) > 0.2; };
+  Cloud before;
+  test::add_sphere(before, old, 0.0025, front_of, 0.0003);
+  const Split first = split(before);
+  REQUIRE(first.found.size() == 1);
+  Cloud after = before;
+  test::add_sphere(after, grown, 0.0025, front_of, 0.0003);
+  std::vector<char> fresh(after.size(), 0);
+
+  const Split blind = track(after, first.found, {}, {}, fresh);
+  REQUIRE(blind.found.size() == 1);  // nothing is said to be new
+  CHECK(blind.found[0].fit.body.center == first.found[0].fit.body.center);
+
+  std::fill(fresh.begin() + static_cast<std::ptrdiff_t>(before.size()), fresh.end(), char(1));
+  const Split both = track(after, first.found, {}, {}, fresh);
+  REQUIRE(both.found.size() == 2);
+  const auto nearest = [&](const Eigen::Vector3d& c) {
+    double best = 1.0;
+    for (const FoundBody& b : both.found) best = std::min(best, (b.fit.body.center - c).norm());
+    return best;
+  };
+  CHECK(nearest(first.found[0].fit.body.center) == 0.0);  // no new points: not fitted again
+  CHECK(nearest(grown.center) < 0.001);
+  CHECK(both.labels == track(after, both.found).labels);
+
+  fresh.pop_back();
+  CHECK_THROWS_AS(track(after, first.found, {}, {}, fresh), InputError);
+}

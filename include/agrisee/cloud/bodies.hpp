@@ -28,6 +28,7 @@ struct BodyCandidate {
   std::string found_by;  ///< what proposed it; see Fruit::found_by
   /// What to count if its points do not support it: that they suggest a radius outside of what is expected, say.
   std::size_t BodyCounts::*doubt = nullptr;
+  std::optional<EllipsoidFit> fit = {};  ///< its fit to the same points as now, if it is known already
 };
 
 /// A body that won.
@@ -67,8 +68,6 @@ class Competition {
 
   /// Fit and judge the candidates. Those that score enough enter the competition.
   void enter(const std::vector<BodyCandidate>& candidates) {
-    FitParameters rough = parameters_.fit;  // good enough to see where a proposal ends up
-    rough.max_points = std::min(120, rough.max_points);
     std::vector<Ellipsoid> known;  // where proposals ended up; many end up at the same place
     for (const BodyCandidate& c : candidates) {
       throw_if_cancelled();
@@ -76,24 +75,8 @@ class Competition {
         ++(c.body.mean_radius() < parameters_.radius_min ? counts_.too_small : counts_.too_large);
         continue;
       }
-      // Not worth a fit if hardly anything supports even the first guess.
-      if (judge(cloud_, grid_, taken_, c.body, parameters_, {}).coverage < 0.3 * parameters_.min_coverage) {
-        ++(counts_.*(c.doubt ? c.doubt : &BodyCounts::little_seen));
-        continue;
-      }
-      const auto first = refine(c.body, rough);
-      if (first && std::any_of(known.begin(), known.end(), [&](const Ellipsoid& k) { return alike(k, first->body); }))
-        continue;
-      if (first) known.push_back(first->body);
-      if (first && hopeless(*first)) {
-        ++(counts_.*(c.doubt ? c.doubt : &BodyCounts::doubtful));
-        continue;
-      }
-      const auto fit = first ? refine(first->body, parameters_.fit) : std::nullopt;
-      if (!fit) {
-        ++(counts_.*(c.doubt ? c.doubt : &BodyCounts::not_fitted));
-        continue;
-      }
+      const auto fit = c.fit ? c.fit : fitted(c, known);
+      if (!fit) continue;
       Entry e{*fit, &c.found_by, {}, 0.0, true};
       if (std::size_t BodyCounts::*const fault = assess(e)) {
         ++(counts_.*(c.doubt ? c.doubt : fault));
@@ -152,9 +135,32 @@ class Competition {
     return (a.center - b.center).norm() < gate && std::abs(b.mean_radius() - r) < gate;
   }
 
-  /// Whether a rough fit is so unlike a fruit that a better one is not worth its time.
+  /// Fit a candidate, first roughly to see where it ends up.
+  /// @param known where others ended up; receives this one's place
+  /// @return empty if it ends up where another did, or is not worth a better fit, or has none
+  std::optional<EllipsoidFit> fitted(const BodyCandidate& candidate, std::vector<Ellipsoid>& known) {
+    FitParameters rough = parameters_.fit;
+    rough.max_points = std::min(120, rough.max_points);
+    const auto first = refine(candidate.body, rough);
+    if (!first) {
+      ++(counts_.*(candidate.doubt ? candidate.doubt : &BodyCounts::not_fitted));
+      return std::nullopt;
+    }
+    if (std::any_of(known.begin(), known.end(), [&](const Ellipsoid& k) { return alike(k, first->body); }))
+      return std::nullopt;
+    known.push_back(first->body);
+    if (hopeless(*first)) {
+      ++(counts_.*(candidate.doubt ? candidate.doubt : &BodyCounts::doubtful));
+      return std::nullopt;
+    }
+    auto fit = refine(first->body, parameters_.fit);
+    if (!fit) ++(counts_.*(candidate.doubt ? candidate.doubt : &BodyCounts::not_fitted));
+    return fit;
+  }
+
+  /// Whether a rough fit, to the points of near_, is so unlike a fruit that a better one is not worth its time.
   bool hopeless(const EllipsoidFit& fit) const {
-    const Verdict v = judge(cloud_, grid_, taken_, fit.body, parameters_, {});
+    const Verdict v = judge_quickly(cloud_, near_, taken_, fit.body, parameters_);
     return fruit_probability(v, fit, parameters_) < 0.1 * kHopeless * parameters_.min_confidence;
   }
 

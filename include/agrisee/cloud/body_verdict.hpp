@@ -23,6 +23,9 @@ constexpr double kNearBody = 1.35;
 /// Points within this share of the radius from the surface that do not lie on it are clutter.
 constexpr double kClutter = 0.3;
 
+/// A body on which fewer points lie is not looked at closely.
+constexpr std::size_t kLeastSupport = 8;
+
 /// Cosine of the largest angle between a point's normal and the body's for points that count as nearly on the body.
 inline double loose_cosine(const BodyParameters& parameters) {
   return std::cos(std::min(kPi / 2, 1.6 * parameters.max_angle));
@@ -71,20 +74,22 @@ struct SupportSums {
   }
 };
 
-/// Judge a body by the points near it.
+/// What the points tell that `visit` shows.
+/// @param visit visit(f) calls f(index) for points within kNearBody radii of the body's center
+/// @param each how many points each of these stands for
 /// @param taken whether a point belongs to a body that has won already
-template <typename S>
-Verdict judge(const PointCloud<S>& cloud, const Grid<S>& grid, const std::vector<char>& taken, const Ellipsoid& body,
-              const BodyParameters& parameters, const SeenThrough& seen_through) {
+template <typename S, typename Visit>
+Verdict judge_points(const PointCloud<S>& cloud, Visit&& visit, std::size_t each, const std::vector<char>& taken,
+                     const Ellipsoid& body, const BodyParameters& parameters) {
   Verdict v;
   const double r = body.mean_radius();
   const double near = parameters.near(r);
   const double cos_max = std::cos(parameters.max_angle), cos_loose = loose_cosine(parameters);
   std::bitset<DirectionBins::kCount> covered, filled;
   SupportSums sums;
-  double sines_sq = 0.0;  // of the angles between the normals of the points and the body's
-  std::size_t off = 0;    // points near the surface, but not on it
-  grid.visit(body.center.cast<S>(), static_cast<S>(kNearBody * r), [&](Index index, S) {
+  double sines_sq = 0.0;        // of the angles between the normals of the points and the body's
+  std::size_t on = 0, off = 0;  // points on the surface; points near it, but not on it
+  visit([&](Index index) {
     const auto i = static_cast<std::size_t>(index);
     const Eigen::Vector3d p = cloud.points[i].template cast<double>(), q = p - body.center;
     const auto foot = body.foot(p);
@@ -99,7 +104,7 @@ Verdict judge(const PointCloud<S>& cloud, const Grid<S>& grid, const std::vector
     if (distance <= 2.0 * near && cosine >= cos_loose) sums.add(q, normal);
     if (distance <= near && cosine >= cos_max) {
       covered.set(static_cast<std::size_t>(DirectionBins::bin(q)));
-      ++v.support;
+      ++on;
       sines_sq += 1.0 - cosine * cosine;
     } else if (distance < kClutter * r) {
       ++off;
@@ -109,12 +114,38 @@ Verdict judge(const PointCloud<S>& cloud, const Grid<S>& grid, const std::vector
     if (covered[b]) v.coverage += DirectionBins::shares()[b];
     if (filled[b]) v.inside += DirectionBins::shares()[b];
   }
-  if (v.support < 8) return v;
+  v.support = each * on;
+  if (v.support < kLeastSupport) return v;
   v.roundness = sums.roundness();
-  v.normal_spread = std::sqrt(std::max(sines_sq, 0.0) / static_cast<double>(v.support));
-  v.clutter = static_cast<double>(off) / static_cast<double>(v.support);
-  if (seen_through) v.seen_through = seen_through(body);
+  v.normal_spread = std::sqrt(std::max(sines_sq, 0.0) / static_cast<double>(on));
+  v.clutter = static_cast<double>(off) / static_cast<double>(on);
   return v;
+}
+
+/// Judge a body by all points near it and by sight lines.
+/// @param taken whether a point belongs to a body that has won already
+template <typename S>
+Verdict judge(const PointCloud<S>& cloud, const Grid<S>& grid, const std::vector<char>& taken, const Ellipsoid& body,
+              const BodyParameters& parameters, const SeenThrough& seen_through) {
+  const auto visit = [&](auto&& f) {
+    grid.visit(body.center.cast<S>(), static_cast<S>(kNearBody * body.mean_radius()), [&](Index i, S) { f(i); });
+  };
+  Verdict v = judge_points(cloud, visit, 1, taken, body, parameters);
+  if (seen_through && v.support >= kLeastSupport) v.seen_through = seen_through(body);
+  return v;
+}
+
+/// Judge a body quickly, by at most kQuick of the points near it, evenly picked.
+/// @param near points within kNearBody radii of about its center
+template <typename S>
+Verdict judge_quickly(const PointCloud<S>& cloud, const Indices& near, const std::vector<char>& taken,
+                      const Ellipsoid& body, const BodyParameters& parameters) {
+  constexpr std::size_t kQuick = 600;
+  const std::size_t step = (near.size() + kQuick - 1) / kQuick;
+  const auto visit = [&](auto&& f) {
+    for (std::size_t k = 0; k < near.size(); k += step) f(near[k]);
+  };
+  return judge_points(cloud, visit, step, taken, body, parameters);
 }
 
 /// The probability (0 to 1) that a body is a fruit, from what speaks for and against it: logistic regression. Points

@@ -5,7 +5,8 @@
 /// A point p with outward normal n lies on a sphere of radius r about p - r n. Every point votes for the centers of all
 /// radii in the expected range; the votes meet at the centers of spheres (a Hough transform, cf. Rabbani & van den
 /// Heuvel, 2005), even if little of each sphere is seen and spheres touch. Cost: linear in points times radii, and a
-/// sort of the votes; memory linear in the votes.
+/// sort of the votes; memory linear in the votes. Where a cloud has only grown, the votes of its new points tell which
+/// places to look at.
 #pragma once
 
 #include <agrisee/core/cancellation.hpp>
@@ -65,27 +66,28 @@ Eigen::Vector3d first_finite_point(const PointCloud<S>& cloud) {
   return Eigen::Vector3d::Zero();
 }
 
-/// All votes as the packed cells they are for, ascending.
-template <typename S>
+/// The votes of the points that `votes(i)` admits, as the packed cells they are for, ascending; those that
+/// `keeps(cell)` refuses are left out.
+template <typename S, typename Votes, typename Keeps>
 std::vector<std::uint64_t> cast_votes(const PointCloud<S>& cloud, const VoteGrid& grid, double radius_min,
-                                      double radius_max) {
+                                      double radius_max, Votes&& votes, Keeps&& keeps) {
   const int steps = std::max(1, static_cast<int>(std::lround((radius_max - radius_min) / grid.pitch)) + 1);
-  std::vector<std::uint64_t> votes;
-  votes.reserve(cloud.size() * static_cast<std::size_t>(steps));
+  std::vector<std::uint64_t> cells;
   const double limit = grid.pitch * double(VoteGrid::kHalf - 4) - radius_max;  // points beyond it do not vote
   for (std::size_t i = 0; i < cloud.size(); ++i) {
     if ((i & 0xFFF) == 0) throw_if_cancelled();
-    if (!is_finite(cloud.points[i]) || !(cloud.normals[i].squaredNorm() > S(0.5))) continue;
+    if (!votes(i) || !is_finite(cloud.points[i]) || !(cloud.normals[i].squaredNorm() > S(0.5))) continue;
     const Eigen::Vector3d p = cloud.points[i].template cast<double>() - grid.origin;
     if (p.cwiseAbs().maxCoeff() > limit) continue;
     const Eigen::Vector3d n = cloud.normals[i].template cast<double>();
     for (int s = 0; s < steps; ++s) {
       const Eigen::Vector3d c = (p - (radius_min + grid.pitch * s) * n) / grid.pitch;
-      votes.push_back(VoteGrid::pack(std::llround(c.x()), std::llround(c.y()), std::llround(c.z())));
+      const std::uint64_t cell = VoteGrid::pack(std::llround(c.x()), std::llround(c.y()), std::llround(c.z()));
+      if (keeps(cell)) cells.push_back(cell);
     }
   }
-  sort_cancellably(votes.begin(), votes.end());
-  return votes;
+  sort_cancellably(cells.begin(), cells.end());
+  return cells;
 }
 
 /// The cells that have votes, ascending.
@@ -134,6 +136,33 @@ inline std::vector<VoteSum> sum_votes(const std::vector<VotedCell>& cells, const
   return sums;
 }
 
+/// The cells about which some votes meet, and a quick test of whether a cell is one of them or next to one.
+class VotedPlaces {
+ public:
+  explicit VotedPlaces(const std::vector<VoteSum>& sums) : bits_(kBits, false) {
+    for (const VoteSum& s : sums) {
+      cells_.push_back(s.key);
+      const VoteGrid::Cell c = VoteGrid::unpack(s.key);
+      for (std::int64_t z = c.z() - 1; z <= c.z() + 1; ++z)
+        for (std::int64_t y = c.y() - 1; y <= c.y() + 1; ++y)
+          for (std::int64_t x = c.x() - 1; x <= c.x() + 1; ++x) bits_[bit(VoteGrid::pack(x, y, z))] = true;
+    }
+    std::sort(cells_.begin(), cells_.end());
+  }
+
+  /// Whether a cell is one of the places.
+  bool has(std::uint64_t cell) const { return std::binary_search(cells_.begin(), cells_.end(), cell); }
+  /// False only if a cell is neither one of the places nor next to one.
+  bool may_touch(std::uint64_t cell) const { return bits_[bit(cell)]; }
+
+ private:
+  static constexpr std::size_t kBits = std::size_t{1} << 20;
+  static std::size_t bit(std::uint64_t cell) { return (cell * 0x9E3779B97F4A7C15ull) >> 44; }
+
+  std::vector<std::uint64_t> cells_;
+  std::vector<bool> bits_;
+};
+
 /// The first of the sums, and every other that is at least `apart` (m) from those before it; at most 400.
 inline std::vector<VotedCenter> thin_out(const std::vector<VoteSum>& sums, double apart) {
   std::vector<VotedCenter> out;
@@ -154,17 +183,34 @@ inline std::vector<VotedCenter> thin_out(const std::vector<VoteSum>& sums, doubl
 /// @param radius_min smallest expected radius (m), positive
 /// @param radius_max largest expected radius (m), at least `radius_min`
 /// @param min_votes weaker maxima are left out
-/// @throws ParameterError; InputError if the cloud has no normals; Cancelled
+/// @param fresh one a point, or empty: centers for which points with a nonzero value cast less than a tenth of
+///   `min_votes` are left out; this takes little time if few points are fresh
+/// @throws ParameterError; InputError if the cloud has no normals, or `fresh` has not one value a point; Cancelled
 template <typename S>
 std::vector<VotedCenter> vote_for_centers(const PointCloud<S>& cloud, double radius_min, double radius_max,
-                                          double min_votes) {
+                                          double min_votes, const std::vector<char>& fresh = {}) {
   check_parameter(radius_min > 0, "radius_min", "positive", radius_min);
   check_parameter(radius_max >= radius_min && std::isfinite(radius_max), "radius_max", ">= radius_min", radius_max);
   check_input(cloud.normals.size() == cloud.points.size(), "vote_for_centers: the cloud has no normals");
+  check_input(fresh.empty() || fresh.size() == cloud.size(), "vote_for_centers: fresh needs one value a point");
   if (cloud.empty()) return {};
+  constexpr double kFreshShare = 0.1;
   const detail::VoteGrid grid{detail::first_finite_point(cloud), radius_min / 5.0};
-  const auto votes = detail::cast_votes(cloud, grid, radius_min, radius_max);
-  const auto sums = detail::sum_votes(detail::count_votes(votes), grid, min_votes);
+  const auto all = [](auto) { return true; };
+  const auto sums_of = [&](const auto& votes, const auto& keeps, double least) {
+    const auto cells = detail::cast_votes(cloud, grid, radius_min, radius_max, votes, keeps);
+    return detail::sum_votes(detail::count_votes(cells), grid, least);
+  };
+  std::vector<detail::VoteSum> sums;
+  if (fresh.empty()) {
+    sums = sums_of(all, all, min_votes);
+  } else {
+    const auto is_fresh = [&](std::size_t i) { return fresh[i] != 0; };
+    const detail::VotedPlaces places(sums_of(is_fresh, all, kFreshShare * min_votes));
+    sums = sums_of(
+        all, [&](std::uint64_t cell) { return places.may_touch(cell); }, min_votes);
+    sums.erase(std::remove_if(sums.begin(), sums.end(), [&](const auto& s) { return !places.has(s.key); }), sums.end());
+  }
   return detail::thin_out(sums, 0.6 * radius_min);
 }
 

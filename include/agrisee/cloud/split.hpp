@@ -163,9 +163,10 @@ inline std::size_t BodyCounts::*propose(Sphere sphere, const char* by, const Bod
 ///
 /// A wide range of radii is divided, so that the cells that are voted for, and the votes that are needed, suit the
 /// size.
+/// @param fresh as of vote_for_centers, of the voters
 template <typename S>
-void propose_voted(const PointCloud<S>& cloud, const PointCloud<S>& voters, const Grid<S>& grid,
-                   const StageParameters& stages, const SplitParameters& parameters,
+void propose_voted(const PointCloud<S>& cloud, const PointCloud<S>& voters, const std::vector<char>& fresh,
+                   const Grid<S>& grid, const StageParameters& stages, const SplitParameters& parameters,
                    std::vector<BodyCandidate>& candidates) {
   constexpr double kWidest = 2.5;    // largest over smallest radius that vote together
   constexpr std::size_t kMost = 60;  // proposals; weaker maxima are noise
@@ -179,7 +180,7 @@ void propose_voted(const PointCloud<S>& cloud, const PointCloud<S>& voters, cons
     const double high = bodies.radius_min * std::pow(range, (part + 1.0) / parts);
     const int least = stages.spacing > 0.0 ? least_points(low, stages.spacing, parameters) : stages.growing.min_size;
     const std::size_t proposed = candidates.size();
-    for (const VotedCenter& v : vote_for_centers(voters, low, high, kVotes * least)) {
+    for (const VotedCenter& v : vote_for_centers(voters, low, high, kVotes * least, fresh)) {
       throw_if_cancelled();
       const double radius = likely_radius(cloud, grid, v.center, low, high);
       const auto same = [&](const BodyCandidate& c) {
@@ -191,6 +192,17 @@ void propose_voted(const PointCloud<S>& cloud, const PointCloud<S>& voters, cons
       if (candidates.size() >= proposed + kMost) break;
     }
   }
+}
+
+/// Whether at least a twentieth of the points near a body are fresh.
+/// @param fresh one a point, nonzero for those that are
+template <typename S>
+bool has_changed(const Grid<S>& grid, const Ellipsoid& body, const std::vector<char>& fresh) {
+  constexpr std::size_t kFewest = 20;  // points, for each that is fresh
+  std::size_t near = 0, news = 0;
+  grid.visit(body.center.cast<S>(), static_cast<S>(kNearBody * body.mean_radius()),
+             [&](Index i, S) { ++near, news += fresh[static_cast<std::size_t>(i)] != 0; });
+  return news * kFewest >= near;
 }
 
 /// Fit each body once more to all points of its own label, and assign the points anew; twice.
@@ -264,7 +276,7 @@ void split_by_bodies(const PointCloud<S>& cloud, const Segments& segments, const
       if (std::size_t BodyCounts::*const fault = propose(*sphere, segments.found_by(s + 1), bodies, candidates))
         ++(not_proposed.*fault);
   const Grid<S> grid(cloud, static_cast<S>(stages.growing.radius), threads);
-  propose_voted(cloud, cloud, grid, stages, parameters, candidates);
+  propose_voted(cloud, cloud, {}, grid, stages, parameters, candidates);
   out.found = find_bodies(cloud, candidates, bodies, seen_through, &out.bodies);
   out.bodies.too_small += not_proposed.too_small;
   out.bodies.too_large += not_proposed.too_large;
@@ -324,9 +336,10 @@ Split split(const PointCloud<S>& cloud, const SplitParameters& parameters = {}, 
 /// @throws ParameterError; InputError if the cloud has no normals; Cancelled
 template <typename S>
 Split track(const PointCloud<S>& cloud, const std::vector<FoundBody>& known, const SplitParameters& parameters = {},
-            const SeenThrough& seen_through = {}) {
+            const SeenThrough& seen_through = {}, const std::vector<char>& fresh = {}) {
   parameters.check();
   check_input(cloud.normals.size() == cloud.points.size(), "track: the cloud has no normals");
+  check_input(fresh.empty() || fresh.size() == cloud.size(), "track: fresh needs one value a point");
   Split out;
   out.labels.assign(cloud.size(), 0);
   if (cloud.empty()) return out;
@@ -335,9 +348,15 @@ Split track(const PointCloud<S>& cloud, const std::vector<FoundBody>& known, con
   const auto stages = stages_for(estimate_spacing(cloud, grid), parameters);
   if (!stages) return out;
   std::vector<BodyCandidate> candidates;
-  for (const FoundBody& k : known) candidates.push_back({k.fit.body, k.found_by});
-  const PointCloud<S> off_them = select(cloud, residual(assign_to_bodies(cloud, known, bodies)));
-  detail::propose_voted(cloud, off_them, grid, *stages, parameters, candidates);
+  for (const FoundBody& k : known) {
+    candidates.push_back({k.fit.body, k.found_by});
+    if (!fresh.empty() && !detail::has_changed(grid, k.fit.body, fresh)) candidates.back().fit = k.fit;
+  }
+  const Indices off_them = residual(assign_to_bodies(cloud, known, bodies));
+  std::vector<char> fresh_off_them;
+  if (!fresh.empty())
+    for (const Index i : off_them) fresh_off_them.push_back(fresh[static_cast<std::size_t>(i)]);
+  detail::propose_voted(cloud, select(cloud, off_them), fresh_off_them, grid, *stages, parameters, candidates);
   out.found = find_bodies(cloud, candidates, bodies, seen_through);
   out.labels = assign_to_bodies(cloud, out.found, bodies);
   return out;
