@@ -18,6 +18,8 @@ namespace agrisee::plan {
 namespace {
 
 constexpr double kGrowth = 1.25;  // segment the cloud from scratch when it has grown by this factor
+constexpr double kTrusted =
+    0.003;  // earlier views are taken to have promised, and kept, this share of the fruit surface
 
 /// The merged cloud with estimated normals, each turned towards the view that saw its point: for views that are merged
 /// as raw points.
@@ -29,6 +31,13 @@ Cloud with_normals(const Progress& progress) {
   for (const View& v : progress.views) sensors.push_back(v.world_T_optical.translation());
   cloud.normals = orient_normals_to_views(estimate_normals(cloud, normals), cloud, cloud.views, sensors);
   return cloud;
+}
+
+/// For each point whether it was first seen in a view from this number on; empty where that is not known.
+std::vector<char> points_since(const Cloud& cloud, std::size_t view) {
+  std::vector<char> since;
+  for (const int v : cloud.views) since.push_back(v >= static_cast<int>(view));
+  return since;
 }
 
 /// A coarse depth image of obstacles, seen from one view.
@@ -86,9 +95,11 @@ ExpectedSurface::ExpectedSurface(const sensor::DepthCamera& sensor, const Aabb& 
 
 void ExpectedSurface::update(const Progress& progress, const SplitParameters& split_parameters,
                              const fuse::FreeSpaceParameters& free_space) {
+  const std::vector<Promise> promised = promises(progress);
   for (; images_read_ < progress.images.size(); ++images_read_) mark_known(progress.images[images_read_], free_space);
   const Labels labels = find_fruit(progress, split_parameters, free_space);
   collect_samples(progress.cloud);
+  weigh(promised, progress.cloud);
   PointCloud<float> rest;
   for (std::size_t i = 0; i < progress.cloud.size(); ++i)
     if (labels[i] == 0) rest.points.push_back(progress.cloud.points[i]);
@@ -97,6 +108,40 @@ void ExpectedSurface::update(const Progress& progress, const SplitParameters& sp
   for (const auto& image : progress.images)
     for_each_shown(image.world_T_optical,
                    [&](std::size_t i) { areas_[i] *= static_cast<float>(parameters_.missed_factor); });
+}
+
+std::vector<ExpectedSurface::Promise> ExpectedSurface::promises(const Progress& progress) const {
+  std::vector<Promise> out;
+  if (progress.views.empty()) return out;
+  for_each_shown(progress.views.back().world_T_optical, [&](std::size_t i) {
+    out.push_back({samples_[i].point, samples_[i].body < 0, areas_[i]});
+  });
+  return out;
+}
+
+void ExpectedSurface::weigh(const std::vector<Promise>& promised, const Cloud& cloud) {
+  constexpr double kForget = 0.5;
+  if (promised.empty()) return;
+  const auto cover = static_cast<float>(parameters_.cover_radius);
+  const Grid<float> grid(cloud, cover);
+  promised_ *= kForget;
+  kept_ *= kForget;
+  for (const Promise& p : promised) {
+    promised_ += double(p.area);
+    if (p.voxel ? is_known(p.point) : grid.count(p.point, cover, 1) > 0) kept_ += double(p.area);
+  }
+}
+
+double ExpectedSurface::reliability() const {
+  const double before = kTrusted * area_;
+  return promised_ > 0.0 ? (kept_ + before) / (promised_ + before) : 1.0;
+}
+
+bool ExpectedSurface::is_known(const Eigen::Vector3f& point) const {
+  const Eigen::Vector3i v = ((point.cast<double>() - volume_.min) / edge_).array().floor().cast<int>();
+  if ((v.array() < 0).any() || (v.array() >= dims_.array()).any()) return false;
+  return known_[(std::size_t(v.z()) * std::size_t(dims_[1]) + std::size_t(v.y())) * std::size_t(dims_[0]) +
+                std::size_t(v.x())] != 0;
 }
 
 void ExpectedSurface::mark_known(const sensor::SurfaceImage& image, const fuse::FreeSpaceParameters& free_space) {
@@ -120,7 +165,9 @@ Labels ExpectedSurface::find_fruit(const Progress& progress, const SplitParamete
   const Cloud& cloud = fused ? progress.cloud : estimated;
   // Segment from scratch while the cloud grows fast; later only bring the known fruit up to date.
   const bool anew = bodies_.empty() || static_cast<double>(cloud.size()) > kGrowth * static_cast<double>(segmented_at_);
-  Split found = anew ? split(cloud, with_bodies, through) : track(cloud, bodies_, with_bodies, through);
+  Split found = anew ? split(cloud, with_bodies, through)
+                     : track(cloud, bodies_, with_bodies, through, points_since(cloud, tracked_views_));
+  tracked_views_ = progress.views.size();
   if (anew) segmented_at_ = cloud.size();
   bodies_ = std::move(found.found);
   return std::move(found.labels);
@@ -130,9 +177,12 @@ void ExpectedSurface::collect_samples(const Cloud& cloud) {
   samples_.clear();
   areas_.clear();
   occluders_.clear();
-  for (const FoundBody& b : bodies_)
-    occluders_.push_back(
-        {b.fit.body.center.cast<float>(), believed(b) ? static_cast<float>(0.97 * b.fit.body.mean_radius()) : 0.0f});
+  for (std::size_t b = 0; b < bodies_.size(); ++b) {
+    const Ellipsoid& body = bodies_[b].fit.body;
+    if (believed(bodies_[b]))
+      occluders_.push_back(
+          {body.center.cast<float>(), static_cast<float>(0.97 * body.mean_radius()), static_cast<int>(b)});
+  }
   area_ = covered_ = 0.0;
   area_of_.clear();
   covered_of_.clear();
@@ -152,7 +202,8 @@ void ExpectedSurface::sample_bodies(const Cloud& cloud) {
     const Ellipsoid& body = bodies_[b].fit.body;
     center_ += body.center / static_cast<double>(bodies_.size());
     for (int side : {-1, 1}) extent_.extend(body.center + Eigen::Vector3d::Constant(side * body.mean_radius()));
-    const double r = body.mean_radius(), weight = believed(bodies_[b]) ? 1.0 : bodies_[b].confidence;
+    const double r = body.mean_radius();
+    const double weight = std::min(1.0, 2.0 * bodies_[b].confidence);  // a fruit, if it is more likely one than not
     const double share = weight * 4.0 * kPi * r * r / parameters_.samples;
     double covered = 0.0;
     for (const Eigen::Vector3d& d : directions) {
@@ -223,10 +274,10 @@ void ExpectedSurface::for_each_shown(const Pose& world_T_optical, F&& f) const {
 }
 
 bool ExpectedSurface::hidden(const Eigen::Vector3f& camera, const Eigen::Vector3f& u, float distance, int own) const {
-  for (std::size_t b = 0; b < occluders_.size(); ++b) {
-    if (static_cast<int>(b) == own) continue;
-    const Eigen::Vector3f c = occluders_[b].center - camera;
-    const float r_sq = occluders_[b].radius * occluders_[b].radius, along = c.dot(u);
+  for (const Occluder& o : occluders_) {
+    if (o.body == own) continue;
+    const Eigen::Vector3f c = o.center - camera;
+    const float r_sq = o.radius * o.radius, along = c.dot(u);
     const float off_sq = c.squaredNorm() - along * along;
     if (off_sq >= r_sq || along < 0.0f) continue;
     if (along - std::sqrt(r_sq - off_sq) < distance - 1e-3f) return true;

@@ -184,7 +184,9 @@ bool GainPlanner::was_refused(const ViewRequest& request) const {
   });
 }
 
-double GainPlanner::least_gain() const { return parameters_.min_gain * std::max(model_.area(), 1e-6); }
+double GainPlanner::least_gain() const {
+  return parameters_.min_gain * std::max(model_.area(), 1e-6) / std::max(model_.reliability(), 1e-3);
+}
 
 std::size_t GainPlanner::first_of_next(const Joints& current) const {
   const std::vector<std::size_t> next = views_ahead(current);

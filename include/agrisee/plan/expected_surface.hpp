@@ -8,8 +8,9 @@
 /// the ellipsoids that no sight line has reached stand for fruit that may be hidden there. A view shows a sample when
 /// the sample lies in the image and within the sensor's range, faces the sensor, and no ellipsoid or other point of the
 /// cloud hides it. Each view that should have shown a sample and did not lowers its area, since the prediction seems to
-/// be wrong there. A body of which too little shows to believe it counts by the probability that it is a fruit, so that
-/// a view of it is worth the move. World frame, metres; gains in m2 of fruit surface.
+/// be wrong there. A body that is less likely a fruit than not counts by twice its probability, so that a view of one
+/// of which little shows is worth the move. What the last views showed of what was expected of them tells how far
+/// expectations can be relied on. World frame, metres; gains in m2 of fruit surface.
 #pragma once
 
 #include <agrisee/cloud/bodies.hpp>
@@ -43,6 +44,9 @@ class ExpectedSurface {
   /// Unseen fruit surface (m2) that a view is expected to show.
   double gain(const Pose& world_T_optical) const;
 
+  /// Share (0..1) of what the last views were expected to show that they did show; older views count less.
+  double reliability() const;
+
   /// How complete the scan is.
   /// @param can_be_seen one per sample: not zero when some reachable view shows it
   Completeness completeness(const std::vector<char>& can_be_seen) const;
@@ -67,8 +71,22 @@ class ExpectedSurface {
   struct Occluder {
     Eigen::Vector3f center;  // m, world
     float radius;            // m
+    int body;                // index of its fruit
   };
 
+  /// A sample that a view was expected to show.
+  struct Promise {
+    Eigen::Vector3f point;  // m, world
+    bool voxel;             // it stands for unknown space, not for the surface of a body
+    float area;             // m2
+  };
+
+  /// What the last view was expected to show, before it is used.
+  std::vector<Promise> promises(const Progress& progress) const;
+  /// Compare what was expected of a view with the cloud and the space that are known since.
+  void weigh(const std::vector<Promise>& promised, const Cloud& cloud);
+  /// Whether a sight line has reached the voxel of a point (m, world).
+  bool is_known(const Eigen::Vector3f& point) const;
   /// Mark the voxels that a view's sight lines have reached.
   void mark_known(const sensor::SurfaceImage& image, const fuse::FreeSpaceParameters& free_space);
   /// Find the fruit in the merged cloud and set `bodies_`; returns one label per point, 0 = no fruit.
@@ -102,13 +120,15 @@ class ExpectedSurface {
   std::vector<char> known_;                         // per voxel: some sight line has reached it
   std::size_t images_read_ = 0;                     // views whose sight lines are marked in `known_`
   std::vector<FoundBody> bodies_;
-  double min_confidence_ = 0.0;   // a body is believed from this probability on
-  std::size_t segmented_at_ = 0;  // size of the cloud when it was last segmented from scratch
+  double min_confidence_ = 0.0;    // a body is believed from this probability on
+  std::size_t segmented_at_ = 0;   // size of the cloud when it was last segmented from scratch
+  std::size_t tracked_views_ = 0;  // views of the cloud in which `bodies_` were found
   std::vector<Sample> samples_;
   std::vector<float> areas_;                // one per sample (m2)
-  std::vector<Occluder> occluders_;         // spheres a little smaller than the fruit, in the order of `bodies_`
+  std::vector<Occluder> occluders_;         // spheres a little smaller than the fruit
   std::vector<Eigen::Vector3f> obstacles_;  // points that belong to no fruit, thinned (m)
   double area_ = 0.0, covered_ = 0.0;
+  double promised_ = 0.0, kept_ = 0.0;  // what the last views were expected to show, and what they showed of it (m2)
   std::vector<double> area_of_, covered_of_;  // one per fruit (m2)
   Eigen::Vector3d center_ = Eigen::Vector3d::Zero();
   Aabb extent_;

@@ -7,7 +7,8 @@
 /// various distances; those out of reach are dropped. A candidate's score is its ExpectedSurface::gain divided by the
 /// time for dwelling and moving. The reach of the best candidates is asked again from the arm's present joints, and
 /// directions close to theirs are tried as well. The scan ends when the best view promises less than `min_gain` of the
-/// fruit surface known so far. World frame, metres, seconds.
+/// fruit surface known so far; where views show less than they promise, as among leaves, promises count less
+/// (ExpectedSurface::reliability). World frame, metres, seconds.
 #pragma once
 
 #include <agrisee/plan/expected_surface.hpp>
@@ -73,7 +74,7 @@ class GainPlanner : public Planner {
   /// Set a view and compute what it shows, its gain and its score.
   void rate(Scored& scored, const ReachableView& view, const Joints& current) const;
   bool was_refused(const ViewRequest& request) const;
-  /// The smallest gain (m2) that is worth a view.
+  /// The smallest promised gain (m2) that is worth a view.
   double least_gain() const;
 
   /// The index in `ranked_` of the view to take: plans several views ahead and returns the one with which the shortest

@@ -49,7 +49,8 @@ struct GainPlannerParameters {
   double dwell = 1.5;               ///< time that a view takes besides the move (s): settling, exposure, computing
   int lookahead = 6;         ///< number of views planned ahead, so that the nearest of them is taken first; 1: only one
   double patience = 0.5;     ///< the nearest is taken first only if it scores at least this share of the best
-  double min_gain = 0.0015;  ///< the scan ends when the best view promises less than this share of the known surface
+  double min_gain = 0.0015;  ///< the scan ends when the best view can be relied on for less than this share of the
+                             ///< known surface
   ExpectedSurfaceParameters expected;  ///< what a view is expected to show
 
   /// @throws FieldError for the first field that is out of its range
