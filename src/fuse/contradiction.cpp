@@ -10,10 +10,12 @@ namespace {
 Evidence compare_one_way(const sensor::SurfaceImage& points, const sensor::SurfaceImage& view,
                          const FreeSpaceParameters& parameters) {
   Evidence out;
+  FreeSpaceParameters far = parameters;
+  far.margin = std::max(far.margin, far.leaf_depth);
   const std::size_t step = compared_step(points);
   for (std::size_t i = 0; i < points.points.size(); i += step) {
     const Eigen::Vector3d p = points.points[i].cast<double>();
-    if (refutes(view, p, points.normals[i].cast<double>(), parameters))
+    if (refutes(view, p, points.normals[i].cast<double>(), far))
       ++out.refute;
     else if (sight(view, p, parameters) == Sight::surface)
       ++out.agree;

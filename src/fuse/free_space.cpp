@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <agrisee/cloud/share_seen_through.hpp>
+#include <agrisee/fuse/contradiction.hpp>
 #include <agrisee/fuse/free_space.hpp>
 
 #include <algorithm>
@@ -30,6 +31,27 @@ bool refutes(const sensor::SurfaceImage& view, const Eigen::Vector3d& p, const E
       if (measured > 0.0 ? measured <= z + margin : empty_is_unknown) return false;
     }
   return true;
+}
+
+Returned returned(const sensor::SurfaceImage& view, const sensor::SurfaceImage& known,
+                  const FreeSpaceParameters& parameters) {
+  Returned out;
+  const double margin = std::max(parameters.margin, 3.0 * view.noise), steepest = std::cos(parameters.max_incidence);
+  const std::size_t step = compared_step(known);
+  for (std::size_t i = 0; i < known.points.size(); i += step) {
+    const Eigen::Vector3d p = known.points[i].cast<double>();
+    const Eigen::Vector3d to_sensor = view.world_T_optical.translation() - p;
+    if (known.normals[i].cast<double>().dot(to_sensor) < steepest * to_sensor.norm()) continue;
+    double z = 0.0;
+    const std::ptrdiff_t c = view.cell(p, &z);
+    if (c < 0) continue;
+    const double measured = double(view.depth[static_cast<std::size_t>(c)]);
+    if (!(measured > 0.0))
+      ++out.lost;
+    else if (std::abs(measured - z) <= margin)
+      ++out.seen;
+  }
+  return out;
 }
 
 double seen_through(const std::vector<sensor::SurfaceImage>& views, const Ellipsoid& body,

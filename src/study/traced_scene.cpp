@@ -38,19 +38,25 @@ TracedScene::TracedScene(const Scene& scene, int threads) {
     triangles += object.mesh.triangles.size();
   }
   check_input(vertices < std::numeric_limits<std::uint32_t>::max(), "traced scene: too many vertices");
-  Mesh all;
+  Mesh all, solid;
   all.vertices.reserve(vertices);
   all.triangles.reserve(triangles);
   objects_.reserve(triangles);
   for (std::size_t o = 0; o < scene.objects.size(); ++o) {
     check_vertices(scene.objects[o].mesh, o);
     append(all, scene.objects[o].mesh);
+    materials_.push_back(scene.objects[o].material.value_or(scene.objects[o].cls));
+    const Object& object = scene.objects[o];
+    looks_.push_back({object.id, object.cls, object.ripeness, object.color, bounding_box(object.mesh.vertices)});
+    if (materials_.back() != ObjectClass::leaf) append(solid, scene.objects[o].mesh);
     objects_.resize(all.triangles.size(), static_cast<std::uint32_t>(o));
   }
   normals_.reserve(triangles);
   for (const auto& t : all.triangles)
     normals_.push_back(unit_normal({all.vertices[t[0]], all.vertices[t[1]], all.vertices[t[2]]}));
   bvh_ = std::make_shared<const Bvh>(all, threads);
+  const bool leaves = std::find(materials_.begin(), materials_.end(), ObjectClass::leaf) != materials_.end();
+  solids_ = leaves ? std::make_shared<const Bvh>(solid, threads) : std::make_shared<const Bvh>();
 }
 
 }  // namespace agrisee::study

@@ -225,6 +225,23 @@ TEST_CASE("ICP drops what it cannot believe") {
   CHECK(none.iterations == 0);
 }
 
+TEST_CASE("errors that neighbors share move no pose that was right") {
+  // A view whose depths are off by half a millimetre here and there, and a target without errors.
+  const auto target = truss<double>(8000, 1, 6, 0.0);
+  auto view = truss<double>(1500, 2, 6, 0.0);
+  for (auto& p : view.points) p.y() += 0.0006 * std::sin(40.0 * p.z() + 1.0);
+  const IcpResult any = align(view, target);
+  CHECK(any.accepted);
+  CHECK(any.target_T_source.matrix() != Pose::Identity().matrix());
+  const IcpResult sure = align(view, target, IcpParameters::of_views());
+  CHECK(sure.rms_after < sure.rms_before);
+  CHECK_FALSE(sure.accepted);
+  CHECK(sure.target_T_source.matrix() == Pose::Identity().matrix());
+  // A pose that is off by more than that is still put right.
+  const Pose off = about_middle({0.0, 0.003, 0.0}, {0, 0, 0});
+  CHECK(align(moved(off, view), target, IcpParameters::of_views()).accepted);
+}
+
 TEST_CASE("ICP of next to nothing, degenerate clouds and bad input") {
   const auto target = truss<float>(500, 1, 2, 0.0);
   const Cloud none;

@@ -218,3 +218,41 @@ TEST_CASE("views from two sides see through two sides") {
   CHECK(both < front + share_seen(kAside, deg(50)) - 0.05);
   CHECK(both > front + 0.01);
 }
+
+TEST_CASE("how much of a known surface a view measures again") {
+  // Points of the ball that face the view; the view lost the left half of its image, and its edge looks past the ball.
+  SurfaceImage view = view_of({kBall}, kFront);
+  SurfaceImage known;
+  for (std::size_t b = 0; b < DirectionBins::kCount; ++b) {
+    const Vector3d n = DirectionBins::directions()[b];
+    known.points.push_back((kBall.center + kBall.radius * n).cast<float>());
+    known.normals.push_back(n.cast<float>());
+  }
+  const FreeSpaceParameters parameters;
+  const Returned all = returned(view, known, parameters);
+  CHECK(all.lost == 0);
+  std::size_t facing = 0;
+  for (std::size_t i = 0; i < known.points.size(); ++i) {
+    const Vector3d to = (kFront - known.points[i].cast<double>()).normalized();
+    facing += known.normals[i].cast<double>().dot(to) >= std::cos(parameters.max_incidence);
+  }
+  CHECK(all.seen == facing);  // not those behind, nor those at the rim
+  for (int v = 0; v < 120; ++v)
+    for (int u = 0; u < 80; ++u) view.depth[std::size_t(v * 160 + u)] = 0.0f;
+  const Returned half = returned(view, known, parameters);
+  CHECK(half.seen + half.lost == all.seen);
+  CHECK(double(half.lost) == Approx(0.5 * double(all.seen)).epsilon(0.2));
+  // What something hides, or what it looks through to something farther, says nothing.
+  for (float& z : view.depth) z = 0.5f;
+  CHECK(returned(view, known, parameters).seen + returned(view, known, parameters).lost == 0);
+  for (float& z : view.depth) z = 3.0f;
+  CHECK(returned(view, known, parameters).seen + returned(view, known, parameters).lost == 0);
+}
+
+TEST_CASE("a share of returns needs fifty points") {
+  CHECK(Returned{0, 49}.share() == 1.0);
+  CHECK(Returned{10, 40}.share() == 0.2);
+  Returned sum{10, 40};
+  sum += {50, 0};
+  CHECK(sum.share() == 0.6);
+}

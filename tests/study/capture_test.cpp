@@ -94,7 +94,7 @@ TEST_CASE("measured ranges stay within the limits along the ray") {
 
 TEST_CASE("a frame does not depend on the number of threads") {
   const TracedScene scene(shapes::scene_of(shapes::sphere({0.05, 0.5, 0.18}, 0.04, 60)));
-  for (const char* noise : {"none", "gaussian:0.01", "l515", "rough"}) {
+  for (const char* noise : {"none", "gaussian:0.01", "l515", "azure:sun", "d405", "rough"}) {
     INFO(noise);
     const Capture one = look(scene, small_sensor(), noise, 3, 1);
     for (const int threads : {2, 3}) {

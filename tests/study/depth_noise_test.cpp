@@ -10,9 +10,9 @@ using namespace agrisee::study;
 
 namespace {
 
-constexpr NoiseModel kGaussian{NoiseModel::Kind::gaussian, 0.01};
-constexpr NoiseModel kL515{NoiseModel::Kind::l515, 0.0};
-constexpr NoiseModel kRough{NoiseModel::Kind::rough, 0.0};
+constexpr NoiseModel kGaussian{NoiseModel::Kind::gaussian, 0.01, Light::shade};
+constexpr NoiseModel kL515{NoiseModel::Kind::l515_white, 0.0, Light::shade};
+constexpr NoiseModel kRough{NoiseModel::Kind::rough, 0.0, Light::shade};
 
 /// Differences (m) between measured and true ranges where something returns.
 struct Statistics {
@@ -38,7 +38,7 @@ std::vector<float> all(float value) { return std::vector<float>(kCamera.size(), 
 std::vector<float> measure(const NoiseModel& noise, const std::vector<float>& range,
                            const std::vector<float>& incidence, std::uint64_t seed = 1, std::uint64_t view = 0,
                            int threads = 1) {
-  return measured_ranges(kCamera, range, incidence, deg(80), noise, seed, view, threads);
+  return measured_ranges(kCamera, {range, incidence, {}, {}, {}}, deg(80), noise, seed, view, threads);
 }
 
 /// Correlation of the errors of pixels that are `shift` columns (or rows) apart.
@@ -60,22 +60,29 @@ double correlation(const std::vector<float>& measured, double truth, int du, int
 
 TEST_CASE("noise is named in text and back") {
   REQUIRE(parse_noise("none").kind == NoiseModel::Kind::none);
+  REQUIRE(parse_noise("l515-white").kind == NoiseModel::Kind::l515_white);
   REQUIRE(parse_noise("l515").kind == NoiseModel::Kind::l515);
+  REQUIRE(parse_noise("azure:sun").kind == NoiseModel::Kind::azure);
+  REQUIRE(parse_noise("azure:sun").light == Light::sun);
+  REQUIRE(to_string(parse_noise("d405:shade")) == "d405");
   REQUIRE(parse_noise("rough").kind == NoiseModel::Kind::rough);
   REQUIRE(parse_noise("gaussian:0.01").kind == NoiseModel::Kind::gaussian);
   REQUIRE(parse_noise("gaussian:0.01").sigma == 0.01);
   REQUIRE(parse_noise("gaussian:1e-3").sigma == 1e-3);
   REQUIRE(parse_noise("gaussian:0").sigma == 0.0);
-  for (const char* text : {"none", "l515", "rough", "gaussian:0.01", "gaussian:0", "gaussian:0.1234567890123"})
+  for (const char* text : {"none", "l515", "l515:sun", "azure", "d405:sun", "l515-white", "rough", "gaussian:0.01",
+                           "gaussian:0", "gaussian:0.1234567890123"})
     REQUIRE(to_string(parse_noise(text)) == text);
-  REQUIRE(parse_noise(to_string({NoiseModel::Kind::gaussian, 1.0 / 3.0})).sigma == 1.0 / 3.0);
+  REQUIRE(parse_noise(to_string({NoiseModel::Kind::gaussian, 1.0 / 3.0, Light::shade})).sigma == 1.0 / 3.0);
   for (const char* text : {"", "gaussian", "gaussian:", "gaussian:-0.01", "gaussian:x", "gaussian:0.01m", "gaussian: 1",
-                           "gaussian:nan", "gaussian:inf", "gaussian:1e999", "L515", "l515 ", "rough:1", "none:"}) {
+                           "gaussian:nan", "gaussian:inf", "gaussian:1e999", "L515", "l515 ", "rough:1",
+                           "none:", "rough:sun", "none:shade", "l515-white:sun", "l515:dusk", "l515:"}) {
     INFO(text);
     REQUIRE_THROWS_AS(parse_noise(text), ParameterError);
     REQUIRE_THROWS_WITH(parse_noise(text), test::says("'" + std::string(text) + "'"));
   }
-  REQUIRE_THROWS_AS(noise_parameters({NoiseModel::Kind::gaussian, -1.0}), ParameterError);
+  REQUIRE_THROWS_AS(noise_parameters({NoiseModel::Kind::rough, 0.0, Light::sun}), ParameterError);
+  REQUIRE_THROWS_AS(noise_parameters({NoiseModel::Kind::gaussian, -1.0, Light::shade}), ParameterError);
 }
 
 TEST_CASE("no noise is the truth") { REQUIRE(measure({}, all(0.7f), all(0.3f)) == all(0.7f)); }
@@ -90,7 +97,7 @@ TEST_CASE("gaussian noise has its sigma, no mean and no correlation") {
   REQUIRE(std::abs(correlation(measured, 0.7, 0, 1)) < 0.015);
 }
 
-TEST_CASE("the l515's noise grows with the range as published") {
+TEST_CASE("the white l515's noise grows with the range as published") {
   REQUIRE(statistics(measure(kL515, all(1.0f), all(0.3f)), all(1.0f)).sigma == Approx(0.0025).epsilon(0.015));
   REQUIRE(statistics(measure(kL515, all(9.0f), all(0.3f)), all(9.0f)).sigma == Approx(0.0153).epsilon(0.015));
 }
@@ -187,7 +194,7 @@ TEST_CASE("noise depends on seed and view, not on threads or on what else is see
   std::vector<float> range = all(0.5f);
   for (std::size_t i = 0; i < range.size(); ++i)
     if (i % 7 < 2) range[i] = 0.52f;
-  for (const NoiseModel& noise : {kGaussian, kL515, kRough}) {
+  for (const NoiseModel& noise : {kGaussian, kL515, kRough, parse_noise("l515"), parse_noise("azure:sun")}) {
     const auto one = measure(noise, range, all(float(deg(65))), 5, 6, 1);
     REQUIRE(measure(noise, range, all(float(deg(65))), 5, 6, 2) == one);
     REQUIRE(measure(noise, range, all(float(deg(65))), 5, 6, 3) == one);
@@ -199,12 +206,22 @@ TEST_CASE("noise depends on seed and view, not on threads or on what else is see
     for (int v = 100; v < 140; ++v)
       for (int u = 50; u < 90; ++u) patch[std::size_t(v * kCamera.width + u)] = 0.5f;
     const auto alone = measure(noise, patch, all(0.3f), 5, 6);
-    for (std::size_t i = 0; i < patch.size(); ++i) REQUIRE(alone[i] == (patch[i] > 0.0f ? full[i] : 0.0f));
+    for (int v = 0; v < kCamera.height; ++v)
+      for (int u = 0; u < kCamera.width; ++u) {
+        const auto i = std::size_t(v * kCamera.width + u);
+        const bool rim = u == 50 || u == 89 || v == 100 || v == 139;  // its pixels may fly
+        if (!(patch[i] > 0.0f && rim && noise_parameters(noise).skirt > 0.0))
+          REQUIRE(alone[i] == (patch[i] > 0.0f ? full[i] : 0.0f));
+      }
   }
 }
 
 TEST_CASE("images of the wrong size are refused") {
-  REQUIRE_THROWS_AS(measured_ranges(kCamera, {1.0f}, all(0.0f), 1.0, {}, 1, 0), InputError);
-  REQUIRE_THROWS_AS(measured_ranges(kCamera, all(1.0f), {}, 1.0, {}, 1, 0), InputError);
+  const std::vector<std::uint32_t> object(kCamera.size(), 1);
+  for (const TrueImage& truth : {TrueImage{{1.0f}, all(0.0f), {}, {}, {}}, TrueImage{all(1.0f), {}, {}, {}, {}},
+                                 TrueImage{all(1.0f), all(0.0f), {0}, {ObjectClass::leaf}, {}},
+                                 TrueImage{all(1.0f), all(0.0f), object, {ObjectClass::leaf}, {}},
+                                 TrueImage{all(1.0f), all(0.0f), {}, {}, {1.0f}}})
+    REQUIRE_THROWS_AS(measured_ranges(kCamera, truth, 1.0, {}, 1, 0), InputError);
   REQUIRE(measure(kRough, all(0.0f), all(0.0f)) == all(0.0f));
 }

@@ -104,14 +104,28 @@ void compare_residuals(const Problem& problem, const std::vector<Index>& matches
   }
 }
 
+/// True if the data speak for the correction that `result` describes, rather than for the pose that was given. Compared
+/// are the likelihood of the residuals, if one in `independent` matches has an error of its own, and what the
+/// correction costs: half the logarithm of that number for each direction that is corrected (Schwarz, Annals of
+/// Statistics 6:461, 1978), and its size against the pose's expected error.
+inline bool worth_a_correction(const IcpResult& result, const IcpParameters& parameters) {
+  if (!(result.rms_after < result.rms_before)) return false;
+  if (parameters.independent == 0.0 || result.rms_after == 0.0) return true;
+  const double samples = std::max(1.0, static_cast<double>(result.matches) / parameters.independent);
+  const double gain = samples * std::log(result.rms_before / result.rms_after);
+  const double shift = result.translation / parameters.pose_translation;
+  const double turn = result.rotation / parameters.pose_rotation;
+  return gain > 0.5 * (result.constrained * std::log(samples) + shift * shift + turn * turn);
+}
+
 }  // namespace detail
 
 /// Register `source` to `target`; neither is changed.
 ///
 /// A source point is matched with the nearest target point within `max_distance` whose normal agrees; a point whose
 /// normal is needed but zero is not matched. The motion found is dropped (`accepted` is false and the initial pose is
-/// returned) if it does not lower the residual, is larger than the limits, loses half of the matches, or has fewer than
-/// `min_matches`.
+/// returned) if it does not lower the residual (by more than chance would, see IcpParameters::independent), is larger
+/// than the limits, loses half of the matches, or has fewer than `min_matches`.
 /// @param source points (m) that are laid on the target
 /// @param source_normals one unit normal per source point, or empty: the angle between normals is not tested then
 /// @param target points (m) that stay where they are
@@ -150,7 +164,7 @@ IcpResult register_cloud(const Source& source, const std::vector<Vector3<scalar_
   result.translation = (pose * problem.centroid() - initial * problem.centroid()).norm();
   result.rotation = angle_of(initial.inverse() * pose);
   result.accepted = result.matches >= static_cast<std::size_t>(parameters.min_matches) &&
-                    2 * result.matches > result.matches_before && result.rms_after < result.rms_before &&
+                    2 * result.matches > result.matches_before && detail::worth_a_correction(result, parameters) &&
                     result.translation <= parameters.max_translation && result.rotation <= parameters.max_rotation;
   if (result.accepted) result.target_T_source = pose;
   return result;

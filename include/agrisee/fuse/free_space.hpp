@@ -38,6 +38,32 @@ inline Sight sight(const sensor::SurfaceImage& view, const Eigen::Vector3d& p, c
 bool refutes(const sensor::SurfaceImage& view, const Eigen::Vector3d& p, const Eigen::Vector3d& normal,
              const FreeSpaceParameters& parameters);
 
+/// How many points of a known surface a view measures again.
+struct Returned {
+  std::size_t seen = 0;  ///< points where the view measures that surface
+  std::size_t lost = 0;  ///< points where it measures nothing, although it looks there
+
+  /// Add other points.
+  Returned& operator+=(const Returned& other) {
+    seen += other.seen;
+    lost += other.lost;
+    return *this;
+  }
+  /// Share (0..1) of the points that are measured again; 1 as long as there are too few points to tell.
+  double share() const {
+    constexpr std::size_t kEnough = 50;
+    return seen + lost < kEnough ? 1.0 : static_cast<double>(seen) / static_cast<double>(seen + lost);
+  }
+};
+
+/// How many of some surface points of another view this one measures again. Points that it sees at more than
+/// `max_incidence` do not count, nor do those that something hides or that it looks through to something else. In
+/// sunlight whole patches of a view return nothing; this share tells such a view, where a missing return says nothing
+/// (SurfaceImage::fill), from one that looks past things. Defined in `agrisee::agrisee`.
+/// @param known holds points with normals
+Returned returned(const sensor::SurfaceImage& view, const sensor::SurfaceImage& known,
+                  const FreeSpaceParameters& parameters);
+
 /// Share (0..1) of a body's surface that more views looked through than saw. Only views count that see a place of the
 /// surface at less than `max_incidence`. Defined in `agrisee::agrisee`.
 double seen_through(const std::vector<sensor::SurfaceImage>& views, const Ellipsoid& body,

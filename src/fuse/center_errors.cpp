@@ -1,0 +1,138 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <agrisee/core/cancellation.hpp>
+#include <agrisee/fuse/center_errors.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+namespace agrisee::fuse {
+namespace {
+
+using detail::Matrix9;
+using detail::Vector9;
+
+/// Standard deviation of a surfel from its body by what is no error of the sensor: uneven skin, the map's grain (m).
+constexpr double kUneven = 0.0002;
+/// Variance of the errors that a view's points on a body share, over the one that shows as disagreement of views.
+constexpr double kUnseen = 2.0;
+/// A view with fewer points on a body tells nothing of it.
+constexpr std::size_t kFewest = 10;
+/// With fewer views of a body their disagreement tells nothing.
+constexpr std::size_t kFewestViews = 3;
+
+/// What a view's points say of a body.
+struct Share {
+  Matrix9 normal_matrix = Matrix9::Zero();           // of the weighted derivatives
+  Vector9 pull = Vector9::Zero();                    // sum of the weighted derivatives
+  double weights = 0.0;                              // sum of the weights
+  Eigen::Vector3d normal = Eigen::Vector3d::Zero();  // weighted mean
+  double residual = 0.0;                             // mean, as registered (m)
+  Eigen::Vector3d shift = Eigen::Vector3d::Zero();   // from where the reported pose puts the points (m)
+};
+
+std::optional<Share> share_of(const Ellipsoid& body, const RegisteredView& view, const FitParameters& parameters) {
+  const sensor::SurfaceImage& image = *view.image;
+  const Pose reported_T_registered = view.reported * image.world_T_optical.inverse(Eigen::Isometry);
+  const double size = body.mean_radius(), noise = parameters.noise_of(size);
+  const double gate = std::max(4.0 * noise, 0.05 * size), cos_max = std::cos(parameters.max_angle);
+  const double reach = body.mean_semi_axis() * 3.0 + gate;  // no semi-axis is longer than three times their mean
+  Share out;
+  std::size_t points = 0;
+  for (std::size_t i = 0; i < image.points.size(); ++i) {
+    const Eigen::Vector3d p = image.points[i].cast<double>();
+    if ((p - body.center).squaredNorm() > reach * reach) continue;
+    const Eigen::Vector3d normal = image.normals[i].cast<double>();
+    const auto row = detail::ellipsoid_row(body, p, normal, size, gate, cos_max);
+    if (!(row.weight > 0.0)) continue;
+    ++points;
+    const Eigen::Vector3d shift = p - reported_T_registered * p;
+    out.normal_matrix += row.weight * row.derivatives * row.derivatives.transpose();
+    out.pull += row.weight * row.derivatives;
+    out.weights += row.weight;
+    out.normal += row.weight * normal;
+    out.residual += row.weight * row.residual;
+    out.shift += row.weight * shift;
+  }
+  if (points < kFewest) return std::nullopt;
+  out.normal /= out.weights;
+  out.residual /= out.weights;
+  out.shift /= out.weights;
+  return out;
+}
+
+Eigen::Vector3d mean_shift(const std::vector<Share>& shares) {
+  Eigen::Vector3d mean = Eigen::Vector3d::Zero();
+  for (const Share& s : shares) mean += s.shift / static_cast<double>(shares.size());
+  return mean;
+}
+
+/// Variance of the mean residuals that the views would have on their bodies if none had been registered (m2).
+double shared_variance(const std::vector<std::vector<Share>>& shares) {
+  double squares = 0.0, count = 0.0;
+  for (const auto& of_body : shares) {
+    if (of_body.empty()) continue;
+    const Eigen::Vector3d mean = mean_shift(of_body);
+    for (const Share& s : of_body) {
+      const double residual = s.residual - s.normal.dot(s.shift - mean);
+      squares += residual * residual;
+    }
+    count += static_cast<double>(of_body.size() - 1);
+  }
+  return count > 0.0 ? squares / count : 0.0;
+}
+
+/// Variance of the shifts of the views on one body along an axis (m2), in the mean over the axes and bodies.
+double shift_variance(const std::vector<std::vector<Share>>& shares) {
+  double sum = 0.0, count = 0.0;
+  for (const auto& of_body : shares) {
+    if (of_body.empty()) continue;
+    const Eigen::Vector3d mean = mean_shift(of_body);
+    for (const Share& s : of_body) sum += (s.shift - mean).squaredNorm() / (3.0 * static_cast<double>(of_body.size()));
+    count += 1.0;
+  }
+  return count > 0.0 ? sum / count : 0.0;
+}
+
+Eigen::Matrix3d covariance_of(const Ellipsoid& body, const std::vector<Share>& shares, double variance,
+                              const FitParameters& parameters) {
+  const double size = body.mean_radius(), noise = parameters.noise_of(size);
+  Matrix9 normal_matrix = Matrix9::Zero();
+  double weights = 0.0;
+  for (const Share& s : shares) normal_matrix += s.normal_matrix, weights += s.weights;
+  const double certainty = parameters.independent / (weights * noise * noise);
+  Matrix9 information = certainty * normal_matrix + detail::shape_information(body, size, parameters.shape_prior);
+  information.diagonal().array() += 1e-9 * information.diagonal().maxCoeff();
+  const double uneven = kUneven / noise;
+  Matrix9 scatter = uneven * uneven * certainty * normal_matrix;
+  for (const Share& s : shares) scatter += kUnseen * variance * certainty * certainty * s.pull * s.pull.transpose();
+  const Matrix9 inverse = Eigen::LDLT<Matrix9>(information).solve(Matrix9::Identity());
+  const Matrix9 covariance = inverse * scatter * inverse.transpose();
+  const Eigen::Matrix3d of_center = size * size * covariance.topLeftCorner<3, 3>();
+  return 0.5 * (of_center + of_center.transpose());
+}
+
+}  // namespace
+
+std::vector<Eigen::Matrix3d> center_errors(const std::vector<Ellipsoid>& bodies,
+                                           const std::vector<RegisteredView>& views, const FitParameters& parameters) {
+  parameters.check();
+  std::vector<std::vector<Share>> shares(bodies.size());
+  for (std::size_t b = 0; b < bodies.size(); ++b)
+    for (const RegisteredView& view : views) {
+      throw_if_cancelled();
+      if (const auto share = share_of(bodies[b], view, parameters)) shares[b].push_back(*share);
+    }
+  for (auto& of_body : shares)
+    if (of_body.size() < kFewestViews) of_body.clear();
+  const double variance = shared_variance(shares), shifted = shift_variance(shares);
+  std::vector<Eigen::Matrix3d> out(bodies.size(), Eigen::Matrix3d::Zero());
+  for (std::size_t b = 0; b < bodies.size(); ++b) {
+    if (shares[b].empty()) continue;
+    out[b] = covariance_of(bodies[b], shares[b], variance, parameters);
+    out[b].diagonal().array() += shifted / static_cast<double>(shares[b].size());
+  }
+  return out;
+}
+
+}  // namespace agrisee::fuse
