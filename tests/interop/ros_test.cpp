@@ -215,8 +215,16 @@ void reads_frames() {
   const auto image = image_4x3<Image>(true, false);
   const sensor::Intrinsics rectified = interop::depth_frame(image, info, true).intrinsics;
   CHECK((rectified.fx == 90.0 && rectified.fy == 95.0 && rectified.cx == 1.25 && rectified.cy == 0.75));
-  Names<Info>::D(info)[0] = 0.1;
-  CHECK_THROWS_WITH(interop::depth_frame(image, info), test::says("rectify"));
+  auto bent = info;
+  std::fill(Names<Info>::D(bent).begin(), Names<Info>::D(bent).end(), 0.0);
+  Names<Info>::D(bent)[0] = 2000.0;  // the corners are seen outside of the image
+  const sensor::DepthFrame straight = interop::depth_frame(image, bent), raw = interop::depth_frame(image, bent, true);
+  CHECK(straight.depth == sensor::rectified(sensor::DepthFrame{straight.intrinsics, raw.depth},
+                                            sensor::distortion_from(Names<Info>::D(bent)))
+                              .depth);
+  CHECK(straight.depth != raw.depth);
+  bent.distortion_model = "equidistant";
+  CHECK_THROWS_WITH(interop::depth_frame(image, bent), test::says("equidistant"));
   CHECK_NOTHROW(interop::depth_frame(image, info, true));
 }
 
@@ -314,7 +322,15 @@ TEST_CASE("a malformed image or camera is refused") {
   refuses([](I& i, C& c) { i.height = c.height = 0xffffffffu; }, "pixels");
   refuses([](I&, C& c) { c.k[0] = 0.0; }, "camera matrix");
   refuses([](I&, C& c) { c.k[5] = std::nan(""); }, "camera matrix");
-  refuses([](I&, C& c) { c.d[4] = 1e-3; }, "rectify");
+  refuses([](I&, C& c) { c.d[4] = std::nan(""); }, "not finite");
+  refuses([](I&, C& c) { c.d[0] = -1e6; }, "folds the image");
+  refuses([](I&, C& c) { c.d.resize(3, 1.0); }, "4, 5 or 8 coefficients");
+  refuses(
+      [](I&, C& c) {
+        c.d[4] = 1e-3;
+        c.distortion_model = "equidistant";
+      },
+      "rectify");
   refuses([](I&, C& c) { c.binning_x = 2; }, "binning");
   refuses([](I&, C& c) { c.roi.width = 2; }, "region of interest");
   refuses([](I&, C& c) { c.roi.x_offset = 1; }, "region of interest");

@@ -2,6 +2,8 @@
 #include <agrisee/io/depth_image.hpp>
 #include <agrisee/io/recorded_views.hpp>
 
+#include <array>
+
 #include "io/io_support.hpp"
 
 using namespace agrisee;
@@ -184,4 +186,25 @@ TEST_CASE("the extent of a frame holds its points in world") {
   CHECK(box.min.isApprox(Eigen::Vector3d(-0.15, -0.5 / 12.0, 2.5), 1e-6));
   CHECK(box.max.isApprox(Eigen::Vector3d(0.15, 0.5 / 12.0, 2.5), 1e-6));
   CHECK(io::extent_of(frame_of(0.0f), pose).empty());
+}
+
+TEST_CASE("recorded views: a lens's distortion is taken out, and written again") {
+  const TempFolder folder;
+  sensor::DepthFrame frame;
+  frame.intrinsics = {40, 30, 30.0, 31.0, 19.5, 14.5};
+  for (int i = 0; i < 40 * 30; ++i) frame.depth.push_back(0.5f + 0.001f * static_cast<float>(i % 40));
+  io::write_depth_npy(folder / "d.npy", frame);
+  const auto with = [&](const std::string& distortion) {
+    return folder.file("views.yaml", "camera: {width: 40, height: 30, fx: 30, fy: 31, cx: 19.5, cy: 14.5" + distortion +
+                                         "}\nviews:\n  - depth: d.npy\n    pose: " + kPose + "\n");
+  };
+  const io::RecordedViews recorded = load(with(", distortion: [-0.2, 0.05, 0, 0.001]"));
+  const auto lens = sensor::distortion_from(std::array<double, 4>{-0.2, 0.05, 0.0, 0.001});
+  const sensor::DepthFrame read = io::read_frame(recorded, 0);
+  CHECK(read.depth == sensor::rectified(frame, lens).depth);
+  CHECK(read.depth != frame.depth);
+  io::write_recorded_views(folder / "again.yaml", recorded);
+  CHECK(load(folder / "again.yaml").distortion.k == lens.k);
+  CHECK_THROWS_WITH(load(with(", distortion: [1, 2]")), Catch::Contains("views.yaml:1: camera.distortion: "));
+  CHECK_THROWS_WITH(load(with(", distortion: [-3, 0, 0, 0]")), Catch::Contains("folds the image"));
 }

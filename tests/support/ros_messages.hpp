@@ -36,6 +36,7 @@ struct Roi {
 /// As in ROS 2; ROS 1 writes D, K and P.
 struct CameraInfo {
   std::uint32_t height = 0, width = 0;
+  std::string distortion_model = "plumb_bob";
   std::vector<double> d;
   std::array<double, 9> k{};
   std::array<double, 12> p{};
@@ -44,6 +45,7 @@ struct CameraInfo {
 };
 struct CameraInfo1 {
   std::uint32_t height = 0, width = 0;
+  std::string distortion_model = "plumb_bob";
   std::vector<double> D;
   std::array<double, 9> K{};
   std::array<double, 12> P{};

@@ -8,6 +8,7 @@
 
 #include <agrisee/core/cloud.hpp>
 #include <agrisee/sensor/depth_frame.hpp>
+#include <agrisee/sensor/rectify.hpp>
 
 #include <algorithm>
 #include <array>
@@ -124,8 +125,7 @@ class PointCloud2View {
 };
 
 /// Intrinsics of a `sensor_msgs/CameraInfo`: its K, or, of a `rectified` image, its P.
-/// @throws InputError for a distorted camera whose image is not rectified, for binning or a region of interest, and for
-/// a size or a matrix that no pinhole has
+/// @throws InputError for binning or a region of interest, and for a size or a matrix that no pinhole has
 template <typename Info>
 sensor::Intrinsics intrinsics_of(const Info& info, bool rectified = false) {
   const auto check = [](bool ok, const std::string& text) { detail::check_message(ok, "CameraInfo", text); };
@@ -139,27 +139,44 @@ sensor::Intrinsics intrinsics_of(const Info& info, bool rectified = false) {
   sensor::Intrinsics k;
   k.width = static_cast<int>(info.width);
   k.height = static_cast<int>(info.height);
-  const auto take = [&](const auto& camera, const auto& projection, const auto& distortion) {
-    check(rectified || std::all_of(distortion.begin(), distortion.end(), [](double d) { return d == 0.0; }),
-          "the lens distorts: rectify the depth image and say so");
+  const auto take = [&](const auto& camera, const auto& projection) {
     k.fx = rectified ? projection[0] : camera[0];
     k.cx = rectified ? projection[2] : camera[2];
     k.fy = rectified ? projection[5] : camera[4];
     k.cy = rectified ? projection[6] : camera[5];
   };
   if constexpr (detail::InRos1<Info>::value)
-    take(info.K, info.P, info.D);
+    take(info.K, info.P);
   else
-    take(info.k, info.p, info.d);
+    take(info.k, info.p);
   check(std::isfinite(k.fx) && std::isfinite(k.fy) && k.fx > 0.0 && k.fy > 0.0 && std::isfinite(k.cx) &&
             std::isfinite(k.cy),
         "unusable camera matrix");
   return k;
 }
 
+/// The distortion of a `sensor_msgs/CameraInfo` by `plumb_bob` or `rational_polynomial`; none where all coefficients
+/// are 0. @throws InputError for another model, as of a fisheye lens
+template <typename Info>
+sensor::Distortion distortion_of(const Info& info) {
+  const auto take = [&](const auto& coefficients) {
+    if (std::all_of(coefficients.begin(), coefficients.end(), [](double d) { return d == 0.0; }))
+      return sensor::Distortion();
+    const std::string model(info.distortion_model);
+    detail::check_message(model == "plumb_bob" || model == "rational_polynomial" || model.empty(), "CameraInfo",
+                          "the lens distorts by the model '" + model + "': rectify the depth image and say so");
+    return sensor::distortion_from(coefficients);
+  };
+  if constexpr (detail::InRos1<Info>::value)
+    return take(info.D);
+  else
+    return take(info.d);
+}
+
 /// A depth image, `16UC1` (mm, 0 = no return) or `32FC1` (m; 0, NaN and infinities = no return), as a frame in metres.
+/// The distortion that its CameraInfo states is taken out.
 /// @param image sensor_msgs/Image  @param info the CameraInfo that came with it
-/// @param rectified whether the image was rectified, see intrinsics_of
+/// @param rectified whether the image was rectified before, see intrinsics_of
 /// @throws InputError for another encoding, data shorter than the rows, a size that differs from the camera's, or an
 /// unusable camera
 template <typename Image, typename Info>
@@ -186,6 +203,7 @@ sensor::DepthFrame depth_frame(const Image& image, const Info& info, bool rectif
       out[u] = millimetres ? 0.001f * static_cast<float>(detail::read_number<std::uint16_t>(row + 2 * u, swap))
                            : detail::read_number<float>(row + 4 * u, swap);
   }
+  if (!rectified) return sensor::rectified(frame, distortion_of(info));
   return frame;
 }
 

@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <agrisee/sensor/rectify.hpp>
+
+#include <array>
+#include <catch2/catch.hpp>
+#include <vector>
+
+using namespace agrisee;
+using namespace agrisee::sensor;
+
+namespace {
+
+const Intrinsics kCamera{160, 120, 140.0, 141.0, 80.3, 59.2};
+const Distortion kLens{{-0.12, 0.05, 0.002, -0.001, 0.01, 0.02, -0.01, 0.003}};
+
+/// What a lens shows of a plane, z = 1 + 0.2 x - 0.1 y in the optical frame: pixel by pixel the depth on its true ray.
+DepthFrame plane_seen_through(const Distortion& lens) {
+  DepthFrame frame;
+  frame.intrinsics = kCamera;
+  for (int v = 0; v < kCamera.height; ++v)
+    for (int u = 0; u < kCamera.width; ++u) {
+      const Eigen::Vector2d ray = lens.undistorted(kCamera.ray(u, v).head<2>());
+      frame.depth.push_back(static_cast<float>(1.0 / (1.0 - 0.2 * ray.x() + 0.1 * ray.y())));
+      frame.color.push_back({static_cast<std::uint8_t>(u), static_cast<std::uint8_t>(v), 7});
+      frame.instances.push_back(static_cast<std::uint16_t>(1 + u / 40));
+    }
+  return frame;
+}
+
+}  // namespace
+
+TEST_CASE("a lens's distortion and its inverse undo one another") {
+  for (const double x : {-0.6, -0.1, 0.0, 0.3, 0.55})
+    for (const double y : {-0.4, 0.05, 0.41})
+      CHECK((kLens.distorted(kLens.undistorted({x, y})) - Eigen::Vector2d(x, y)).norm() < 1e-9);
+}
+
+TEST_CASE("barrel distortion shows a point nearer to the middle") {
+  const Distortion barrel{{-0.1}};
+  // By hand: r2 = 0.25, so the factor is 1 - 0.1 * 0.25 = 0.975.
+  CHECK((barrel.distorted({0.3, 0.4}) - Eigen::Vector2d(0.2925, 0.39)).norm() < 1e-12);
+  // Tangential, p1 = 0.01 and p2 = 0.02: x + 2 p1 x y + p2 (r2 + 2 x^2), y + p1 (r2 + 2 y^2) + 2 p2 x y.
+  const Distortion tangential{{0.0, 0.0, 0.01, 0.02}};
+  CHECK((tangential.distorted({0.3, 0.4}) - Eigen::Vector2d(0.3110, 0.4105)).norm() < 1e-12);
+}
+
+TEST_CASE("a rectified frame is that of a pinhole camera, to half a pixel") {
+  const DepthFrame straight = rectified(plane_seen_through(kLens), kLens), pinhole = plane_seen_through({});
+  std::size_t seen = 0;
+  for (std::size_t i = 0; i < pinhole.depth.size(); ++i) {
+    if (!DepthFrame::valid(straight.depth[i])) continue;
+    ++seen;
+    CHECK(straight.depth[i] == Approx(pinhole.depth[i]).margin(0.003));  // 0.2 / 140 m a pixel
+  }
+  CHECK(seen > pinhole.depth.size() * 9 / 10);
+  const auto k = straight.intrinsics.index(20, 15);
+  const auto source = kCamera.project(kLens.distorted(kCamera.ray(20, 15).head<2>()).homogeneous());
+  CHECK(std::abs(straight.color[k][0] - source.x()) <= 0.5);
+  CHECK(std::abs(straight.color[k][1] - source.y()) <= 0.5);
+  CHECK(straight.instances[k] == 1 + static_cast<int>(source.x() + 0.5) / 40);
+}
+
+TEST_CASE("without distortion a frame stays as it is") {
+  const DepthFrame frame = plane_seen_through({}), out = rectified(frame, {});
+  CHECK(out.depth == frame.depth);
+  CHECK(out.color == frame.color);
+}
+
+TEST_CASE("boxes are rectified with their image") {
+  DepthFrame frame = plane_seen_through(kLens);
+  Detection d;
+  d.instance = 1;
+  d.box = PixelBox{10.0, 20.0, 30.0, 24.0};
+  frame.detections.push_back(d);
+  const PixelBox box = *rectified(frame, kLens).detections[0].box;
+  // The middles of its sides, through the lens again, are on the sides of the old one.
+  const auto seen = [](double u, double v) {
+    return kCamera.project(kLens.distorted(kCamera.ray(u - 0.5, v - 0.5).head<2>()).homogeneous());
+  };
+  CHECK(seen(box.u, box.v + 0.5 * box.height).x() + 0.5 == Approx(10.0).margin(0.1));
+  CHECK(seen(box.u + box.width, box.v + 0.5 * box.height).x() + 0.5 == Approx(40.0).margin(0.1));
+  CHECK(seen(box.u + 0.5 * box.width, box.v).y() + 0.5 == Approx(20.0).margin(0.1));
+}
+
+TEST_CASE("a distortion that cannot be is refused") {
+  CHECK_THROWS_AS(distortion_from(std::vector<double>{0.1, 0.2, 0.3}), InputError);
+  CHECK_THROWS_AS(distortion_from(std::vector<double>{0.1, 0.2, 0.3, NAN}), InputError);
+  CHECK(!distortion_from(std::array<double, 0>{}).any());
+  CHECK_THROWS_WITH(rectified(plane_seen_through({}), Distortion{{-2.0}}), Catch::Contains("folds the image"));
+}
