@@ -1,0 +1,126 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Scans as MCAP files; tests/mcap asks Foxglove's own libraries what they say of them.
+#include <agrisee/io/files.hpp>
+#include <agrisee/io/mcap.hpp>
+
+#include <filesystem>
+
+#include "catch.hpp"
+#include "io/formats/cdr.hpp"
+#include "io/results/transform_tree.hpp"
+
+using namespace agrisee;
+
+namespace {
+
+const std::filesystem::path kMcap = std::filesystem::temp_directory_path() / "agrisee_mcap_test.mcap";
+
+/// A view with depths that tell its number.
+io::ViewRecord mcap_view(std::size_t i) {
+  io::ViewRecord record;
+  record.frame.intrinsics = {4, 3, 10.0, 11.0, 1.5, 1.0};
+  record.frame.depth.assign(12, 0.3f + 0.1f * static_cast<float>(i));
+  record.frame.depth[5] = 0.0f;
+  record.world_T_optical.translation() = Eigen::Vector3d(0.1 * static_cast<double>(i), -0.2, 0.3);
+  record.world_T_optical.linear() =
+      Eigen::AngleAxisd(0.3 * static_cast<double>(i), Eigen::Vector3d(1, 2, 3).normalized()).toRotationMatrix();
+  return record;
+}
+
+void write_three_views() {
+  Workcell cell;
+  cell.name = "cell";
+  cell.scan_volume.min = {-1, -2, -3};
+  cell.scan_volume.max = {1, 2, 3.5};
+  cell.world_T_base.translation() = Eigen::Vector3d(0.5, 0, 0.1);
+  ScanResult result;
+  result.cloud.points = {{1, 2, 3}, {4, 5, 6}};
+  result.labels = {0, 1};
+  io::write_mcap(
+      kMcap, cell, [](std::size_t i) { return i < 3 ? std::optional(mcap_view(i)) : std::nullopt; }, result);
+}
+
+}  // namespace
+
+TEST_CASE("a scan comes back from an MCAP file as it was") {
+  write_three_views();
+  const io::McapRecording recording(kMcap);
+  REQUIRE(recording.world_T_optical().size() == 3);
+  CHECK(recording.warnings().empty());
+  CHECK(recording.workcell().scan_volume.max == Eigen::Vector3d(1, 2, 3.5));
+  CHECK(recording.workcell().world_T_base.translation() == Eigen::Vector3d(0.5, 0, 0.1));
+  for (std::size_t i = 0; i < 3; ++i) {
+    const io::ViewRecord view = mcap_view(i);
+    CHECK(recording.frame(i).depth == view.frame.depth);
+    CHECK(recording.frame(i).intrinsics.cx == 1.5);
+    CHECK((recording.world_T_optical()[i].matrix() - view.world_T_optical.matrix()).cwiseAbs().maxCoeff() < 1e-15);
+  }
+}
+
+TEST_CASE("an MCAP file with any byte missing or wrong is an error or a recording, never a crash") {
+  write_three_views();
+  const io::Bytes whole = io::read_bytes(kMcap);
+  std::size_t refused = 0, tried = 0;
+  const auto look = [&](const std::string& bytes) {
+    io::write_file(kMcap, bytes);
+    ++tried;
+    try {
+      const io::McapRecording recording(kMcap);
+      for (std::size_t i = 0; i < recording.world_T_optical().size(); ++i) recording.frame(i);
+    } catch (const FileError&) {
+      ++refused;
+    }
+  };
+  for (std::size_t size = 0; size < whole.size; size += 37) look(std::string(whole.view().substr(0, size)));
+  CHECK(refused > tried / 2);  // the only chunk is not whole
+  for (std::size_t at = 0; at < whole.size; at += 29) {
+    std::string bytes(whole.view());
+    bytes[at] = static_cast<char>(bytes[at] ^ 0x81);
+    look(bytes);
+  }
+  std::filesystem::remove(kMcap);
+}
+
+TEST_CASE("poses between transforms are interpolated along the chain of frames") {
+  io::ros::TransformTree tree;
+  const auto add = [&](const char* frame, const char* child, std::uint64_t time, double x, bool is_static) {
+    io::ros::Transform t;
+    t.header = {time, frame};
+    t.child = child;
+    t.pose.translation().x() = x;
+    tree.add(t, is_static);
+  };
+  constexpr std::uint64_t kMs = 1000000;
+  add("world", "arm", 1400 * kMs, 3.0, false);
+  add("world", "arm", 1000 * kMs, 1.0, false);
+  add("world", "arm", 3000 * kMs, 9.0, false);
+  add("arm", "camera", 0, 0.5, true);
+  tree.finish();
+  const auto x = [&](std::uint64_t ms, bool between = false) {
+    const auto pose = tree.pose("world", "camera", ms * kMs, between);
+    return pose ? pose->translation().x() : -1.0;
+  };
+  CHECK(x(1000) == 1.5);
+  CHECK(x(1100) == Approx(2.0));
+  CHECK(x(900) == 1.5);         // 0.1 s before the first
+  CHECK(x(900, true) == -1.0);  // where only what lies between counts
+  CHECK(x(700) == -1.0);        // too early
+  CHECK(x(2000) == -1.0);       // transforms 1.6 s apart
+  CHECK(x(3100) == 9.5);
+  CHECK_FALSE(tree.pose("map", "camera", 1000 * kMs));
+  CHECK(tree.chain("camera") == std::vector<std::string>{"camera", "arm", "world"});
+}
+
+TEST_CASE("CDR aligns values to their size") {
+  io::CdrWriter out;
+  out.put(std::uint8_t{7}).put(2.5).text("ab").put(std::uint32_t{9});
+  // 4 bytes of head; 1, 7 of padding, 8; 4 + 3, 1 of padding; 4
+  REQUIRE(out.str().size() == 4 + 8 + 8 + 8 + 4);
+  io::CdrReader in(out.str());
+  CHECK(in.take<std::uint8_t>() == 7);
+  CHECK(in.take<double>() == 2.5);
+  CHECK(in.text() == "ab");
+  CHECK(in.take<std::uint32_t>() == 9);
+  CHECK_THROWS_AS(in.take<std::uint8_t>(), InputError);
+  CHECK_THROWS_AS(io::CdrReader(std::string_view("\0\0\0\0", 4)), InputError);
+}
