@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "many.hpp"
 
-#include <agrisee/io/files.hpp>
+#include <agrisee/version.hpp>
 
 #include <algorithm>
 #include <filesystem>
@@ -9,19 +9,18 @@
 #include <glob.h>
 #include <iostream>
 #include <map>
-#include <memory>
 #include <nlohmann/json.hpp>
 #include <set>
 #include <sstream>
 
 #include "commands.hpp"
+#include "interrupt.hpp"
+#include "job_record.hpp"
 
 namespace agrisee::cli {
 namespace {
 
 namespace fs = std::filesystem;
-
-constexpr const char* kHeader = "input,folder,status,fruits,views,stop_reason,seconds,message";
 
 bool is_pattern(const std::string& input) {
   std::error_code error;
@@ -51,95 +50,60 @@ std::vector<std::string> names_of(fs::path path) {
   return out;
 }
 
-/// A cell of a CSV file: on one line, and quoted if necessary.
-std::string cell(std::string text) {
-  std::replace_if(
-      text.begin(), text.end(), [](char c) { return c == '\n' || c == '\r'; }, ' ');
-  if (text.find_first_of(",\"") == std::string::npos) return text;
-  std::string quoted = "\"";
-  for (const char c : text) quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
-  return quoted + "\"";
-}
-
-/// The cells fruits, views, stop_reason and seconds of a finished result, read from its files; empty if they are
-/// missing there.
-std::string result_cells(const fs::path& folder) {
+/// Fill in what a summary tells of a finished result, read from its files; empty where it is missing there.
+void add_result(const fs::path& folder, SummaryRow& row) {
   std::ifstream file(folder / "run.json");
   const nlohmann::json run = nlohmann::json::parse(file, nullptr, false);
-  if (!run.is_object()) return ",,,";
-  const auto text = [](const nlohmann::json& value) {
-    return value.is_string() ? value.get<std::string>() : value.is_null() ? std::string() : value.dump();
-  };
+  if (!run.is_object()) return;
   const auto at = [&](const char* pointer) {
-    return text(run.value(nlohmann::json::json_pointer(pointer), nlohmann::json()));
+    const nlohmann::json value = run.value(nlohmann::json::json_pointer(pointer), nlohmann::json());
+    return value.is_string() ? value.get<std::string>() : value.is_null() ? std::string() : value.dump();
   };
   std::ifstream fruits_file(folder / "fruits.json");
   const nlohmann::json fruits = nlohmann::json::parse(fruits_file, nullptr, false);
-  return (fruits.is_array() ? std::to_string(fruits.size()) : std::string()) + "," + at("/views") + "," +
-         cell(at("/stop_reason")) + "," + at("/seconds/total");
+  if (fruits.is_array()) row.fruits = std::to_string(fruits.size());
+  row.views = at("/views");
+  row.stop_reason = at("/stop_reason");
+  row.seconds = at("/seconds/total");
 }
 
-std::string summary_name(const Shard& shard) {
-  if (shard.count == 1) return "summary.csv";
-  return "summary-" + std::to_string(shard.index) + "-of-" + std::to_string(shard.count) + ".csv";
-}
-
-void write_summary(const fs::path& path, const std::vector<std::string>& rows) {
-  std::string text = std::string(kHeader) + "\n";
-  for (const std::string& row : rows) text += row + "\n";
-  io::write_file(path, text);
-}
-
-/// The rows of a summary. @throws FileError
-std::vector<std::string> read_summary(const fs::path& path) {
-  std::ifstream file(path);
-  std::string line;
-  if (!std::getline(file, line) || line != kHeader) throw FileError(path.string() + ": is not a summary of many scans");
-  std::vector<std::string> rows;
-  while (std::getline(file, line))
-    if (!line.empty()) rows.push_back(line);
-  return rows;
-}
-
-struct MergeOptions {
-  std::string folder;
-};
-
-/// Join DIR/summary-I-of-N.csv of all shards to DIR/summary.csv. @throws FileError if one is missing
-int merge_summaries(const MergeOptions& options) {
-  const fs::path folder = options.folder;
-  std::map<std::size_t, std::set<std::size_t>> found;  // for each N, the I that exist
+/// @throws UsageError if the input is one of the files of the result
+void check_input_stays(const std::string& input, const fs::path& folder) {
   std::error_code error;
-  for (const auto& entry : fs::directory_iterator(folder, error)) {
-    std::size_t index = 0, count = 0;
-    char end = 0;
-    if (std::sscanf(entry.path().filename().string().c_str(), "summary-%zu-of-%zu.cs%c", &index, &count, &end) == 3 &&
-        end == 'v')
-      found[count].insert(index);
+  for (const char* name : kResultFiles)
+    if (fs::equivalent(input, folder / name, error))
+      throw UsageError(input + ": is the input and would be overwritten");
+}
+
+/// Does a job unless it is done. @return whether there was anything to do
+bool do_job(const Job& job, const fs::path& folder, const ListedCommand& command, SummaryRow& row) {
+  JobRecord record{command.name, job.input, "", AGRISEE_VERSION, "started", ""};
+  bool recorded = false, worked = true;
+  try {
+    check_input_stays(job.input, folder);
+    record.key = command.key(job.input);
+    const auto before = read_job(folder);
+    const bool same = before && before->key == record.key && !record.key.empty() && !command.force;
+    if (same && before->status == "ok" && command.is_complete(folder.string())) {
+      worked = false;
+    } else {
+      const bool interrupted = same && before->status == "started";
+      // A result is deleted before a new key is noted: it must never pass for what it is not.
+      if (!interrupted) prepare_output(folder.string(), before.has_value() || command.force);
+      recorded = true;
+      write_job(folder, record);
+      const int code = command.run(job.input, folder.string(), interrupted ? Begin::resume : Begin::again);
+      if (code != kSuccess) row.message = "ended with exit code " + std::to_string(code);
+    }
+  } catch (const std::exception& e) {
+    row.message = e.what();
   }
-  if (error) throw FileError(folder.string() + ": " + error.message());
-  if (found.empty()) throw FileError(folder.string() + ": holds no summary of a shard (summary-I-of-N.csv)");
-  if (found.size() > 1) throw FileError(folder.string() + ": holds summaries of different numbers of shards");
-  const std::size_t count = found.begin()->first;
-  // Shard i holds the inputs i, i + N, and so on. Taking one from each in turn restores the order of the list.
-  std::vector<std::vector<std::string>> parts;
-  for (std::size_t i = 1; i <= count; ++i) {
-    const fs::path path = folder / summary_name({i, count});
-    if (!found.begin()->second.count(i)) throw FileError(path.string() + ": is missing");
-    parts.push_back(read_summary(path));
-  }
-  std::vector<std::string> rows;
-  std::size_t failed = 0;
-  for (std::size_t k = 0, more = 1; more > 0; ++k) {
-    more = 0;
-    for (const auto& part : parts)
-      if (k < part.size()) rows.push_back(part[k]), ++more;
-  }
-  for (const std::string& row : rows) failed += row.find(",failed,") != std::string::npos ? 1 : 0;
-  write_summary(folder / "summary.csv", rows);
-  std::cout << rows.size() << " results of " << count << " shards, " << failed
-            << " failed: " << (folder / "summary.csv").string() << "\n";
-  return kSuccess;
+  row.status = row.message.empty() ? "ok" : "failed";
+  if (row.message.empty()) add_result(folder, row);
+  record.status = row.status;
+  record.message = row.message;
+  if (recorded) write_job(folder, record);
+  return worked;
 }
 
 }  // namespace
@@ -187,49 +151,47 @@ std::vector<Job> jobs_of(const std::vector<std::string>& inputs) {
   return jobs;
 }
 
-int run_jobs(const std::vector<Job>& jobs, const Shard& shard, const std::string& output, const RunOne& run) {
+int run_jobs(const std::vector<Job>& jobs, const Shard& shard, const std::string& output,
+             const ListedCommand& command) {
   make_folder(output);
+  const StopMessage message("agrisee: stopped; the same command goes on, what is done is skipped");
   const fs::path summary = fs::path(output) / summary_name(shard);
-  std::vector<std::string> rows, failures;
-  write_summary(summary, rows);
+  std::vector<SummaryRow> rows;
   for (std::size_t i = shard.index - 1; i < jobs.size(); i += shard.count) {
-    const Job& job = jobs[i];
-    const fs::path folder = fs::path(output) / job.folder;
-    std::string message;
-    try {
-      const int code = run(job.input, folder.string());
-      if (code != kSuccess) message = "ended with exit code " + std::to_string(code);
-    } catch (const std::exception& e) {
-      message = e.what();
-    }
-    rows.push_back(cell(job.input) + "," + cell(job.folder) + "," + (message.empty() ? "ok" : "failed") + "," +
-                   (message.empty() ? result_cells(folder) : ",,,") + "," + cell(message));
-    if (!message.empty()) failures.push_back(job.input + ": " + message);
-    write_summary(summary, rows);
+    rows.emplace_back();
+    rows.back().input = jobs[i].input;
+    rows.back().folder = jobs[i].folder;
   }
-  std::cout << rows.size() << " inputs, " << failures.size() << " failed: " << summary.string() << "\n";
+  write_summary(summary, rows);  // if this process is killed, it tells what is open
+  std::vector<std::string> failures;
+  std::size_t done_before = 0;
+  for (std::size_t k = 0; k < rows.size(); ++k) {
+    SummaryRow& row = rows[k];
+    const bool worked = do_job({row.input, row.folder}, fs::path(output) / row.folder, command, row);
+    if (!row.message.empty()) failures.push_back(row.input + ": " + row.message);
+    done_before += !worked;
+    if (worked) write_summary(summary, rows);
+  }
+  write_summary(summary, rows);
+  std::cout << rows.size() << " inputs, " << (done_before > 0 ? std::to_string(done_before) + " done before, " : "")
+            << failures.size() << " failed: " << summary.string() << "\n";
   for (const std::string& failure : failures) std::cerr << "agrisee: failed: " << failure << "\n";
   return failures.empty() ? kSuccess : kBadInput;
 }
 
+bool is_list(const std::vector<std::string>& inputs, const std::string& shard) {
+  return inputs.size() > 1 || !shard.empty() || (inputs.size() == 1 && is_pattern(inputs[0]));
+}
+
 int run_inputs(const std::vector<std::string>& inputs, const std::string& shard, const std::string& output,
-               const RunOne& run) {
-  const bool list = inputs.size() > 1 || !shard.empty() || (inputs.size() == 1 && is_pattern(inputs[0]));
-  if (!list) return run(inputs.empty() ? std::string() : inputs[0], output);
-  return run_jobs(jobs_of(inputs), parse_shard(shard), output, run);
+               const ListedCommand& command) {
+  if (!is_list(inputs, shard)) return command.run(inputs.empty() ? std::string() : inputs[0], output, Begin::as_asked);
+  return run_jobs(jobs_of(inputs), parse_shard(shard), output, command);
 }
 
 void add_shard_option(CLI::App& command, std::string& shard) {
   command.add_option("--shard", shard,
                      "I/N: process only every N-th input, starting with the I-th; `agrisee merge` joins the summaries");
-}
-
-void add_merge(CLI::App& app, Run& run) {
-  auto* command = app.add_subcommand("merge", "join the summaries of all shards of a list of inputs");
-  auto options = std::make_shared<MergeOptions>();
-  command->add_option("folder", options->folder, "output folder of the shards, which holds summary-I-of-N.csv")
-      ->required();
-  command->callback([options, &run] { run = [options] { return merge_summaries(*options); }; });
 }
 
 }  // namespace agrisee::cli

@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// agrisee merge: one summary from those of all shards, and one database from the results of a season.
+#include <algorithm>
+#include <filesystem>
+#include <iostream>
+#include <memory>
+
+#include "commands.hpp"
+#include "season.hpp"
+#include "summary.hpp"
+
+namespace agrisee::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct MergeOptions {
+  std::vector<std::string> folders;
+  bool unfinished = false;
+  SeasonOptions season;
+};
+
+/// Print the shards to run again, as `sbatch --array` takes them; nothing if there is none.
+int print_unfinished(const fs::path& folder) {
+  const ShardSummaries shards = read_shards(folder);
+  if (shards.count == 0) throw FileError(folder.string() + ": holds no summary of a shard (summary-I-of-N.csv)");
+  if (const std::string list = comma_list(shards.unfinished()); !list.empty()) std::cout << list << "\n";
+  return kSuccess;
+}
+
+/// Join DIR/summary-I-of-N.csv of all shards to DIR/summary.csv.
+/// @param must whether there have to be summaries
+/// @return kBadInput if any input is still open, or, unless they must be there, a summary is missing
+/// @throws FileError if a summary that must be there is missing
+int join_summaries(const fs::path& folder, bool must) {
+  const ShardSummaries shards = read_shards(folder);
+  if (shards.count == 0 && !must) return kSuccess;
+  if (shards.count == 0) throw FileError(folder.string() + ": holds no summary of a shard (summary-I-of-N.csv)");
+  if (!shards.missing.empty()) {
+    const std::string message =
+        (folder / summary_name({shards.missing.front(), shards.count})).string() + ": is missing" +
+        (shards.missing.size() > 1 ? ", as are those of all of shards " + comma_list(shards.missing) : "");
+    if (must) throw FileError(message);
+    std::cerr << "agrisee: " << message << "\n";
+    return kBadInput;
+  }
+  const std::vector<SummaryRow> rows = shards.rows();
+  const auto count = [&](const char* status) {
+    return std::count_if(rows.begin(), rows.end(), [&](const SummaryRow& row) { return row.status == status; });
+  };
+  write_summary(folder / "summary.csv", rows);
+  std::cout << rows.size() << " results of " << shards.count << " shards, " << count("failed")
+            << " failed: " << (folder / "summary.csv").string() << "\n";
+  if (count("open") == 0) return kSuccess;
+  std::cerr << "agrisee: " << count("open") << " inputs are open: a shard was stopped. Run shards "
+            << comma_list(shards.unfinished()) << " again; what is done is skipped\n";
+  return kBadInput;
+}
+
+int run_merge(const MergeOptions& options) {
+  if (options.unfinished) {
+    if (options.folders.size() > 1) throw UsageError("--unfinished: name one folder");
+    return print_unfinished(options.folders.front());
+  }
+  int code = kSuccess;
+  for (const std::string& folder : options.folders)
+    code = std::max(code, join_summaries(folder, options.season.database.empty()));
+  if (!options.season.database.empty()) add_to_season(options.folders, options.season);
+  return code;
+}
+
+}  // namespace
+
+void add_merge(CLI::App& app, Run& run) {
+  auto* command = app.add_subcommand("merge", "join the summaries of shards, and put results into a database");
+  auto options = std::make_shared<MergeOptions>();
+  command->add_option("folder", options->folders, "output folders of lists; shards' hold summary-I-of-N.csv")
+      ->required();
+  command->add_flag("--unfinished", options->unfinished,
+                    "only print the numbers of the shards to run again, separated by commas");
+  add_season_options(*command, options->season);
+  command->footer(
+      "Examples:\n"
+      "  agrisee merge results\n"
+      "  sbatch --array=$(agrisee merge results --unfinished) season.sh\n"
+      "  agrisee merge results --db season.sqlite");
+  command->callback([options, &run] { run = [options] { return run_merge(*options); }; });
+}
+
+}  // namespace agrisee::cli

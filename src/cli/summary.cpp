@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "summary.hpp"
+
+#include <agrisee/io/files.hpp>
+
+#include <algorithm>
+#include <cstdio>
+#include <map>
+#include <set>
+
+#include "io/formats/csv.hpp"
+
+namespace agrisee::cli {
+namespace {
+
+constexpr const char* kSummaryHeader = "input,folder,status,fruits,views,stop_reason,seconds,message";
+
+/// Whether all inputs of a shard are done.
+bool is_done(const std::vector<SummaryRow>& rows) {
+  return std::all_of(rows.begin(), rows.end(), [](const SummaryRow& row) { return row.status == "ok"; });
+}
+
+}  // namespace
+
+std::string summary_name(const Shard& shard) {
+  if (shard.count == 1) return "summary.csv";
+  return "summary-" + std::to_string(shard.index) + "-of-" + std::to_string(shard.count) + ".csv";
+}
+
+void write_summary(const std::filesystem::path& path, const std::vector<SummaryRow>& rows) {
+  io::CsvWriter csv;
+  for (const SummaryRow& row : rows) {
+    for (const std::string* cell :
+         {&row.input, &row.folder, &row.status, &row.fruits, &row.views, &row.stop_reason, &row.seconds, &row.message})
+      csv.cell(*cell);
+    csv.end_row();
+  }
+  io::write_file(path, std::string(kSummaryHeader) + "\n" + csv.text());
+}
+
+std::vector<SummaryRow> read_summary(const std::filesystem::path& path) {
+  const io::Bytes bytes = io::read_bytes(path);
+  io::Lines lines(bytes.view());
+  std::string_view line;
+  if (!lines.next(line) || line != kSummaryHeader) io::fail(path, "is not a summary of many scans");
+  std::vector<SummaryRow> rows;
+  std::vector<std::string> cells;
+  while (lines.next_filled(line)) {
+    if (!io::split_csv(line, cells) || cells.size() != 8) io::fail(path, lines.number(), "expected 8 cells");
+    rows.push_back({cells[0], cells[1], cells[2], cells[3], cells[4], cells[5], cells[6], cells[7]});
+  }
+  return rows;
+}
+
+std::vector<SummaryRow> ShardSummaries::rows() const {
+  // Shard i holds the inputs i, i + N, and so on. Taking one from each in turn restores the order of the list.
+  std::vector<SummaryRow> out;
+  for (std::size_t k = 0, more = 1; more > 0; ++k) {
+    more = 0;
+    for (const auto& part : parts)
+      if (k < part.size()) out.push_back(part[k]), ++more;
+  }
+  return out;
+}
+
+std::vector<std::size_t> ShardSummaries::unfinished() const {
+  std::vector<std::size_t> out = missing;
+  for (std::size_t i = 0; i < parts.size(); ++i)
+    if (!is_done(parts[i])) out.push_back(i + 1);
+  std::sort(out.begin(), out.end());
+  return out;
+}
+
+ShardSummaries read_shards(const std::filesystem::path& folder) {
+  std::map<std::size_t, std::set<std::size_t>> found;  // for each N, the I that exist
+  std::error_code error;
+  for (const auto& entry : std::filesystem::directory_iterator(folder, error)) {
+    std::size_t index = 0, count = 0;
+    char end = 0;
+    if (std::sscanf(entry.path().filename().string().c_str(), "summary-%zu-of-%zu.cs%c", &index, &count, &end) == 3 &&
+        end == 'v')
+      found[count].insert(index);
+  }
+  if (error) io::fail(folder, error.message());
+  if (found.size() > 1) io::fail(folder, "holds summaries of different numbers of shards");
+  ShardSummaries out;
+  if (found.empty()) return out;
+  out.count = found.begin()->first;
+  for (std::size_t i = 1; i <= out.count; ++i) {
+    const bool is_there = found.begin()->second.count(i) > 0;
+    if (!is_there) out.missing.push_back(i);
+    out.parts.push_back(is_there ? read_summary(folder / summary_name({i, out.count})) : std::vector<SummaryRow>());
+  }
+  return out;
+}
+
+std::string comma_list(const std::vector<std::size_t>& numbers) {
+  std::string out;
+  for (const std::size_t number : numbers) out += (out.empty() ? "" : ",") + std::to_string(number);
+  return out;
+}
+
+}  // namespace agrisee::cli

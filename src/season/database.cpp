@@ -1,0 +1,197 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "season/database.hpp"
+
+#include <agrisee/core/parallel.hpp>
+
+#include <filesystem>
+#include <limits>
+#include <map>
+
+#include "season/schema.hpp"
+#include "season/sqlite.hpp"
+
+namespace agrisee::season {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Prepare a database for writing. @throws FileError if it belongs to something else
+void prepare(const Connection& connection) {
+  const auto pragma = [&](const char* sql) {
+    Statement question(connection, sql);
+    question.step();
+    return question.integer(0);
+  };
+  const bool is_new = pragma("SELECT count(*) FROM sqlite_master") == 0;
+  if (!is_new && pragma("PRAGMA application_id") != kApplicationId)
+    throw FileError(connection.path() + ": is a database of something else");
+  if (!is_new && pragma("PRAGMA user_version") != kSchemaVersion)
+    throw FileError(connection.path() + ": was written by another version of AgriSEE; make it again from the results");
+  connection.run("PRAGMA foreign_keys = ON; BEGIN IMMEDIATE;");
+  connection.run(kSchema);
+  if (!is_new) return;
+  connection.run(("PRAGMA application_id = " + std::to_string(kApplicationId) +
+                  "; PRAGMA user_version = " + std::to_string(kSchemaVersion))
+                     .c_str());
+}
+
+/// Ids of texts that are stored once.
+class Texts {
+ public:
+  Texts(const Connection& connection, const char* select, const char* insert)
+      : connection_(connection), select_(connection, select), insert_(connection, insert) {}
+  /// @param other a second column, if the table has one
+  long long id_of(const std::string& text, const std::optional<std::string>& other = {}) {
+    if (const auto known = ids_.find(text); known != ids_.end()) return known->second;
+    select_.bind(text);
+    long long id = 0;
+    if (select_.step()) {
+      id = select_.integer(0);
+      select_.reset();
+    } else {
+      insert_.bind(text);
+      if (other) insert_.bind(*other);
+      insert_.run();
+      id = connection_.last_id();
+    }
+    ids_[text] = id;
+    return id;
+  }
+
+ private:
+  const Connection& connection_;
+  Statement select_, insert_;
+  std::map<std::string, long long> ids_;
+};
+
+/// Writes scans.
+class Writer {
+ public:
+  explicit Writer(const Connection& connection)
+      : connection_(connection),
+        versions_(connection, "SELECT id FROM versions WHERE version = ?", "INSERT INTO versions(version) VALUES (?)"),
+        parameters_(connection, "SELECT id FROM parameters WHERE json = ?",
+                    "INSERT INTO parameters(json, preset) VALUES (?, ?)"),
+        known_(connection, "SELECT id, content FROM scans WHERE folder = ?"),
+        forget_(connection, "DELETE FROM scans WHERE id = ?"),
+        scan_(connection,
+              "INSERT INTO scans(folder, content, status, message, input, \"row\", date, time, version, parameters, "
+              "scene, planner, noise, seed, fruit, views, stop_reason, points_merged, points_filtered, "
+              "points_labelled, seconds) VALUES (?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?)"),
+        fruit_(connection, "INSERT INTO fruit VALUES (?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?)"),
+        view_(connection, "INSERT INTO views VALUES (?,?,?,?,?,?,?,?,?,?,?)") {}
+
+  /// The content with which a folder is known, and its id; 0 if it is not.
+  std::pair<long long, std::string> find(const std::string& folder) {
+    std::pair<long long, std::string> out{0, ""};
+    known_.bind(folder);
+    if (known_.step()) out = {known_.integer(0), known_.text(1)};
+    known_.reset();
+    return out;
+  }
+  void forget(long long id) { forget_.bind(id).run(); }
+
+  /// @param files null for a scan without a result
+  void add(const std::string& folder, const Scan& scan, Place place, const ResultFiles* files) {
+    if (place.date.empty() && files) place.date = files->run.info.time.substr(0, 10);
+    scan_.bind(folder).bind(scan.content).bind(scan.status).bind(scan.message).bind(scan.input);
+    scan_.bind(place.row).bind(place.date);
+    if (files) {
+      const io::RunFile& run = files->run;
+      scan_.bind(run.info.time).bind(versions_.id_of(run.info.version));
+      scan_.bind(parameters_.id_of(run.info.parameters_json, run.info.preset));
+      scan_.bind(run.info.scene).bind(run.info.planner).bind(run.info.noise).bind(std::to_string(run.info.seed));
+      scan_.bind(files->fruits.size()).bind(run.views).bind(run.stop_reason);
+      scan_.bind(run.merged).bind(run.filtered).bind(run.labelled).bind(run.seconds.total);
+    } else {
+      for (int i = 0; i < 14; ++i) scan_.bind_null();
+    }
+    scan_.run();
+    if (!files) return;
+    const long long id = connection_.last_id();
+    for (const Fruit& f : files->fruits) add(id, f);
+    for (std::size_t v = 0; v < files->views.size(); ++v) add(id, v, files->views[v]);
+  }
+
+ private:
+  void add(long long scan, const Fruit& f) {
+    const Eigen::Vector3d& at = f.position();
+    fruit_.bind(scan).bind(f.id).bind(f.truss).bind(f.points).bind(f.found_by);
+    fruit_.bind(at.x()).bind(at.y()).bind(at.z());
+    if (f.body) {
+      const Body& b = *f.body;
+      fruit_.bind(2.0 * b.radii.mean()).bind(b.radii[0]).bind(b.radii[1]).bind(b.radii[2]);
+      fruit_.bind(b.volume).bind(b.volume_error).bind(b.mass).bind(b.mass_error);
+      fruit_.bind(b.completeness).bind(b.confidence);
+    } else {
+      for (int i = 0; i < 10; ++i) fruit_.bind_null();
+    }
+    if (f.ripeness)
+      fruit_.bind(to_string(f.ripeness->grade)).bind(f.ripeness->probability).bind(f.ripeness->ripe_share);
+    else
+      fruit_.bind_null().bind_null().bind_null();
+    if (f.picking)
+      fruit_.bind(f.picking->order).bind(f.picking->reachable ? 1 : 0).bind(to_string(f.picking->reason));
+    else
+      fruit_.bind_null().bind_null().bind_null();
+    fruit_.run();
+  }
+
+  void add(long long scan, std::size_t number, const View& view) {
+    view_.bind(scan).bind(number);
+    const Eigen::Vector3d at = view.world_T_optical.translation(), along = view.world_T_optical.linear().col(2);
+    for (const Eigen::Vector3d& v : {at, along})
+      for (int i = 0; i < 3; ++i) view_.bind(v[i]);
+    view_.bind(view.points_in).bind(view.points_new).bind(view.plan_seconds).run();
+  }
+
+  const Connection& connection_;
+  Texts versions_, parameters_;
+  Statement known_, forget_, scan_, fruit_, view_;
+};
+
+}  // namespace
+
+Added add_scans(const std::string& database, const std::vector<Scan>& scans, const PlaceRules& rules, int threads) {
+  const Connection connection(database, Connection::Mode::write);
+  prepare(connection);
+  Writer writer(connection);
+  Added out;
+  std::error_code error;
+  const fs::path home = fs::absolute(fs::path(database), error).parent_path();
+  const auto name_of_folder = [&](const Scan& scan) {
+    return fs::absolute(scan.folder, error).lexically_normal().lexically_relative(home.lexically_normal()).string();
+  };
+  std::vector<std::size_t> open;  // scans that are new or changed
+  for (std::size_t i = 0; i < scans.size(); ++i) {
+    const auto [id, content] = writer.find(name_of_folder(scans[i]));
+    if (id > 0 && content == scans[i].content) {
+      ++out.unchanged;
+      continue;
+    }
+    if (id > 0) writer.forget(id);
+    ++(id > 0 ? out.changed : out.added);
+    open.push_back(i);
+  }
+  constexpr std::size_t kBatch = 1024;  // so many results are in memory at a time
+  for (std::size_t from = 0; from < open.size(); from += kBatch) {
+    std::vector<std::optional<ResultFiles>> files(std::min(kBatch, open.size() - from));
+    parallel_for(
+        files.size(), threads,
+        [&](std::size_t k) {
+          const Scan& scan = scans[open[from + k]];
+          if (scan.status == "ok") files[k] = read_result(scan.folder);
+        },
+        4);
+    for (std::size_t k = 0; k < files.size(); ++k) {
+      const Scan& scan = scans[open[from + k]];
+      const std::string folder = name_of_folder(scan);
+      const Place place = rules.of(scan.input.empty() ? folder : scan.input);
+      writer.add(folder, scan, place, files[k] ? &*files[k] : nullptr);
+    }
+  }
+  connection.run("COMMIT");
+  return out;
+}
+
+}  // namespace agrisee::season

@@ -1,0 +1,151 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "season/overview.hpp"
+
+#include <agrisee/core/error.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <set>
+#include <string_view>
+#include <unordered_map>
+
+#include "season/schema.hpp"
+#include "season/sqlite.hpp"
+
+namespace agrisee::season {
+namespace {
+
+/// The class of ripeness with this name; none for another text.
+std::optional<std::size_t> class_of(std::string_view name) {
+  for (std::size_t i = 0; i < kRipenessClasses; ++i)
+    if (name == to_string(static_cast<RipenessClass>(i))) return i;
+  return std::nullopt;
+}
+
+/// Whether a row comes before another: "2" before "10", numbers before words.
+bool row_before(const std::string& a, const std::string& b) {
+  const auto key = [](const std::string& text) {
+    const std::size_t digits = std::min(text.find_first_not_of("0123456789"), text.size());
+    const std::size_t zeros = std::min(text.find_first_not_of('0'), digits);
+    return std::tuple(digits == 0, digits - zeros, text.substr(zeros));
+  };
+  return std::pair(key(a), a) < std::pair(key(b), b);
+}
+
+}  // namespace
+
+Tally& Tally::operator+=(const Tally& other) {
+  scans += other.scans;
+  failed += other.failed;
+  fruit += other.fruit;
+  sized += other.sized;
+  mass += other.mass;
+  for (std::size_t i = 0; i < ripe.size(); ++i) ripe[i] += other.ripe[i];
+  for (std::size_t i = 0; i < kBins; ++i) diameters[i] += other.diameters[i];
+  return *this;
+}
+
+std::size_t Tally::colored() const {
+  std::size_t sum = 0;
+  for (const std::size_t n : ripe) sum += n;
+  return sum;
+}
+
+std::optional<double> Tally::diameter(double share) const {
+  if (sized == 0) return std::nullopt;
+  const double wanted = share * static_cast<double>(sized);
+  double below = 0.0;
+  for (std::size_t i = 0; i < kBins; ++i) {
+    const auto here = static_cast<double>(diameters[i]);
+    if (here > 0.0 && below + here >= wanted)
+      return static_cast<double>(i) + std::clamp((wanted - below) / here, 0.0, 1.0);
+    below += here;
+  }
+  return static_cast<double>(kBins);
+}
+
+std::optional<double> Tally::ripe_share() const {
+  if (colored() == 0) return std::nullopt;
+  return static_cast<double>(ripe[4] + ripe[5]) / static_cast<double>(colored());
+}
+
+std::vector<std::string> Overview::rows() const {
+  std::vector<std::string> out;
+  for (const auto& [row, dates] : cells) out.push_back(row);
+  std::sort(out.begin(), out.end(), row_before);
+  return out;
+}
+
+std::vector<std::string> Overview::dates() const {
+  std::set<std::string> out;
+  for (const auto& [row, dates] : cells)
+    for (const auto& [date, tally] : dates) out.insert(date);
+  return {out.begin(), out.end()};
+}
+
+Tally Overview::of_row(const std::string& row) const {
+  Tally sum;
+  if (const auto found = cells.find(row); found != cells.end())
+    for (const auto& [date, tally] : found->second) sum += tally;
+  return sum;
+}
+
+Tally Overview::of_date(const std::string& date) const {
+  Tally sum;
+  for (const auto& [row, dates] : cells)
+    if (const auto found = dates.find(date); found != dates.end()) sum += found->second;
+  return sum;
+}
+
+Tally Overview::all() const {
+  Tally sum;
+  for (const auto& [row, dates] : cells) sum += of_row(row);
+  return sum;
+}
+
+Overview read_overview(const std::string& database) {
+  std::error_code error;
+  if (!std::filesystem::exists(database, error)) throw FileError(database + ": no such file");
+  const Connection connection(database, Connection::Mode::read);
+  Statement id(connection, "PRAGMA application_id");
+  if (!id.step() || id.integer(0) != kApplicationId)
+    throw FileError(database + ": is not a season's database, as `agrisee merge --db` writes it");
+  id.reset();
+  Overview out;
+  std::unordered_map<long long, Tally*> tallies;  // of each scan
+  Statement scans(connection, "SELECT id, status, \"row\", date FROM scans");
+  while (scans.step()) {
+    Tally& tally = out.cells[scans.text(2)][scans.text(3)];
+    ++(scans.text(1) == "ok" ? tally.scans : tally.failed);
+    tallies[scans.integer(0)] = &tally;  // references into a map stay
+  }
+  Statement fruit(connection, "SELECT scan, diameter, mass, ripeness FROM fruit");
+  long long scan = -1;
+  Tally* tally = nullptr;
+  while (fruit.step()) {
+    if (fruit.integer(0) != scan || !tally) {
+      scan = fruit.integer(0);
+      const auto found = tallies.find(scan);
+      if (found == tallies.end()) throw FileError(database + ": has fruit of a scan that it does not have");
+      tally = found->second;
+    }
+    ++tally->fruit;
+    tally->mass += fruit.number(2);
+    if (!fruit.is_null(1)) {
+      ++tally->sized;
+      const double mm = std::clamp(1e3 * fruit.number(1), 0.0, static_cast<double>(Tally::kBins - 1));
+      ++tally->diameters[static_cast<std::size_t>(mm)];
+    }
+    if (!fruit.is_null(3))
+      if (const auto grade = class_of(fruit.text(3))) ++tally->ripe[*grade];
+  }
+  Statement versions(connection, "SELECT DISTINCT version FROM versions ORDER BY version");
+  while (versions.step()) out.versions.push_back(versions.text(0));
+  Statement parameters(connection, "SELECT count(DISTINCT parameters) FROM scans");
+  parameters.step();
+  out.parameter_sets = static_cast<std::size_t>(parameters.integer(0));
+  return out;
+}
+
+}  // namespace agrisee::season

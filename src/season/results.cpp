@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "season/results.hpp"
+
+#include <agrisee/io/files.hpp>
+#include <agrisee/io/fingerprint.hpp>
+
+#include <algorithm>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <system_error>
+
+namespace agrisee::season {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// The groups of the first match, joined by "-".
+std::string groups_of(const std::string& text, const std::regex& pattern) {
+  std::smatch match;
+  if (!std::regex_search(text, match, pattern)) return "";
+  if (match.size() == 1) return match.str(0);
+  std::string out;
+  for (std::size_t i = 1; i < match.size(); ++i)
+    if (match[i].matched) out += (out.empty() ? "" : "-") + match.str(i);
+  return out;
+}
+
+}  // namespace
+
+Place PlaceRules::of(const std::string& path) const { return {groups_of(path, row), groups_of(path, date)}; }
+
+std::vector<fs::path> result_folders(const fs::path& folder) {
+  std::vector<fs::path> out;
+  std::error_code error;
+  if (fs::exists(folder / "run.json", error)) out.push_back(folder);
+  fs::recursive_directory_iterator i(folder, error);
+  for (; !error && i != fs::recursive_directory_iterator(); i.increment(error))
+    if (i->is_directory(error) && fs::exists(i->path() / "run.json", error)) {
+      out.push_back(i->path());
+      i.disable_recursion_pending();  // a result holds no other
+    }
+  if (error) io::fail(folder, error.message());
+  std::sort(out.begin(), out.end());
+  return out;
+}
+
+Scan open_result(const fs::path& folder) {
+  Scan scan;
+  scan.folder = folder;
+  io::Fingerprint print;
+  for (const char* name : {"run.json", "fruits.json", "views.csv"}) print.add(io::read_bytes(folder / name).view());
+  std::ifstream file(folder / "job.json");
+  const nlohmann::json job = nlohmann::json::parse(file, nullptr, false);
+  const auto text = [&](const char* key) {
+    return job.is_object() && job.contains(key) && job[key].is_string() ? job[key].get<std::string>() : std::string();
+  };
+  scan.input = text("input");
+  if (text("status") == "failed") {  // such as a scan that could take no view, whose empty result is written
+    scan.status = "failed";
+    scan.message = text("message");
+  }
+  for (const std::string* part : {&scan.input, &scan.status, &scan.message}) print.add(*part + "\n");
+  scan.content = print.text();
+  return scan;
+}
+
+ResultFiles read_result(const fs::path& folder) {
+  return {io::read_run(folder / "run.json"), io::read_fruits(folder / "fruits.json"),
+          io::read_views(folder / "views.csv")};
+}
+
+}  // namespace agrisee::season

@@ -1,0 +1,258 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Lists that skip what is done, the database of a season, and its page.
+
+  python3 season.py AGRISEE WORKDIR CASE      keyed, interrupted, database or million; exit code 77: built without SQLite
+"""
+import json
+import os
+import random
+import shutil
+import signal
+import sqlite3
+import subprocess
+import sys
+import time
+
+AGRISEE, WORK, CASE = os.path.abspath(sys.argv[1]), os.path.join(sys.argv[2], "season_" + sys.argv[3]), sys.argv[3]
+CASES = {}
+FEW_FILES = ["--no-picture", "--no-report", "--quiet"]
+
+
+def case(function):
+    CASES[function.__name__] = function
+    return function
+
+
+def run(*words, code=0):
+    done = subprocess.run([AGRISEE, *words], capture_output=True, text=True)
+    assert done.returncode == code, (words, done.returncode, done.stdout, done.stderr)
+    return done.stdout + done.stderr
+
+
+def needs_sqlite():
+    if "no SQLite" in run("--version"):
+        assert "without SQLite" in run("season", "s.sqlite", "-o", "s.html", code=1)
+        print("SKIPPED: the database of a season (agrisee was built without SQLite)")
+        sys.exit(77)
+
+
+def ball(path, radius=0.03, seed=1):
+    """A cloud of half a ball."""
+    rng, points = random.Random(seed), []
+    while len(points) < 1500:
+        p = [rng.gauss(0, 1) for _ in range(3)]
+        length = sum(x * x for x in p) ** 0.5
+        if p[1] < 0:
+            points.append([radius * x / length + c for x, c in zip(p, (0, 0.4, 0))])
+    os.makedirs(os.path.dirname(path), exist_ok=True)
+    with open(path, "w", encoding="utf-8") as file:
+        file.write("ply\nformat ascii 1.0\nelement vertex %d\n" % len(points) +
+                   "".join(f"property float {a}\n" for a in "xyz") + "end_header\n" +
+                   "".join("%.5f %.5f %.5f\n" % tuple(p) for p in points))
+
+
+def process(*words, code=0):
+    return run("process", "in/*.ply", "-o", "out", "--viewpoint", "0,0,0", *FEW_FILES, *words, code=code)
+
+
+def made(folder="out"):
+    return {d: os.stat(f"{folder}/{d}/run.json").st_mtime_ns for d in os.listdir(folder)
+            if os.path.exists(f"{folder}/{d}/run.json")}
+
+
+@case
+def keyed():
+    """What has the same content, parameters and version is skipped; all else is done again."""
+    for name in "abc":
+        ball(f"in/{name}.ply")
+    assert "3 inputs, 0 failed" in process()
+    first = made()
+    assert "3 inputs, 3 done before, 0 failed" in process() and made() == first
+    with open("out/summary.csv", encoding="utf-8") as file:
+        assert file.read().count(",ok,1,") == 3
+
+    def redone(folders, *words):
+        before = made()
+        process(*words)
+        after = made()
+        assert sorted(d for d in after if after[d] != before.get(d)) == folders, (folders, before, after)
+
+    ball("in/b.ply", radius=0.025)
+    redone(["b"])
+    redone(["a", "b", "c"], "--seed", "2")
+    redone([], "--seed", "2", "--threads", "1")  # does not change a result
+    with open("p.yaml", "w", encoding="utf-8") as file:
+        file.write("max_views: 7\n")
+    redone(["a", "b", "c"], "--params", "p.yaml")
+    redone([], "--params", "p.yaml")
+    os.remove("out/c/fruits.csv")
+    redone(["c"], "--params", "p.yaml")
+    redone(["a", "b", "c"], "--params", "p.yaml", "--force")
+    ball("in/d.ply")
+    redone(["d"], "--params", "p.yaml")
+    # A result that the list did not make is neither skipped nor overwritten.
+    run("process", "in/a.ply", "-o", "out/a", "--force", *FEW_FILES)
+    assert "out/a: already holds a result" in process("--params", "p.yaml", code=2)
+    shutil.rmtree("out/a")
+    # One that fails leaves no result behind, and is run again.
+    with open("in/b.ply", "w", encoding="utf-8") as file:
+        file.write("ply\ndamaged\n")
+    process("--params", "p.yaml", code=2)
+    assert "b" not in made()
+    ball("in/b.ply")
+    redone(["b"], "--params", "p.yaml")
+
+
+@case
+def interrupted():
+    """A list of scans that is stopped goes on by the same command, with the views that it has."""
+    for n in 1, 2:
+        run("make-truss", "--total", "3", "--hidden", "0", "--seed", str(n), "-o", f"in/t{n}")
+        with open(f"in/t{n}/scene.yaml", encoding="utf-8") as file:
+            text = file.read()
+        with open(f"in/t{n}/scene.yaml", "w", encoding="utf-8") as file:
+            file.write(text.replace("width: 1024", "width: 512").replace("height: 768", "height: 384"))
+    scan = ["scan", "in/*/scene.yaml", "--max-views", "6", "--noise", "rough", *FEW_FILES, "-o"]
+    run(*scan, "whole")
+    process = subprocess.Popen([AGRISEE, *scan, "out"], stderr=subprocess.PIPE, text=True,
+                               preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL))
+    while process.poll() is None and not os.path.exists("out/t1/views/0001.view"):
+        time.sleep(0.002)
+    process.send_signal(signal.SIGINT)
+    error = process.communicate()[1]
+    assert process.returncode == -signal.SIGINT and "stopped; the same command goes on" in error, error
+    with open("out/summary.csv", encoding="utf-8") as file:
+        assert file.read().count(",open,") == 2
+    assert "--unfinished" in run("merge", "--help")
+    first = os.stat("out/t1/views/0000.view").st_mtime_ns
+    assert "2 inputs, 0 failed" in run(*scan, "out")
+    assert os.stat("out/t1/views/0000.view").st_mtime_ns == first, "a view was taken twice"
+    for n in 1, 2:
+        with open(f"out/t{n}/fruits.json", "rb") as a, open(f"whole/t{n}/fruits.json", "rb") as b:
+            assert a.read() == b.read(), "another result"
+    # Shards that were stopped or never started are named.
+    shard = [*scan, "three", "--shard"]
+    run(*shard, "2/3")
+    assert run("merge", "three", "--unfinished") == "1,3\n"
+    assert "summary-1-of-3.csv: is missing" in run("merge", "three", code=2)
+    run(*shard, "1/3")
+    run(*shard, "3/3")
+    assert run("merge", "three", "--unfinished") == ""
+    with open("three/summary-1-of-3.csv", encoding="utf-8") as file:
+        stopped = file.read().replace(",ok,", ",open,")
+    with open("three/summary-1-of-3.csv", "w", encoding="utf-8") as file:
+        file.write(stopped)
+    assert "Run shards 1 again" in run("merge", "three", code=2)
+
+
+@case
+def database():
+    needs_sqlite()
+    for n, name in enumerate(["2026-05-01/row_2/p1", "2026-05-01/row_10/p1", "20260601/row_2/p1"]):
+        ball(f"in/{name}.ply", radius=0.02 + 0.005 * n)
+    with open("in/20260601/row_2/p2.ply", "w", encoding="utf-8") as file:
+        file.write("ply\ndamaged\n")
+    scan = ["process", "in/*/*/*.ply", "-o", "out", "--viewpoint", "0,0,0", *FEW_FILES]
+    run(*scan, code=2)
+    assert "4 scans added, 0 replaced, 0 were there" in run("merge", "out", "--db", "s.sqlite")
+    assert "0 scans added, 0 replaced, 4 were there" in run("merge", "out", "--db", "s.sqlite")
+
+    def ask(question):
+        connection = sqlite3.connect("s.sqlite")
+        try:
+            return connection.execute(question).fetchall()
+        finally:
+            connection.close()
+
+    assert ask('SELECT date, "row", status FROM scans ORDER BY input') == [
+        ("2026-05-01", "10", "ok"), ("2026-05-01", "2", "ok"), ("2026-06-01", "2", "ok"), ("2026-06-01", "2", "failed")]
+    assert "bad PLY header" in ask("SELECT message FROM scans WHERE status = 'failed'")[0][0]
+    for folder, in ask("SELECT folder FROM scans WHERE status = 'ok'"):  # every value is that of the files
+        with open(folder + "/fruits.json", encoding="utf-8") as file:
+            fruits = json.load(file)
+        rows = ask("SELECT fruit.id, x, y, z, diameter, mass, completeness, confidence, found_by FROM fruit "
+                   f"JOIN scans ON scans.id = scan WHERE folder = '{folder}' ORDER BY fruit.id")
+        assert len(fruits) == len(rows) == 1
+        for f, row in zip(fruits, rows):
+            assert row == (f["id"], *f["center_world"], row[4], f["mass"], f["completeness"], f["confidence"],
+                           f["found_by"]) and abs(row[4] - 2 * sum(f["radii"]) / 3) < 1e-12, (f, row)
+        with open(folder + "/run.json", encoding="utf-8") as file:
+            told = json.load(file)
+        got = ask("SELECT version, preset, json, time, seed FROM scans JOIN parameters ON parameters.id = parameters "
+                  f"WHERE folder = '{folder}'")[0]
+        version = ask(f"SELECT version FROM versions WHERE id = {got[0]}")[0][0]
+        assert (version, got[1], got[3], got[4]) == (told["version"], told["preset"], told["time"], str(told["seed"]))
+        assert json.loads(got[2]) == told["parameters"]
+    assert ask("SELECT count(*) FROM parameters") == [(1,)]
+    # What changed is replaced, once; the failure becomes a result.
+    ball("in/20260601/row_2/p2.ply", radius=0.02)
+    ball("in/2026-05-01/row_2/p1.ply", radius=0.03)
+    run(*scan)
+    assert "0 scans added, 2 replaced, 2 were there" in run("merge", "out", "--db", "s.sqlite")
+    assert ask("SELECT count(*), count(DISTINCT scan) FROM fruit") == [(4, 4)]
+    assert ask("SELECT count(*) FROM scans WHERE status != 'ok'") == [(0,)]
+    # Other rules for rows and dates; views of a scan.
+    run("make-truss", "--total", "3", "--hidden", "0", "--seed", "1", "-o", "t")
+    run("scan", "t", "-o", "lone/Block-B", "--max-views", "2", *FEW_FILES)
+    run("merge", "lone", "--db", "s.sqlite", "--row", "Block-([A-Z])")
+    assert ask("SELECT \"row\", date = substr(time, 1, 10), views FROM scans WHERE input = ''") == [("B", 1, 2)]
+    assert ask("SELECT count(*), sum(points_new) > 0 FROM views") == [(2, 1)]
+    page = "s.html"
+    assert "in 5 scans, 0 without a result" in run("season", "s.sqlite", "-o", page)
+    with open(page, encoding="utf-8") as file:
+        text = file.read()
+    for told in "5 scans of 3 rows", "2026-05-01", "<td>10</td>", "2 sets of parameters":
+        assert told in text, (told, text)
+    assert text.index("<td>2</td>") < text.index("<td>10</td>") and "script" not in text
+    assert "use --force" in run("season", "s.sqlite", "-o", page, code=1)
+    assert "is not a regular expression" in run("merge", "out", "--db", "s.sqlite", "--row", "(", code=1)
+    assert "no such file" in run("season", "none.sqlite", "-o", "x.html", code=2)
+    with open("other.sqlite", "w", encoding="utf-8") as file:
+        file.write("nothing" * 200)
+    assert "other.sqlite: " in run("season", "other.sqlite", "-o", "x.html", code=2)
+    sqlite3.connect("foreign.sqlite").execute("CREATE TABLE t (a)").connection.close()
+    assert "database of something else" in run("merge", "out", "--db", "foreign.sqlite", code=2)
+
+
+@case
+def million():
+    """The page of a million fruit, and how fast results go into a database."""
+    needs_sqlite()
+    ball("in/a.ply")
+    run("process", "in/a.ply", "-o", "one", "--viewpoint", "0,0,0", *FEW_FILES)
+    count = 1000
+    for n in range(count):
+        os.makedirs(f"many/r{n}")
+        for name in "run.json", "fruits.json", "views.csv":
+            shutil.copy("one/" + name, f"many/r{n}/{name}")
+    begin = time.time()
+    run("merge", "many", "--db", "s.sqlite")
+    seconds = time.time() - begin
+    print(f"{count / seconds:.0f} results a second")
+    connection = sqlite3.connect("s.sqlite")
+    assert connection.execute("SELECT count(*) FROM fruit").fetchone() == (count,)
+    connection.executescript("""
+        DELETE FROM fruit; DELETE FROM scans;
+        WITH RECURSIVE n(i) AS (SELECT 0 UNION ALL SELECT i + 1 FROM n WHERE i < 49999)
+          INSERT INTO scans(id, folder, content, status, message, input, "row", date)
+          SELECT i + 1, i, '', 'ok', '', '', i % 40 + 1, date('2026-04-01', '+' || (i / 2500 * 7) || ' days') FROM n;
+        WITH RECURSIVE k(j) AS (SELECT 1 UNION ALL SELECT j + 1 FROM k WHERE j < 20)
+          INSERT INTO fruit(scan, id, truss, points, found_by, x, y, z, diameter, mass, ripeness)
+          SELECT s.id, j, 1, 9, 'dbscan', 0, 0, 0, 0.0405 + 0.001 * (j % 20), 0.1, CASE j % 2 WHEN 0 THEN 'green' ELSE 'red' END
+          FROM scans s, k;""")
+    connection.close()
+    begin = time.time()
+    assert "1000000 fruit in 50000 scans" in run("season", "s.sqlite", "-o", "s.html")
+    page = time.time() - begin
+    print(f"page of a million fruit: {page:.2f} s")
+    assert page < 10 and seconds < 20  # some ten times what it takes
+    with open("s.html", encoding="utf-8") as file:
+        text = file.read()
+    row = "<tr><td>2026-04-08</td><td>2&#8239;500</td><td></td><td>50&#8239;000</td><td>20.0</td><td>50.0</td>"
+    assert row in text and "<td>42 to 58</td><td>5000.0</td><td>50</td>" in text, text[:6000]
+
+
+shutil.rmtree(WORK, ignore_errors=True)
+os.makedirs(WORK)
+os.chdir(WORK)
+CASES[CASE]()
