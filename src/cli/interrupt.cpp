@@ -10,6 +10,7 @@ namespace {
 constexpr int kSignals[] = {SIGINT, SIGTERM};
 
 std::string stop_message;  // not changed while a handler is installed
+int living = 0;            // number of StopMessages
 
 /// Print the message and end the process by the same signal, so that a shell sees what ended it.
 extern "C" void on_stop(int signal) {
@@ -22,12 +23,14 @@ extern "C" void on_stop(int signal) {
 }  // namespace
 
 StopMessage::StopMessage(const std::string& message) {
+  if (living++ > 0) return;
   stop_message = "\n" + message + "\n";
   for (const int signal : kSignals)
     if (std::signal(signal, on_stop) == SIG_IGN) std::signal(signal, SIG_IGN);  // as under nohup
 }
 
 StopMessage::~StopMessage() {
+  if (--living > 0) return;
   for (const int signal : kSignals)
     if (std::signal(signal, SIG_DFL) == SIG_IGN) std::signal(signal, SIG_IGN);
 }

@@ -7,7 +7,7 @@
 namespace agrisee::cli {
 
 /// While an object of this class lives, a signal to stop (Ctrl-C, or SIGTERM) prints `message` to stderr before it ends
-/// the process. One at a time.
+/// the process. While several live, the first one's counts: a list of scans knows better how to go on than one of them.
 class StopMessage {
  public:
   explicit StopMessage(const std::string& message);

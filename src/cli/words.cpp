@@ -57,6 +57,17 @@ std::optional<std::string> wrong_word(const CLI::App& app, const std::vector<std
   return unknown("command", *word, commands);
 }
 
+CLI::Validator one_of(const std::vector<std::string>& known) {
+  std::string list;
+  for (const std::string& word : known) list += (list.empty() ? "" : ",") + word;
+  return CLI::Validator(
+      [known, list](std::string& word) {
+        if (std::find(known.begin(), known.end(), word) != known.end()) return std::string();
+        return unknown("value", word, known) + " (one of " + list + ")";
+      },
+      "{" + list + "}", "one of");
+}
+
 CLI::Validator not_negative() {
   return CLI::Validator(
       [](std::string& text) {

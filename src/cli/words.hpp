@@ -14,6 +14,9 @@ namespace agrisee::cli {
 /// @param words the command line without the program's name
 std::optional<std::string> wrong_word(const CLI::App& app, const std::vector<std::string>& words);
 
+/// For an option whose value is one of some words. For any other, the nearest of them is suggested.
+CLI::Validator one_of(const std::vector<std::string>& known);
+
 /// For an option whose value is a whole number, zero or more. (CLI11 takes -1 for the largest number.)
 CLI::Validator not_negative();
 

@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What this program was built from, and how.
+#pragma once
+
+#include <string>
+
+namespace agrisee::cli {
+
+/// What `agrisee --version` prints: "agrisee 0.2.0", then a line each for compiler, sources, libraries and the parts
+/// that are optional. Without a line break at the end.
+std::string version_text();
+
+/// The version of SQLite, without which `merge --db` and `season` say that they are not there; empty without it.
+std::string sqlite_version();
+
+}  // namespace agrisee::cli
