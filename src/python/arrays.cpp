@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "arrays.hpp"
+
+#include <string>
+
+namespace agrisee::python {
+namespace {
+
+bool is_float(const py::array& a) {
+  return a.dtype().kind() == 'f' && (a.itemsize() == sizeof(float) || a.itemsize() == sizeof(double)) &&
+         a.dtype().attr("isnative").cast<bool>();
+}
+
+std::string shape_text(const py::array& a) { return py::str(a.attr("shape")).cast<std::string>(); }
+
+}  // namespace
+
+py::array array_of_rows(const py::handle& argument, const char* name) {
+  const py::array a = py::array::ensure(argument);
+  if (!a) {
+    PyErr_Clear();
+    throw py::type_error(std::string(name) + " must be an N x 3 array, got " +
+                         py::str(py::type::of(argument).attr("__name__")).cast<std::string>());
+  }
+  if (a.size() == 0 && a.ndim() == 1) return py::array_t<float>(py::array::ShapeContainer{0, 3});  // an empty list
+  if (!is_float(a))
+    throw py::type_error(std::string(name) + " must be float32 or float64 in the machine's byte order, got " +
+                         py::str(a.dtype()).cast<std::string>());
+  if (a.ndim() != 2 || a.shape(1) != 3)
+    throw InputError(std::string(name) + " must have the shape (N, 3), got " + shape_text(a));
+  return a;
+}
+
+std::vector<double> numbers_of(const py::handle& argument, std::size_t count, const char* name) {
+  using Numbers = py::array_t<double, py::array::c_style | py::array::forcecast>;
+  const Numbers a = Numbers::ensure(argument);
+  const std::string wanted = std::string(name) + " must be " + std::to_string(count) + " numbers, got ";
+  if (!a) {
+    PyErr_Clear();
+    throw py::type_error(wanted + py::repr(argument).cast<std::string>());
+  }
+  if (a.ndim() != 1 || static_cast<std::size_t>(a.size()) != count)
+    throw InputError(wanted + py::repr(argument).cast<std::string>());
+  const std::vector<double> out(a.data(), a.data() + count);
+  for (const double x : out)
+    if (!std::isfinite(x)) throw InputError(std::string(name) + " must be finite");
+  return out;
+}
+
+py::array of_type(const py::array& rows, const py::array& other) {
+  return rows.itemsize() == other.itemsize() ? rows : py::array(rows.attr("astype")(other.dtype()));
+}
+
+py::array normals_of(const py::handle& argument, const py::array& points, const char* name) {
+  const py::array a = array_of_rows(argument, name);
+  if (a.shape(0) != points.shape(0))
+    throw InputError(std::string(name) + " must have as many rows as points, got " + std::to_string(a.shape(0)) +
+                     " for " + std::to_string(points.shape(0)) + " points");
+  return of_type(a, points);
+}
+
+}  // namespace agrisee::python

@@ -1,0 +1,218 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <agrisee/pipeline.hpp>
+#include <agrisee/sensor/rectify.hpp>
+
+#include <mutex>
+#include <pybind11/stl.h>
+#include <vector>
+
+#include "arrays.hpp"
+#include "bindings.hpp"
+#include "parameters.hpp"
+#include "results.hpp"
+#include "running.hpp"
+#include "workcell.hpp"
+
+namespace agrisee::python {
+namespace {
+
+/// A pipeline, and where its arm stands.
+class Scan {
+ public:
+  Scan(const Workcell& workcell, const Parameters& parameters, PipelineOptions options)
+      : pipeline_(workcell, parameters, std::move(options)), joints_(workcell.start) {}
+
+  /// Call f with the pipeline as interruptible work. @throws std::runtime_error if another call is not over
+  template <typename F>
+  auto run(F&& f) {
+    const std::unique_lock<std::mutex> lock(busy_, std::try_to_lock);
+    if (!lock) throw std::runtime_error("this Pipeline is at work already: use one for each thread");
+    return interruptible([&] { return f(pipeline_); });
+  }
+
+  /// Read from the pipeline. @throws std::runtime_error as run
+  template <typename F>
+  auto read(F&& f) {
+    const std::unique_lock<std::mutex> lock(busy_, std::try_to_lock);
+    if (!lock) throw std::runtime_error("this Pipeline is at work already: use one for each thread");
+    return f(pipeline_);
+  }
+
+  /// Joints from an argument, or where the arm went last (rad).
+  Joints joints_or_last(const py::object& argument) const { return vector_of<6>(argument, "joints").value_or(joints_); }
+  /// The arm has moved.
+  void moved(const std::optional<Joints>& joints) {
+    if (joints) joints_ = *joints;
+  }
+
+ private:
+  Pipeline pipeline_;
+  Joints joints_;
+  std::mutex busy_;
+};
+
+std::unique_ptr<Scan> make_scan(const py::object& workcell, const py::object& parameters, const py::object& planner,
+                                const py::object& reach, std::uint64_t seed, int threads) {
+  Parameters values = parameters_of(parameters);
+  if (!planner.is_none()) {
+    values.planner = text_of(planner, "planner");
+    values.check();
+  }
+  PipelineOptions options;
+  options.reach = reach_of(reach);
+  options.seed = seed;
+  options.threads = threads_of(threads);
+  return std::make_unique<Scan>(workcell_of(workcell), values, std::move(options));
+}
+
+/// z (m) of each pixel: the items of an image times a scale.
+template <typename T>
+std::vector<float> scaled(const py::array& image, double scale) {
+  const auto pixels = py::reinterpret_borrow<py::array_t<T>>(image).template unchecked<2>();
+  std::vector<float> depth;
+  depth.reserve(static_cast<std::size_t>(image.size()));
+  const auto factor = static_cast<float>(scale);
+  for (py::ssize_t v = 0; v < pixels.shape(0); ++v)
+    for (py::ssize_t u = 0; u < pixels.shape(1); ++u) depth.push_back(factor * static_cast<float>(pixels(v, u)));
+  return depth;
+}
+
+/// A depth frame from an H x W array.
+sensor::DepthFrame frame_of(const py::handle& argument, const sensor::Intrinsics& intrinsics, double scale) {
+  if (!py::isinstance<py::array>(argument))
+    throw py::type_error("depth must be an array of float32 or uint16, got " +
+                         py::str(py::type::of(argument).attr("__name__")).cast<std::string>());
+  const auto image = py::reinterpret_borrow<py::array>(argument);
+  const std::string shape = py::str(image.attr("shape")).cast<std::string>();
+  if (image.ndim() != 2 || image.shape(0) != intrinsics.height || image.shape(1) != intrinsics.width)
+    throw InputError("depth must have the shape (" + std::to_string(intrinsics.height) + ", " +
+                     std::to_string(intrinsics.width) + ") of the workcell's camera, got " + shape);
+  check_parameter(std::isfinite(scale) && scale > 0.0, "depth_scale", "positive", scale);
+  sensor::DepthFrame frame;
+  frame.intrinsics = intrinsics;
+  if (py::isinstance<py::array_t<float>>(image))
+    frame.depth = scaled<float>(image, scale);
+  else if (py::isinstance<py::array_t<std::uint16_t>>(image))
+    frame.depth = scaled<std::uint16_t>(image, scale);
+  else
+    throw py::type_error("depth must be float32 or uint16, got " + py::str(image.dtype()).cast<std::string>());
+  return frame;
+}
+
+View observe(Scan& scan, const py::object& depth, const py::object& pose, const py::object& joints, double depth_scale,
+             const std::vector<double>& distortion) {
+  const Pose world_T_optical = pose_of(pose, "pose");
+  const std::optional<Joints> at = vector_of<6>(joints, "joints");
+  const sensor::Intrinsics intrinsics = scan.read([](const Pipeline& p) { return p.workcell().sensor.intrinsics; });
+  const sensor::DepthFrame frame =
+      sensor::rectified(frame_of(depth, intrinsics, depth_scale), sensor::distortion_from(distortion));
+  const View view = scan.run([&](Pipeline& p) { return p.observe(frame, world_T_optical, at); });
+  scan.moved(at);
+  return view;
+}
+
+View observe_points(Scan& scan, const py::object& points, const py::object& pose, const py::object& joints) {
+  const py::array rows = array_of_rows(points, "points");
+  const Pose world_T_optical = pose_of(pose, "pose");
+  const std::optional<Joints> at = vector_of<6>(joints, "joints");
+  const View view = scan.run([&](Pipeline& p) {
+    return with_points(rows, [&](const auto& cloud) { return View(p.observe_points(cloud, world_T_optical, at)); });
+  });
+  scan.moved(at);
+  return view;
+}
+
+std::optional<plan::ReachableView> next_view(Scan& scan, const py::object& joints) {
+  const Joints from = scan.joints_or_last(joints);
+  scan.moved(from);
+  return scan.run([&](Pipeline& p) { return p.next_view(from); });
+}
+
+py::object completeness_of(Scan& scan) {
+  const auto c = scan.read([](const Pipeline& p) { return p.completeness(); });
+  if (!c) return py::none();
+  py::dict out;
+  out["seen"] = c->seen;
+  out["observable"] = c->observable;
+  return std::move(out);
+}
+
+std::string repr(Scan& scan) {
+  return scan.read([](const Pipeline& p) {
+    std::string out = "<Pipeline of " + p.workcell().name + ": " + std::to_string(p.views().size()) + " views, " +
+                      std::to_string(p.merged().size()) + " points";
+    if (p.stop_reason() != StopReason::not_stopped) out += std::string(", ended by ") + to_string(p.stop_reason());
+    return out + ">";
+  });
+}
+
+void bind_calls(py::class_<Scan>& scan) {
+  scan.def("next_view", &next_view, py::arg("joints") = py::none(),
+           "Where to look next, as a ReachableView, or None when the scan is over (stop_reason says why).\n\n"
+           "joints: where the arm stands (six numbers, rad); else where it was at the last observe, or at the start.")
+      .def(
+          "refused", [](Scan& s) { s.read([](Pipeline& p) { return p.refused(), 0; }); },
+          "The arm could not take the view that next_view returned last; ask for another one.")
+      .def("observe", &observe, py::arg("depth"), py::arg("pose"), py::arg("joints") = py::none(),
+           py::arg("depth_scale") = 1.0, py::arg("distortion") = std::vector<double>(),
+           R"(Take in a depth image and return the View as recorded.
+
+depth: H x W, float32 or uint16: z along the optical axis; times depth_scale it is in metres (0.001 for millimetres).
+  Zero, negative, NaN and infinite mean no return.
+pose: 4 x 4, world_T_optical, from where it was really taken.
+joints: six numbers (rad) at that moment, where an arm is known.
+distortion: k1, k2, p1, p2, k3 (or 4, or 8 with k4, k5, k6) of the lens, which is taken out; none for a pinhole.
+
+Raises InputError for a wrong shape, unit or pose; the scan so far is kept.)")
+      .def("observe_points", &observe_points, py::arg("points"), py::arg("pose"), py::arg("joints") = py::none(),
+           "The same for N x 3 points (m, optical frame) in any order.")
+      .def(
+          "result", [](Scan& s) { return shared(s.run([](Pipeline& p) { return p.result(); })); },
+          "Clean, split and locate what has been seen so far, and plan the picking: a ScanResult.");
+}
+
+void bind_state(py::class_<Scan>& scan) {
+  scan.def_property_readonly(
+          "views", [](Scan& s) { return s.read([](Pipeline& p) { return p.views(); }); }, "list of View, taken so far")
+      .def_property_readonly(
+          "candidates", [](Scan& s) { return s.read([](Pipeline& p) { return p.candidates(); }); },
+          "list of ReachableView from which next_view chose last, best first")
+      .def_property_readonly(
+          "points",
+          [](Scan& s) {
+            return s.read([](Pipeline& p) { return owned(std::vector<Eigen::Vector3f>(p.merged().points)); });
+          },
+          "N x 3 float32: the cloud merged so far (m, world), a copy")
+      .def_property_readonly(
+          "stop_reason", [](Scan& s) { return s.read([](Pipeline& p) { return to_string(p.stop_reason()); }); },
+          "why next_view returned None last")
+      .def_property_readonly("completeness", &completeness_of,
+                             "dict of shares of the fruit's surface, seen and observable, as the planner estimates; "
+                             "or None")
+      .def_property_readonly(
+          "warnings", [](Scan& s) { return s.read([](Pipeline& p) { return p.warnings(); }); },
+          "what was put right and should be looked at, in sentences")
+      .def("__repr__", &repr);
+}
+
+}  // namespace
+
+void bind_pipeline(py::module_& m) {
+  py::class_<Scan> scan(
+      m, "Pipeline",
+      "One scan of one truss: observe each frame, ask next_view, move, repeat; then take the result.\n\n"
+      "Calls raise KeyboardInterrupt within 50 ms of Ctrl-C and leave the scan as it was.");
+  scan.def(py::init(&make_scan), py::arg("workcell"), py::arg("parameters") = py::none(),
+           py::arg("planner") = py::none(), py::arg("reach") = py::none(), py::arg("seed") = 0, py::arg("threads") = 0,
+           R"(workcell: Workcell, a dict as of Workcell.from_dict, or the path of a scene file.
+parameters: Parameters, or a dict of them.
+planner: gain, see, fixed or random; else that of the parameters.
+reach: reach(request, joints) -> ReachableView or None, for an arm of your own: whether it can take a ViewRequest from
+  where it stands (six numbers, rad). Called up to gain.candidates times a view, on a thread of the library.
+seed: of the planner's random draws.
+threads: 0 for all processor cores; the result does not depend on it.)");
+  bind_calls(scan);
+  bind_state(scan);
+}
+
+}  // namespace agrisee::python

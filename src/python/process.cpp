@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <agrisee/process.hpp>
+
+#include <pybind11/stl.h>
+
+#include "arrays.hpp"
+#include "bindings.hpp"
+#include "parameters.hpp"
+#include "results.hpp"
+#include "running.hpp"
+
+namespace agrisee::python {
+namespace {
+
+/// What process_arrays is given, converted.
+struct Input {
+  py::array points;
+  std::optional<py::array> normals;
+  std::vector<int> views;  // empty, or one a point
+  Parameters parameters;
+  CloudOrigin origin;
+  int threads = 1;
+};
+
+/// For each point the number of the view that saw it. @throws pybind11::type_error, InputError
+std::vector<int> views_of(const py::object& argument, const py::array& points, std::size_t sensors) {
+  if (argument.is_none()) return {};
+  const auto a = py::array::ensure(argument);
+  if (!a || (a.dtype().kind() != 'i' && a.dtype().kind() != 'u')) {
+    PyErr_Clear();
+    throw py::type_error("views must be an array of whole numbers");
+  }
+  check_input(a.ndim() == 1 && a.shape(0) == points.shape(0), "views must be one number a point");
+  const py::array_t<std::int64_t> numbers(a);
+  std::vector<int> out;
+  for (py::ssize_t i = 0; i < numbers.size(); ++i) {
+    const std::int64_t view = numbers.at(i);
+    if (view < -1 || view >= static_cast<std::int64_t>(sensors))
+      throw InputError("views must be from -1 to " + std::to_string(sensors) + " - 1, the number of sensors, got " +
+                       std::to_string(view));
+    out.push_back(static_cast<int>(view));
+  }
+  return out;
+}
+
+/// The points with their views as a cloud of the library.
+template <typename S>
+Cloud cloud_with_views(const ArrayPoints<S>& rows, const Input& input) {
+  const auto single = [](const std::vector<Vector3<S>>& vectors) {
+    std::vector<Eigen::Vector3f> out(vectors.size());
+    for (std::size_t i = 0; i < vectors.size(); ++i) out[i] = vectors[i].template cast<float>();
+    return out;
+  };
+  Cloud cloud;
+  cloud.points = single(copied(rows));
+  if (input.normals) cloud.normals = single(copied(view_of<S>(*input.normals)));
+  cloud.views = input.views;
+  return cloud;
+}
+
+ScanResult run(const Input& in) {
+  return with_points(in.points, [&](const auto& rows) {
+    using S = scalar_t<std::decay_t<decltype(rows)>>;
+    if (!in.views.empty()) return process(cloud_with_views(rows, in), in.parameters, in.origin, {}, in.threads);
+    if (!in.normals) return process(rows, in.parameters, in.origin, {}, in.threads);
+    return process(ArrayCloud<S>{rows, view_of<S>(*in.normals)}, in.parameters, in.origin, {}, in.threads);
+  });
+}
+
+SharedResult process_arrays(const py::object& points, const py::object& normals, const py::object& viewpoint,
+                            const py::object& radius, const py::object& parameters, int threads, bool check_normals,
+                            bool trust_viewpoint, const py::object& views, const py::object& sensors) {
+  Input in;
+  in.points = array_of_rows(points, "points");
+  if (!normals.is_none()) in.normals = normals_of(normals, in.points);
+  in.parameters = parameters_of(parameters);
+  if (const auto radii = vector_of<2>(radius, "radius")) in.parameters.expect_radii((*radii)[0], (*radii)[1]);
+  in.origin.viewpoint = vector_of<3>(viewpoint, "viewpoint");
+  in.origin.check_normals = check_normals;
+  in.origin.trust_viewpoint = trust_viewpoint;
+  if (views.is_none() != sensors.is_none()) throw InputError("views and sensors belong together: give both or neither");
+  if (!sensors.is_none())
+    with_points(array_of_rows(sensors, "sensors"), [&](const auto& rows) {
+      for (std::size_t i = 0; i < rows.size; ++i) in.origin.sensors.push_back(rows[i].template cast<double>());
+    });
+  in.views = views_of(views, in.points, in.origin.sensors.size());
+  in.threads = threads_of(threads);
+  return shared(interruptible([&] { return run(in); }));
+}
+
+}  // namespace
+
+void bind_process(py::module_& m) {
+  m.def("process", &process_arrays, py::arg("points"), py::arg("normals") = py::none(),
+        py::arg("viewpoint") = py::none(), py::arg("radius") = py::none(), py::arg("parameters") = py::none(),
+        py::arg("threads") = 0, py::kw_only(), py::arg("check_normals") = false, py::arg("trust_viewpoint") = false,
+        py::arg("views") = py::none(), py::arg("sensors") = py::none(),
+        R"(Find the fruit in a cloud: clean, split and locate.
+
+points: N x 3 array of float32 or float64, of any strides, which is read where it is (m, any frame). Rows that are not
+  finite are dropped. Do not change it meanwhile from another thread.
+normals: N x 3 unit normals towards the side that was seen, zero where unknown; estimated where they are missing.
+viewpoint: x, y, z of the sensor (m) if a single view saw all points.
+radius: (smallest, largest) expected radius of a fruit (m).
+parameters: Parameters, or a dict of them.
+threads: 0 for all processor cores; the result does not depend on it.
+check_normals: turn given normals that face away from the viewpoint.
+trust_viewpoint: use the viewpoint although the points speak against it.
+views, sensors: for a cloud of several views: N whole numbers, which view saw each point (-1: not known), and the
+  sensor's position at each view, K x 3 (m).
+
+Returns a ScanResult. Raises ParameterError, InputError (a cloud that cannot be in metres, or was not seen from the
+viewpoint), and KeyboardInterrupt within 50 ms of Ctrl-C. Other Python threads run meanwhile.)");
+}
+
+}  // namespace agrisee::python

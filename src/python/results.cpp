@@ -1,0 +1,318 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "results.hpp"
+
+#include <agrisee/geometry/aabb.hpp>
+#include <agrisee/io/results.hpp>
+#include <agrisee/io/scan_page.hpp>
+#include <agrisee/version.hpp>
+
+#include <cstdio>
+#include <pybind11/stl.h>
+#include <pybind11/stl/filesystem.h>
+
+#include "archive.hpp"
+#include "arrays.hpp"
+#include "bindings.hpp"
+#include "running.hpp"
+#include "workcell.hpp"
+
+namespace agrisee::python {
+namespace {
+
+/// The fruit as list of dicts, with the keys of fruits.json.
+py::list dicts_of(const std::vector<Fruit>& fruits) {
+  return py::module_::import("json").attr("loads")(io::fruits_to_json(fruits));
+}
+
+/// What is appended to the key of a list in a table: the suffixes of fruits.csv.
+std::vector<std::string> suffixes_of(const std::string& key) {
+  if (key.find("orientation") != std::string::npos) return {"_x", "_y", "_z", "_w"};
+  if (key == "radii") return {"_a", "_b", "_c"};
+  return {"_x", "_y", "_z"};
+}
+
+/// A dict of a fruit without lists: the columns of fruits.csv.
+py::dict flat(const py::dict& fruit) {
+  py::dict row;
+  for (const auto& [name, value] : fruit) {
+    const auto key = name.cast<std::string>();
+    if (!py::isinstance<py::list>(value)) {
+      row[name] = value;
+      continue;
+    }
+    const auto list = py::reinterpret_borrow<py::list>(value);
+    if (key == "picking_after") {
+      row[name] = py::str(" ").attr("join")(py::module_::import("builtins").attr("map")(py::type::of(py::str()), list));
+    } else if (key == "pre_grasp_joints") {
+      for (std::size_t i = 0; i < list.size(); ++i) row[py::str("pre_grasp_q" + std::to_string(i + 1))] = list[i];
+    } else if (key == "center_covariance_world") {
+      const char* const axes[] = {"x", "y", "z"};
+      for (std::size_t r = 0; r < 3; ++r)
+        for (std::size_t c = r; c < 3; ++c) row[py::str(key + "_" + axes[r] + axes[c])] = py::list(list[r])[c];
+    } else {
+      const std::vector<std::string> suffixes = suffixes_of(key);
+      for (std::size_t i = 0; i < list.size(); ++i) row[py::str(key + suffixes.at(i))] = list[i];
+    }
+  }
+  return row;
+}
+
+template <typename... T>
+std::string formatted(const char* format, T... values) {
+  char text[200];
+  std::snprintf(text, sizeof text, format, values...);
+  return text;
+}
+
+std::string repr(const Fruit& f) {
+  const Eigen::Vector3d& p = f.position();
+  std::string out = formatted("<Fruit %d at (%.4f, %.4f, %.4f) m", f.id, p.x(), p.y(), p.z());
+  if (f.body) out += formatted(", radius %.1f mm, confidence %.2f", 1e3 * f.body->radii.mean(), f.body->confidence);
+  return out + ", " + std::to_string(f.points) + " points>";
+}
+
+std::string repr(const Body& b) {
+  return formatted("<Body with radii %.1f, %.1f, %.1f mm, volume %.1f ml, completeness %.0f %%>", 1e3 * b.radii[0],
+                   1e3 * b.radii[1], 1e3 * b.radii[2], 1e6 * b.volume, 100 * b.completeness);
+}
+
+std::string repr(const View& v) {
+  const Eigen::Vector3d p = v.world_T_optical.translation();
+  return formatted("<View from (%.3f, %.3f, %.3f) m, %zu points in the scan volume, %zu new%s>", p.x(), p.y(), p.z(),
+                   v.points_in, v.points_new, v.discarded ? ", discarded" : "");
+}
+
+std::string repr(const ScanResult& r) {
+  std::string out =
+      "<ScanResult: " + std::to_string(r.fruits.size()) + " fruit, " + std::to_string(r.cloud.size()) + " points";
+  if (!r.views.empty()) out += ", " + std::to_string(r.views.size()) + " views, ended by " + to_string(r.stop_reason);
+  if (!r.warnings.empty()) out += ", " + std::to_string(r.warnings.size()) + " warnings";
+  return out + formatted(", %.2f s>", r.seconds.total);
+}
+
+template <typename T>
+py::dict dict_of_fields(const T& value) {
+  py::dict out;
+  T::fields(value, [&](const char* name, const auto& field) { out[name] = field; });
+  return out;
+}
+
+/// Pickling by archive.hpp.
+template <typename T, typename Class>
+void bind_pickle(Class& c) {
+  c.def(py::pickle([](const T& value) { return py::bytes(to_bytes(value)); },
+                   [](const py::bytes& bytes) { return from_bytes<T>(bytes); }));
+}
+
+void bind_body(py::module_& m) {
+  py::class_<Body>(m, "Body", "The body of a fruit as an ellipsoid, in world (m).")
+      .def_property_readonly(
+          "center", [](const Body& b) { return b.center; }, "m")
+      .def_property_readonly(
+          "radii", [](const Body& b) { return b.radii; }, "semi-axes (m), largest first")
+      .def_property_readonly(
+          "axes", [](const Body& b) { return b.axes; }, "3 x 3, columns: directions of the semi-axes")
+      .def_property_readonly(
+          "center_covariance", [](const Body& b) { return b.center_covariance; }, "3 x 3 (m2)")
+      .def_readonly("rms", &Body::rms, "root mean square distance of its points from the surface (m)")
+      .def_readonly("completeness", &Body::completeness, "share of its surface that was observed, 0 to 1")
+      .def_readonly("confidence", &Body::confidence, "probability that it is a fruit, 0 to 1")
+      .def_readonly("volume", &Body::volume, "m3")
+      .def_readonly("volume_error", &Body::volume_error, "standard error (m3); 0: not known")
+      .def_readonly("mass", &Body::mass, "kg, by the parameter mass.density")
+      .def_readonly("mass_error", &Body::mass_error, "standard error (kg); 0: not known")
+      .def("__repr__", [](const Body& b) { return repr(b); });
+}
+
+void bind_picking(py::module_& m) {
+  py::class_<Picking>(m, "Picking", "How to pick a fruit.")
+      .def_readonly("order", &Picking::order, "from 1 over all fruit of a result")
+      .def_readonly("reachable", &Picking::reachable, "whether it can be picked")
+      .def_property_readonly(
+          "reason", [](const Picking& p) { return to_string(p.reason); },
+          "'reachable', or why it cannot be picked, as in fruits.json")
+      .def_property_readonly(
+          "direction", [](const Picking& p) { return p.direction; },
+          "unit, from the pre-grasp pose to the centre; zero without a body")
+      .def_property_readonly(
+          "pre_grasp", [](const Picking& p) { return matrix_of(p.world_T_pre_grasp); },
+          "4 x 4 pose of the tool in world, z along the direction")
+      .def_readonly("joints", &Picking::joints, "at the pre-grasp pose (rad), or None")
+      .def_readonly("after", &Picking::after, "ids of the fruit that must be picked first")
+      .def("__repr__", [](const Picking& p) { return formatted("<Picking %d: %s>", p.order, to_string(p.reason)); });
+}
+
+void bind_fruit(py::module_& m) {
+  py::class_<Fruit> fruit(m, "Fruit", "A located fruit, in world (m).");
+  fruit.def_readonly("id", &Fruit::id, "from 1; the label of its points")
+      .def_readonly("truss", &Fruit::truss, "number of the truss that it hangs on, from 1")
+      .def_readonly("points", &Fruit::points, "number of its points")
+      .def_readonly("found_by", &Fruit::found_by, "the method that found it")
+      .def_property_readonly(
+          "position", [](const Fruit& f) { return f.position(); }, "centre of its body, or centroid of its points (m)")
+      .def_property_readonly("position_cluster", &Fruit::position_cluster, "the same in the cluster frame (m)")
+      .def_property_readonly(
+          "pose", [](const Fruit& f) { return matrix_of(f.pose()); },
+          "4 x 4: origin at position, axes of the pose frame (z: growth axis)")
+      .def_property_readonly(
+          "centroid", [](const Fruit& f) { return f.centroid; }, "mean of its points (m)")
+      .def_property_readonly(
+          "centroid_cluster", [](const Fruit& f) { return f.centroid_cluster; }, "the same in the cluster frame (m)")
+      .def_property_readonly(
+          "centroid_pose", [](const Fruit& f) { return matrix_of(f.centroid_pose()); },
+          "4 x 4: origin at centroid, axes as of pose")
+      .def_property_readonly(
+          "sigma", [](const Fruit& f) { return f.sigma; }, "standard deviation of its points along each axis (m)")
+      .def_property_readonly(
+          "orientation", [](const Fruit& f) { return f.orientation; }, "3 x 3 rotation of pose")
+      .def_readonly("body", &Fruit::body, "the ellipsoid, or None")
+      .def_readonly("picking", &Fruit::picking, "how to pick it, or None where that was not planned")
+      .def(
+          "to_dict", [](const Fruit& f) { return py::dict(dicts_of({f})[0]); },
+          "The keys and values of fruits.json (docs/formats.md).")
+      .def("__repr__", [](const Fruit& f) { return repr(f); });
+  bind_pickle<Fruit>(fruit);
+}
+
+void bind_view(py::module_& m) {
+  py::class_<View> view(m, "View", "A view that was taken.");
+  view.def_property_readonly(
+          "pose", [](const View& v) { return matrix_of(v.world_T_optical); },
+          "4 x 4, as reported by the robot: world_T_optical")
+      .def_property_readonly(
+          "target", [](const View& v) { return v.target; }, "observed point on the optical axis (m)")
+      .def_readonly("joints", &View::joints, "rad, or None without an arm")
+      .def_readonly("points_in", &View::points_in, "points returned inside the scan volume")
+      .def_readonly("points_new", &View::points_new, "points that the merged cloud kept")
+      .def_readonly("plan_seconds", &View::plan_seconds, "time it took to choose the view")
+      .def_readonly("discarded", &View::discarded, "it is not part of the map")
+      .def_property_readonly(
+          "discard_reason", [](const View& v) { return to_string(v.discard_reason); },
+          "none, repeated_frame or contradicts_others")
+      .def("__repr__", [](const View& v) { return repr(v); });
+  bind_pickle<View>(view);
+  py::class_<FoundTruss>(m, "Truss", "Fruit that hang close to one another.")
+      .def_readonly("id", &FoundTruss::id, "from 1, from the top down")
+      .def_readonly("fruits", &FoundTruss::fruits, "ids of its fruit, from the top down")
+      .def_property_readonly(
+          "pose", [](const FoundTruss& t) { return matrix_of(t.world_T_truss); },
+          "4 x 4 growth frame in world: z along the fruit, upwards")
+      .def("__repr__",
+           [](const FoundTruss& t) { return formatted("<Truss %d with %zu fruit>", t.id, t.fruits.size()); });
+}
+
+py::object completeness_of(const ScanResult& r) {
+  if (!r.completeness) return py::none();
+  py::dict out;
+  out["seen"] = r.completeness->seen;
+  out["observable"] = r.completeness->observable;
+  return std::move(out);
+}
+
+/// Write a result folder with a report. Without a workcell the report shows the cloud alone.
+void write_files(const ScanResult& result, const std::filesystem::path& folder, const py::object& workcell) {
+  Workcell cell;
+  if (workcell.is_none()) {
+    cell.name = "cloud";
+    cell.scan_volume = bounding_box(result.cloud.points);
+  } else {
+    cell = workcell_of(workcell);
+  }
+  io::RunInfo info;
+  info.scene = cell.name;
+  info.version = AGRISEE_VERSION;
+  info.time = io::utc_now();
+  run_interruptibly([&] {
+    io::write_result(folder, result, info);
+    io::write_scan_page(folder / "report.html", result, cell, info);
+  });
+}
+
+void bind_result(py::module_& m) {
+  using Result = py::class_<ScanResult, SharedResult>;
+  Result result(m, "ScanResult",
+                "What a scan, or the processing of a cloud, leaves behind. Arrays are read-only views that keep the "
+                "result alive.");
+  const auto array = [&](const char* name, auto member, const char* doc) {
+    result.def_property_readonly(
+        name, [member](const py::object& self) { return shown(member(self.cast<const ScanResult&>()), self); }, doc);
+  };
+  array(
+      "points", [](const ScanResult& r) -> const auto& { return r.cloud.points; },
+      "N x 3 float32: the cleaned cloud (m, world)");
+  array(
+      "normals", [](const ScanResult& r) -> const auto& { return r.cloud.normals; },
+      "N x 3 float32: unit normals towards the side that was seen");
+  array(
+      "labels", [](const ScanResult& r) -> const auto& { return r.labels; },
+      "N int32: for each of points the id of its fruit, or 0");
+  array(
+      "point_views", [](const ScanResult& r) -> const auto& { return r.cloud.views; },
+      "N int32: for each of points the view that saw it, or -1");
+  array(
+      "raw_points", [](const ScanResult& r) -> const auto& { return r.raw.points; },
+      "M x 3 float32: the merged cloud before cleaning (m, world)");
+  result.def_readonly("fruits", &ScanResult::fruits, "list of Fruit: truss by truss, each from the top down")
+      .def_readonly("trusses", &ScanResult::trusses, "list of Truss, from the top down")
+      .def_readonly("views", &ScanResult::views, "list of View, in the order in which they were taken")
+      .def_property_readonly(
+          "stop_reason", [](const ScanResult& r) { return to_string(r.stop_reason); }, "why there are no more views")
+      .def_property_readonly(
+          "cluster_origin", [](const ScanResult& r) { return r.cluster_origin; },
+          "origin of the cluster frame (m, world)")
+      .def_property_readonly("completeness", &completeness_of,
+                             "dict of shares of the fruit's surface, seen and observable, as the planner estimates; "
+                             "or None")
+      .def_property_readonly(
+          "seconds", [](const ScanResult& r) { return dict_of_fields(r.seconds); },
+          "dict: seconds of computing per stage")
+      .def_property_readonly(
+          "bodies", [](const ScanResult& r) { return dict_of_fields(r.bodies); },
+          "dict: what became of the round bodies that were proposed")
+      .def_readonly("warnings", &ScanResult::warnings, "what was put right and should be looked at, in sentences")
+      .def_property_readonly(
+          "why_no_fruit", [](const ScanResult& r) { return why_no_fruit(r); },
+          "why there is no fruit, as far as it is known; empty if there is")
+      .def(
+          "to_dicts",
+          [](const ScanResult& r) {
+            py::list rows;
+            for (const auto& fruit : dicts_of(r.fruits)) rows.append(flat(py::reinterpret_borrow<py::dict>(fruit)));
+            return rows;
+          },
+          "A dict a fruit, with the columns of fruits.csv: pandas.DataFrame(result.to_dicts()).")
+      .def("write", &write_files, py::arg("folder"), py::arg("workcell") = py::none(),
+           "Write a result folder (docs/formats.md): clouds, fruits.json, fruits.csv, views.csv, run.json, and "
+           "report.html, which shows the arm if a workcell is given. Parameters and seed are not known to a result, so "
+           "run.json does not have them.")
+      .def("__repr__", [](const ScanResult& r) { return repr(r); });
+  result.def(py::pickle([](const ScanResult& r) { return py::bytes(to_bytes(r)); },
+                        [](const py::bytes& bytes) { return shared(from_bytes<ScanResult>(bytes)); }));
+}
+
+}  // namespace
+
+Pose pose_of(const py::handle& argument, const char* name) {
+  using Numbers = py::array_t<double, py::array::c_style | py::array::forcecast>;
+  const Numbers a = Numbers::ensure(argument);
+  const std::string wanted = std::string(name) + " must be a 4 x 4 matrix";
+  if (!a) {
+    PyErr_Clear();
+    throw py::type_error(wanted + ", got " + py::repr(argument).cast<std::string>());
+  }
+  check_input(a.ndim() == 2 && a.shape(0) == 4 && a.shape(1) == 4, wanted.c_str());
+  Pose pose;
+  pose.matrix() = Eigen::Map<const Eigen::Matrix<double, 4, 4, Eigen::RowMajor>>(a.data());
+  check_input(pose.matrix().row(3) == Eigen::RowVector4d(0, 0, 0, 1), (wanted + " whose last row is 0 0 0 1").c_str());
+  return pose;
+}
+
+void bind_results(py::module_& m) {
+  bind_body(m);
+  bind_picking(m);
+  bind_fruit(m);
+  bind_view(m);
+  bind_result(m);
+}
+
+}  // namespace agrisee::python

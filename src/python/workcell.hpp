@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// @file
+/// Workcells and what an arm is asked and answers, from Python's arguments.
+#pragma once
+
+#include <agrisee/plan/planner.hpp>
+#include <agrisee/workcell.hpp>
+
+#include <pybind11/pybind11.h>
+
+namespace agrisee::python {
+
+namespace py = pybind11;
+
+/// A workcell from an argument: agrisee.Workcell, a dict as of Workcell.from_dict, or the path of a scene file.
+/// @throws pybind11::type_error for another type, FileError for a file, ParameterError for a dict
+Workcell workcell_of(const py::object& argument);
+
+/// A function of Python that answers whether the arm can take a view, as a plan::Reach. It is called with a ViewRequest
+/// and joints (six numbers, rad), on the thread that does the work, and has to return a ReachableView or None.
+/// @throws pybind11::type_error if `function` cannot be called
+plan::Reach reach_of(const py::object& function);
+
+}  // namespace agrisee::python

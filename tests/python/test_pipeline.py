@@ -1,0 +1,202 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Pipeline, Workcell and the simulation."""
+import json
+import os
+import pickle
+
+import agrisee
+import numpy as np
+import pytest
+from test_process import values
+
+
+@pytest.fixture(scope="module")
+def scene(tmp_path_factory):
+    return agrisee.make_truss(tmp_path_factory.mktemp("truss"), total=3, hidden=0, seed=2)
+
+
+@pytest.fixture(scope="module")
+def scanned(scene):
+    return agrisee.scan(scene, noise="l515", seed=1)
+
+
+@pytest.fixture
+def camera(scene):
+    return agrisee.SimulatedCamera(scene, noise="l515", seed=1)
+
+
+def loop(pipeline, camera, most=99, millimetres=False):
+    """The loop of a robot; a view that was taken: (ReachableView, View)."""
+    taken = []
+    while len(taken) < most and (view := pipeline.next_view()) is not None:
+        depth = camera.capture(view.pose)
+        if millimetres:
+            seen = pipeline.observe(np.round(1000 * depth).astype(np.uint16), view.pose, view.joints, depth_scale=0.001)
+        else:
+            seen = pipeline.observe(depth, view.pose, view.joints)
+        taken.append((view, seen))
+    return taken
+
+
+def test_scan_finds_the_fruit(scanned):
+    assert len(scanned.fruits) == 3 and len(scanned.views) > 3
+    assert scanned.stop_reason in ("low_gain", "no_reachable_view", "max_views")
+    assert scanned.fruits[0].picking.order >= 1 and "views, ended by" in repr(scanned)
+    assert 0 < scanned.completeness["seen"] <= 1 and scanned.trusses[0].pose.shape == (4, 4)
+    assert pickle.dumps(pickle.loads(pickle.dumps(scanned))) == pickle.dumps(scanned)
+    assert len(scanned.raw_points) >= len(scanned.points) == len(scanned.point_views)
+
+
+def test_write(scene, scanned, tmp_path):
+    scanned.write(tmp_path / "result", scene)
+    with open(tmp_path / "result" / "fruits.json", encoding="utf-8") as file:
+        assert json.load(file) == [fruit.to_dict() for fruit in scanned.fruits]
+    assert "<html" in (tmp_path / "result" / "report.html").read_text()[:1000]
+    with open(tmp_path / "result" / "run.json", encoding="utf-8") as file:
+        assert json.load(file)["version"] == agrisee.__version__
+    agrisee.process([]).write(tmp_path / "empty")
+    assert os.path.getsize(tmp_path / "empty" / "report.html") > 1000
+    (tmp_path / "file").write_text("")
+    with pytest.raises(agrisee.FileError):
+        scanned.write(tmp_path / "file")
+
+
+def test_own_loop_gives_the_same_result(scene, scanned, camera):
+    pipeline = agrisee.Pipeline(scene, seed=1)
+    taken = loop(pipeline, camera)
+    result = pipeline.result()
+    assert values(result) == values(scanned)
+    assert pipeline.next_view() is None and pipeline.stop_reason == scanned.stop_reason
+    view, seen = taken[0]
+    assert np.array_equal(seen.pose, view.pose) and np.array_equal(seen.joints, view.joints) and seen.points_in > 100
+    assert len(pipeline.views) == len(taken) and len(pipeline.points) > 1000 and pipeline.warnings == []
+    assert "views" in repr(pipeline) and pipeline.completeness["seen"] > 0.3
+    assert pickle.loads(pickle.dumps(seen)).points_in == seen.points_in
+
+
+def test_millimetres(scene, camera):
+    pipeline = agrisee.Pipeline(scene, {"max_views": 3})
+    assert len(loop(pipeline, camera, millimetres=True)) == 3
+    assert len(pipeline.result().fruits) == 3
+
+
+def test_candidates_refusals_and_planners(scene):
+    pipeline = agrisee.Pipeline(scene, planner="random", seed=3)
+    first = pipeline.next_view(joints=pipeline_start(scene))
+    pipeline.refused()
+    second = pipeline.next_view()
+    assert not np.array_equal(first.pose, second.pose)
+    with pytest.raises(agrisee.ParameterError, match="planner must be"):
+        agrisee.Pipeline(scene, planner="best")
+
+
+def pipeline_start(scene):
+    return agrisee.Workcell.from_yaml(scene).start
+
+
+def test_a_reach_in_python(scene, camera):
+    asked = []
+
+    def reach(request, joints):
+        asked.append((request.target, joints))
+        assert np.isclose(np.linalg.norm(request.direction), 1) and request.distance_min <= request.distance
+        if request.direction[1] < 0.3:  # from the front only
+            return None
+        return agrisee.ReachableView(request.pose, request.target, joints=joints + 0.1, move_time=0.5)
+
+    pipeline = agrisee.Pipeline(scene, {"gain": {"candidates": 200}, "max_views": 4}, reach=reach)
+    taken = loop(pipeline, camera)
+    assert len(taken) == 4 and len(asked) > 200
+    assert all(view.pose[1, 2] > 0.29 and view.move_time == 0.5 for view, _ in taken)
+    assert len(pipeline.result().fruits) == 3 and pipeline.result().fruits[0].picking.reason == "not_tested"
+
+
+def test_what_a_reach_raises_is_raised(scene):
+    class Broken(Exception):
+        pass
+
+    def broken(request, joints):
+        raise Broken("no answer")
+
+    pipeline = agrisee.Pipeline(scene, reach=broken)
+    with pytest.raises(Broken, match="no answer"):
+        pipeline.next_view()
+    with pytest.raises(TypeError, match="reach must return agrisee.ReachableView or None, got 3"):
+        agrisee.Pipeline(scene, reach=lambda request, joints: 3).next_view()
+    with pytest.raises(TypeError, match="reach must be a function"):
+        agrisee.Pipeline(scene, reach=3)
+    assert agrisee.Pipeline(scene, reach=lambda request, joints: None).next_view() is None
+
+
+def test_progress(scene, scanned):
+    told = []
+    result = agrisee.scan(scene, noise="l515", seed=1, progress=lambda number, view: told.append((number, view.points_in)))
+    assert told == [(i + 1, view.points_in) for i, view in enumerate(result.views)]
+    assert values(result) == values(scanned)
+
+    def stop(number, view):
+        raise RuntimeError("enough")
+
+    with pytest.raises(RuntimeError, match="enough"):
+        agrisee.scan(scene, progress=stop)
+
+
+def test_a_pipeline_at_work_refuses_other_calls(scene):
+    def reach(request, joints):
+        pipeline.next_view()
+
+    pipeline = agrisee.Pipeline(scene, reach=reach)
+    with pytest.raises(RuntimeError, match="at work already"):
+        pipeline.next_view()
+
+
+def test_bad_frames_are_refused_and_the_scan_goes_on(scene, camera):
+    pipeline = agrisee.Pipeline(scene)
+    view = pipeline.next_view()
+    depth = camera.capture(view.pose)
+    for arguments, error, words in [
+        ((depth[:-1], view.pose), agrisee.InputError, "depth must have the shape (768, 1024) of the workcell's camera, got (767, 1024)"),
+        ((depth.astype(float), view.pose), TypeError, "depth must be float32 or uint16, got float64"),
+        ((depth.tolist(), view.pose), TypeError, "depth must be an array"),
+        ((1000 * depth, view.pose), agrisee.InputError, "is it in millimetres"),
+        ((depth, view.pose[:3]), agrisee.InputError, "pose must be a 4 x 4 matrix"),
+        ((depth, 2 * view.pose), agrisee.InputError, "last row"),
+        ((depth, np.diag([2.0, 2, 2, 1])), agrisee.InputError, "world_T_optical"),
+        ((depth, view.pose, [0, 1]), agrisee.InputError, "joints must be 6 numbers"),
+        ((depth, view.pose, None, -1.0), agrisee.ParameterError, "depth_scale must be positive"),
+    ]:
+        with pytest.raises(error) as caught:
+            pipeline.observe(*arguments)
+        assert words in str(caught.value)
+    assert pipeline.views == []
+    assert pipeline.observe(depth[::-1][::-1], view.pose, view.joints).points_in > 100
+    assert pipeline.observe_points(camera_points(depth, camera), view.pose).points_in > 100
+
+
+def camera_points(depth, camera):
+    k = camera.workcell.intrinsics
+    v, u = np.nonzero(depth)
+    z = depth[v, u]
+    return np.c_[(u - k["cx"]) / k["fx"] * z, (v - k["cy"]) / k["fy"] * z, z]
+
+
+def test_workcells(scene, tmp_path):
+    cell = agrisee.Workcell.from_yaml(scene)
+    assert cell.arm == "ur3" and cell.intrinsics["width"] == 1024 and cell.start.shape == (6,)
+    low, high = cell.scan_volume
+    twin = agrisee.Workcell.from_dict({
+        "robot": {"base": {"xyz": [0, 0, 0], "rpy": [0, 0, 0]}, "start": cell.start},
+        "sensor": {"width": 64, "height": 48, "fx": 50, "fy": 50, "cx": 31.5, "cy": 23.5},
+        "scan_volume": {"min": low, "max": high}})
+    assert np.array_equal(twin.scan_volume[0], low) and twin.intrinsics["width"] == 64 and "ur3" in repr(twin)
+    assert agrisee.Pipeline(twin).next_view() is not None
+    with pytest.raises(agrisee.ParameterError, match="robot.arm"):
+        agrisee.Workcell.from_dict({"robot": {"arm": "ur99", "base": {"xyz": [0, 0, 0], "rpy": [0, 0, 0]}},
+                                    "scan_volume": {"min": low, "max": high}})
+    with pytest.raises(agrisee.ParameterError, match="scan_volume"):
+        agrisee.Workcell.from_dict({"robot": {"base": {"xyz": [0, 0, 0], "rpy": [0, 0, 0]}}})
+    with pytest.raises(agrisee.FileError, match="no such file"):
+        agrisee.Pipeline(tmp_path / "none.yaml")
+    with pytest.raises(TypeError, match="workcell must be"):
+        agrisee.Pipeline(3)
+    assert os.path.samefile(scene, os.path.join(os.path.dirname(scene), "scene.yaml"))
