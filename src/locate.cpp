@@ -31,14 +31,6 @@ double completeness_of(const Cloud& cloud, const Indices& points, const Eigen::V
   return std::min(share, 1.0);
 }
 
-/// The ellipsoid of a body.
-Ellipsoid ellipsoid_of(const Body& body) {
-  Ellipsoid out;
-  out.center = body.center;
-  out.A = body.axes * body.radii.cwiseInverse().asDiagonal() * body.axes.transpose();
-  return out;
-}
-
 /// Take over, as far as it has weight, what a closed surface says of a fruit that is no ellipsoid. The body becomes the
 /// ellipsoid with the surface's center and second moments.
 void take_over(const ClosedSurface& surface, const Ellipsoid& ellipsoid, const MassParameters& mass, Body& body,
@@ -47,8 +39,8 @@ void take_over(const ClosedSurface& surface, const Ellipsoid& ellipsoid, const M
   if (!(w > 0.0)) return;
   const Eigen::Vector3d apart = surface.center - body.center;
   body.center += w * apart;
-  body.center_covariance =
-      v * body.center_covariance + w * surface.center_covariance + v * w * apart * apart.transpose();
+  for (Eigen::Matrix3d* covariance : {&body.center_covariance, &body.center_covariance_by_shape})
+    *covariance = v * *covariance + w * surface.center_covariance + v * w * apart * apart.transpose();
   // positions inside an ellipsoid with the semi-axes a have the variances a^2 / 5
   const Eigen::Matrix3d inside = (ellipsoid.A * ellipsoid.A).inverse() / 5.0;
   const auto pca = principal_axes<double>(body.center, Eigen::Matrix3d(v * inside + w * surface.spread));
@@ -71,6 +63,7 @@ Body body_of(const Cloud& cloud, const Indices& points, const FoundBody& found, 
   body.center = ellipsoid.center;
   std::tie(body.radii, body.axes) = semi_axes(ellipsoid);
   body.center_covariance = found.fit.center_covariance;
+  body.center_covariance_by_shape = found.fit.center_covariance_by_shape;
   body.rms = found.fit.rms;
   const double fit_error = relative_volume_error(cloud, points, ellipsoid, parameters.split.bodies.fit);
   Estimate volume = volume_of(ellipsoid, fit_error, parameters.mass);
@@ -106,7 +99,8 @@ Fruit fruit_of(const Cloud& cloud, const Labels& labels, const Indices& points, 
   return fruit;
 }
 
-/// The closed surface of each found fruit, empty where there is none. Points of no fruit that are on one join it.
+/// The closed surface of each found fruit, empty where there is none, as for bodies by masks, of which few points are
+/// seen. Points of no fruit that are on one join it.
 /// @param members the points of each fruit
 /// @param labels one per point: the fruit's number from 1, or 0
 std::vector<std::optional<ClosedSurface>> closed_surfaces(const Cloud& cloud, const Split& split,
@@ -115,10 +109,12 @@ std::vector<std::optional<ClosedSurface>> closed_surfaces(const Cloud& cloud, co
   std::vector<std::optional<ClosedSurface>> surfaces(members.size());
   if (!parameters.split.fit_bodies) return surfaces;
   for (std::size_t f = 0; f < members.size(); ++f) {
-    if (members[f].empty()) continue;
+    if (members[f].empty() || split.found[f].by_mask) continue;
     const EllipsoidFit& fit = split.found[f].fit;
     const Eigen::Vector3d axis = growth_axis(cloud, split.labels, fit, parameters.axis);
-    surfaces[f] = closed_surface(cloud, members[f], residual(labels), fit.body, axis);
+    ClosedSurfaceParameters closing;
+    closing.noise = std::max(closing.noise, parameters.split.bodies.fit.sensor_noise / fit.body.mean_radius());
+    surfaces[f] = closed_surface(cloud, members[f], residual(labels), fit.body, axis, closing);
     if (!surfaces[f]) continue;
     for (const Index i : surfaces[f]->joined) {
       labels[static_cast<std::size_t>(i)] = static_cast<int>(f) + 1;
@@ -161,6 +157,13 @@ Pose growth_frame(const std::vector<const Fruit*>& fruits) {
 }
 
 }  // namespace
+
+Ellipsoid ellipsoid_of(const Body& body) {
+  Ellipsoid out;
+  out.center = body.center;
+  out.A = body.axes * body.radii.cwiseInverse().asDiagonal() * body.axes.transpose();
+  return out;
+}
 
 std::vector<int> trusses_of(const std::vector<Fruit>& fruits, double truss_gap) {
   std::vector<int> truss(fruits.size(), -1);

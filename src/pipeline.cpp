@@ -2,6 +2,7 @@
 #include <agrisee/core/cancellation.hpp>
 #include <agrisee/core/rigid_pose.hpp>
 #include <agrisee/core/stopwatch.hpp>
+#include <agrisee/fuse/color_prior.hpp>
 #include <agrisee/fuse/free_space.hpp>
 #include <agrisee/fuse/fused_views.hpp>
 #include <agrisee/fuse/merged_views.hpp>
@@ -74,8 +75,15 @@ Pipeline::Pipeline(const Workcell& workcell, const Parameters& parameters, Pipel
   if (!planner_) planner_ = make_planner(workcell_, parameters_, options.seed, threads_);
 }
 
-const View& Pipeline::observe(const sensor::DepthFrame& frame, const Pose& reported,
+const View& Pipeline::observe(sensor::DepthFrame frame, const Pose& world_T_optical,
                               const std::optional<Joints>& joints) {
+  return observe(std::make_shared<const sensor::DepthFrame>(std::move(frame)), world_T_optical, joints);
+}
+
+const View& Pipeline::observe(std::shared_ptr<const sensor::DepthFrame> shared, const Pose& reported,
+                              const std::optional<Joints>& joints) {
+  check_input(shared != nullptr, "observe: there is no frame");
+  const sensor::DepthFrame& frame = *shared;
   const Pose world_T_optical =
       made_rigid(reported, "observe: world_T_optical of view " + std::to_string(views_.size()));
   const View view = begin_view(frame, world_T_optical, joints);
@@ -103,6 +111,13 @@ const View& Pipeline::observe(const sensor::DepthFrame& frame, const Pose& repor
     worst_rounding_ = std::max(worst_rounding_, rigid_error(reported));
   }
   if (!frozen) remember(frame);
+  if (!frozen && (frame.detected || !frame.color.empty())) {
+    if (parameters_.color_prior.enabled && !frame.detected)
+      shared = std::make_shared<const sensor::DepthFrame>(
+          fuse::detected_by_color(frame, parameters_.split.bodies, parameters_.color_prior));
+    detected_[views_.size() - 1] = {std::move(shared), world_T_optical};
+  }
+  timed(seconds_.segment, [&] { read_masks(); });
   timed(seconds_.plan, [&] { planner_->observe(progress(change)); });
   return views_.back();
 }
@@ -141,6 +156,7 @@ ScanResult Pipeline::result() const {
   CloudOrigin origin;
   for (const View& v : views_) origin.sensors.push_back(v.world_T_optical.translation());
   origin.cluster_origin = cluster_origin(workcell_.scan_volume, workcell_.world_T_base.translation());
+  origin.detected = detected_views();
   SeenThrough seen_through;
   if (!map_->images().empty())
     seen_through = [this](const Ellipsoid& body) {
@@ -149,11 +165,12 @@ ScanResult Pipeline::result() const {
   constexpr std::ptrdiff_t kSeveral = 3;
   Parameters parameters = parameters_;
   if (std::count_if(views_.begin(), views_.end(), [](const View& v) { return !v.discarded; }) >= kSeveral)
-    parameters.split = parameters_.scan_split();
+    parameters.split = parameters_.scan_split(), origin.mask_order = fuse::MaskOrder::points_first;
   ScanResult out = process(cloud_, parameters, origin, seen_through, threads_);
   out.raw = raw();
-  center_on_reported_poses(out);
   const double located = out.seconds.locate;
+  timed(out.seconds.locate, [&] { tell_center_errors(out); });
+  center_on_reported_poses(out);
   if (parameters_.picking.enabled) timed(out.seconds.locate, [&] { plan_picking(out); });
   out.views = views_;
   out.stop_reason = stop_reason_;
@@ -162,7 +179,9 @@ ScanResult Pipeline::result() const {
   out.seconds.plan = seconds_.plan;
   out.seconds.fuse = seconds_.fuse;
   out.seconds.filter += seconds_.filter;
-  out.seconds.total += seconds_.plan + seconds_.fuse + seconds_.filter + (out.seconds.locate - located);
+  out.seconds.segment += seconds_.segment;
+  out.seconds.total +=
+      seconds_.plan + seconds_.fuse + seconds_.filter + seconds_.segment + (out.seconds.locate - located);
   return out;
 }
 
@@ -171,6 +190,7 @@ View Pipeline::begin_view(const sensor::DepthFrame& frame, const Pose& world_T_o
                           const std::optional<Joints>& joints) const {
   check(frame);
   sensor::check_depth_unit(frame);
+  if (frame.detected) fuse::instances_of(frame);  // detections that cannot be are refused before anything changes
   View view;
   view.world_T_optical = world_T_optical;
   // The observed point: as far ahead along the optical axis as the middle of the scan volume.
@@ -216,7 +236,49 @@ bool Pipeline::repeats_last_frame(const sensor::DepthFrame& frame) const {
 }
 
 plan::Progress Pipeline::progress(const fuse::Change& change) const {
-  return {cloud_, map_->images(), views_, change.added, change.observed, change.kept ? &*change.kept : nullptr};
+  return {cloud_,
+          map_->images(),
+          views_,
+          change.added,
+          change.observed,
+          change.kept ? &*change.kept : nullptr,
+          masks_.log_odds ? &masks_ : nullptr};
+}
+
+/// The views with masks or colours that are not discarded.
+std::vector<fuse::DetectedView> Pipeline::detected_views() const {
+  std::vector<fuse::DetectedView> out;
+  for (const auto& [number, view] : detected_)
+    if (!views_[number].discarded) out.push_back(view);
+  return out;
+}
+
+/// Bring up to date what masks say: those of a view are read when it is new, or when the map has moved it.
+void Pipeline::read_masks() {
+  if (detected_.empty()) return;
+  const BodyParameters& bodies = parameters_.split.bodies;
+  for (auto& [number, view] : detected_) {
+    if (views_[number].discarded) continue;
+    const Pose pose = map_->images().empty() ? view.world_T_optical : map_->images()[number].world_T_optical;
+    if (view.masks && pose.matrix() == view.world_T_optical.matrix()) continue;
+    view.world_T_optical = pose;
+    if (view.frame->detected) view.masks = fuse::read_masks(view, bodies, parameters_.masks);
+  }
+  masks_ = fuse::mask_evidence(detected_views(), bodies, parameters_.masks, fuse::MaskOrder::points_first);
+}
+
+/// Tell from how far the views disagree how far the centers of the bodies may be off.
+void Pipeline::tell_center_errors(ScanResult& out) const {
+  std::vector<Body*> bodies;
+  std::vector<Ellipsoid> ellipsoids;
+  for (Fruit& f : out.fruits) {
+    if (!f.body || f.found_by == "mask") continue;  // that of a mask's body is of its outlines
+    bodies.push_back(&*f.body);
+    ellipsoids.push_back(ellipsoid_of(*f.body));
+  }
+  const std::vector<Eigen::Matrix3d> errors = map_->center_errors(ellipsoids, parameters_.split.bodies.fit);
+  for (std::size_t i = 0; i < bodies.size(); ++i)
+    if (!errors[i].isZero()) bodies[i]->center_covariance = bodies[i]->center_covariance_by_shape + errors[i];
 }
 
 /// Move the result to where all views together, by their reported poses, put it.

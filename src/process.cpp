@@ -9,6 +9,8 @@
 #include <agrisee/cloud/split.hpp>
 #include <agrisee/cloud/voxel.hpp>
 #include <agrisee/core/stopwatch.hpp>
+#include <agrisee/fuse/color_prior.hpp>
+#include <agrisee/fuse/paint.hpp>
 #include <agrisee/geometry/aabb.hpp>
 #include <agrisee/locate.hpp>
 #include <agrisee/neighbors/grid.hpp>
@@ -19,11 +21,18 @@
 #include <algorithm>
 #include <cmath>
 #include <string>
+#include <utility>
 
 namespace agrisee {
 namespace {
 
 using Normals = std::vector<Eigen::Vector3f>;
+
+/// What the sensor's errors do to a cloud: standard deviations, 0 where they are not known.
+struct CloudNoise {
+  double points = 0.0;   ///< of the points about their own surface (m)
+  double normals = 0.0;  ///< of the angle of their normals (rad), if errors of neighbors are alike
+};
 
 /// Where a point was seen from (m): its view's sensor, or the one viewpoint; empty when that is not known.
 std::optional<Eigen::Vector3d> seen_from(const Cloud& cloud, std::size_t i, const CloudOrigin& origin) {
@@ -43,8 +52,7 @@ double noise_within(const Cloud& cloud, double radius, const BodyParameters& bod
 }
 
 /// Neighborhoods for normals that suit the cloud: wider where it is sparse, and wider again where it is noisy.
-/// @return the standard deviation (m) of the points about their own surface
-double adapt_to_noise(const Cloud& cloud, double spacing, const Parameters& parameters, NormalParameters& normals) {
+CloudNoise adapt_to_noise(const Cloud& cloud, double spacing, const Parameters& parameters, NormalParameters& normals) {
   const BodyParameters& bodies = parameters.split.bodies;
   normals.radius = parameters.normal_reach * spacing;
   const double noise = noise_within(cloud, normals.radius, bodies);
@@ -53,21 +61,20 @@ double adapt_to_noise(const Cloud& cloud, double spacing, const Parameters& para
   normals.radius = std::max(normals.radius, std::min(8.0 * noise, kWidest * bodies.radius_max));
   const double across = std::min(normals.radius / spacing, 20.0);
   normals.max_neighbors = std::max(normals.max_neighbors, static_cast<int>(kPi * across * across));
-  return noise;
+  return {noise, noise / normals.radius};
 }
 
 /// Unit normals for a whole cloud. Each is turned to where its point was seen from; where that is not known, so that
 /// neighbors agree.
-/// @param noise receives the standard deviation (m) of the points about their own surface; 0 if the neighborhoods are
-///   not adapted to the cloud
-Normals estimated_normals(const Cloud& cloud, const Parameters& parameters, const CloudOrigin& origin, double& noise,
-                          int threads) {
+/// @param noise receives that of the cloud, if the neighborhoods are adapted to it
+Normals estimated_normals(const Cloud& cloud, const Parameters& parameters, const CloudOrigin& origin,
+                          CloudNoise& noise, int threads) {
   NormalParameters normals = parameters.normals;
   OrientationParameters orientation;
   bool all_known = true;
   for (std::size_t i = 0; i < cloud.size() && all_known; ++i) all_known = seen_from(cloud, i, origin).has_value();
   const double spacing = parameters.adaptive_normals ? estimate_spacing(cloud) : 0.0;
-  noise = 0.0;
+  noise = {};
   if (spacing > 0.0) {
     noise = adapt_to_noise(cloud, spacing, parameters, normals);
     orientation.max_distance = normals.radius;
@@ -119,14 +126,14 @@ Indices keep_given_normals(Cloud& cloud, const CloudOrigin& origin) {
 
 /// Estimate the normals that a cloud lacks. Where a point's sensor is not known, its normal takes the side of the
 /// nearest normal that came with the cloud.
-/// @param noise as of estimated_normals; 0 if half of the normals, or more, came with the cloud
-void complete_normals(Cloud& cloud, const Parameters& parameters, const CloudOrigin& origin, double& noise,
+/// @param noise as of estimated_normals; zeros if half of the normals, or more, came with the cloud
+void complete_normals(Cloud& cloud, const Parameters& parameters, const CloudOrigin& origin, CloudNoise& noise,
                       int threads) {
-  noise = 0.0;
+  noise = {};
   const Indices known = keep_given_normals(cloud, origin);
   if (known.size() == cloud.size()) return;
   const Normals estimated = estimated_normals(cloud, parameters, origin, noise, threads);
-  if (2 * known.size() > cloud.size()) noise = 0.0;  // a few estimates say little about the rest
+  if (2 * known.size() > cloud.size()) noise = {};  // a few estimates say little about the rest
   const Cloud sure = select(cloud, known);
   const KdTree<float> search(sure);
   Neighbors<float> nearest;
@@ -142,9 +149,8 @@ void complete_normals(Cloud& cloud, const Parameters& parameters, const CloudOri
 }
 
 /// Give every point of a cloud a normal.
-/// @return standard deviation (m) of the points about their own surface; 0 where it is not known
-double provide_normals(Cloud& cloud, const Parameters& parameters, const CloudOrigin& origin, int threads) {
-  double noise = 0.0;
+CloudNoise provide_normals(Cloud& cloud, const Parameters& parameters, const CloudOrigin& origin, int threads) {
+  CloudNoise noise;
   if (cloud.normals.empty())
     cloud.normals = estimated_normals(cloud, parameters, origin, noise, threads);
   else
@@ -242,6 +248,64 @@ void check_side(const Cloud& cloud, const Parameters& parameters, const CloudOri
           *convex >= kLeast, origin, warnings);
 }
 
+/// Without the points of surfaces that are seen at a larger angle of incidence than `max_incidence` (rad), or from
+/// behind: most of them are flying pixels, which trail from the rim of a fruit along the sight lines and would lengthen
+/// it. Only for one viewpoint; where views are merged, the point kept of a place may be the one seen at a slant.
+Cloud without_flying_pixels(Cloud&& cloud, double max_incidence, const CloudOrigin& origin) {
+  if (!has_one_viewpoint(origin) || !(max_incidence < 0.5 * kPi)) return std::move(cloud);
+  const double least = std::cos(max_incidence);
+  Indices kept;
+  for (std::size_t i = 0; i < cloud.size(); ++i) {
+    const Eigen::Vector3d sight = *origin.viewpoint - cloud.points[i].cast<double>();
+    const Eigen::Vector3d normal = cloud.normals[i].cast<double>();
+    if (!(normal.dot(sight) < least * normal.norm() * sight.norm())) kept.push_back(static_cast<Index>(i));
+  }
+  return select(cloud, kept);
+}
+
+/// Without the greenest share of some colours: that of the calyx, which lies on the fruit and is labelled with it.
+std::vector<Rgb> without_calyx(std::vector<Rgb> colors) {
+  constexpr double kCalyx = 0.04;  // of the surface
+  std::vector<std::pair<double, std::size_t>> greens;
+  for (std::size_t i = 0; i < colors.size(); ++i) {
+    const Eigen::Vector3d lab = to_lab(colors[i]);
+    greens.push_back({-std::atan2(lab.z(), lab.y()) * (lab.z() > 0.0), i});  // blue and violet are no green
+  }
+  std::sort(greens.begin(), greens.end());
+  std::vector<Rgb> out;
+  for (std::size_t k = static_cast<std::size_t>(kCalyx * static_cast<double>(colors.size())); k < greens.size(); ++k)
+    out.push_back(colors[greens[k].second]);
+  return out;
+}
+
+/// The measured colours of the skin of a fruit (black: none).
+std::vector<Rgb> skin_colors(const Cloud& cloud, const Labels& labels, int label) {
+  std::vector<Rgb> colors;
+  for (std::size_t i = 0; i < cloud.size(); ++i)
+    if (labels[i] == label && cloud.colors[i] != Rgb{0, 0, 0}) colors.push_back(cloud.colors[i]);
+  return without_calyx(std::move(colors));
+}
+
+/// Share of a fruit's surface that was seen; without a body less than half, as from one side.
+double share_seen(const Fruit& fruit) { return fruit.body ? fruit.body->completeness : 0.3; }
+
+/// How ripe the fruit and trusses of a result are, where its cloud has colours.
+void add_ripeness(ScanResult& result, const RipenessParameters& parameters) {
+  if (result.cloud.colors.empty()) return;
+  for (Fruit& f : result.fruits)
+    f.ripeness = ripeness_of(skin_colors(result.cloud, result.labels, f.id), share_seen(f), parameters);
+  for (FoundTruss& t : result.trusses) {
+    std::vector<Rgb> colors;
+    double seen = 0.0;
+    for (const int id : t.fruits) {
+      const std::vector<Rgb> own = skin_colors(result.cloud, result.labels, id);
+      colors.insert(colors.end(), own.begin(), own.end());
+      seen += share_seen(result.fruits[static_cast<std::size_t>(id - 1)]) / static_cast<double>(t.fruits.size());
+    }
+    t.ripeness = ripeness_of(colors, seen, parameters);
+  }
+}
+
 }  // namespace
 
 void check_origin(const Cloud& cloud, const CloudOrigin& origin) {
@@ -308,20 +372,35 @@ ScanResult process(Cloud&& cloud, const Parameters& parameters, const CloudOrigi
         [&] { result.cloud = select(result.raw, remove_statistical_outliers(result.raw, parameters.sor, threads)); });
 
   // Split: region growing, DBSCAN on the residual, bodies that compete for the points.
-  const double noise = timed(t.normals, [&] { return provide_normals(result.cloud, parameters, origin, threads); });
+  const CloudNoise noise = timed(t.normals, [&] { return provide_normals(result.cloud, parameters, origin, threads); });
   check_side(result.cloud, parameters, origin, result.warnings);
-  SplitParameters fitted = parameters.split;
-  fitted.bodies.fit.sensor_noise = std::max(fitted.bodies.fit.sensor_noise, 4.0 * noise);
+  timed(t.filter,
+        [&] { result.cloud = without_flying_pixels(std::move(result.cloud), parameters.max_incidence, origin); });
+  Parameters fitted = parameters;
+  BodyParameters& bodies = fitted.split.bodies;
+  constexpr double kAlike = 5.0;  // errors of neighbors are alike, so a body that they carry is off by more than one's
+  bodies.fit.sensor_noise = std::max(bodies.fit.sensor_noise, kAlike * noise.points);
+  bodies.normal_noise = std::max(bodies.normal_noise, 1.2 * noise.normals);
   const Split found = timed(t.segment, [&] {
-    return split(result.cloud, fitted,
-                 seen_through ? seen_through : free_space_of(result.cloud, parameters, origin, noise), threads);
+    std::vector<fuse::DetectedView> views = origin.detected;
+    if (parameters.color_prior.enabled)
+      for (fuse::DetectedView& v : views)
+        if (!v.frame->detected && !v.frame->color.empty())
+          v = {fuse::detected_by_color(*v.frame, bodies, parameters.color_prior), v.world_T_optical};
+    const MaskEvidence masks = fuse::mask_evidence(views, bodies, parameters.masks, origin.mask_order);
+    return split(result.cloud, fitted.split,
+                 seen_through ? seen_through : free_space_of(result.cloud, parameters, origin, noise.points), threads,
+                 masks);
   });
   result.bodies = found.bodies;
 
   // Locate: centroids, pose frames, fitted bodies.
-  timed(t.locate,
-        [&] { result.fruits = locate(result.cloud, found, result.cluster_origin, parameters, result.labels); });
+  timed(t.locate, [&] { result.fruits = locate(result.cloud, found, result.cluster_origin, fitted, result.labels); });
   result.trusses = found_trusses(result.fruits);
+  timed(t.locate, [&] {
+    if (result.cloud.colors.empty()) result.cloud.colors = fuse::colors_of(result.cloud, origin.detected);
+    add_ripeness(result, parameters.ripeness);
+  });
   t.total = t.filter + t.normals + t.segment + t.locate;
   return result;
 }
@@ -337,12 +416,15 @@ Cloud thinned(const Cloud& cloud, const Parameters& parameters) {
   const KdTree<float> search(finite);
   if (!(estimate_spacing(finite, search) < 0.9 * separation)) return finite;
   Cloud out = average_in_voxels(finite, separation);
-  if (finite.views.empty()) return out;
+  if (finite.views.empty() && finite.colors.empty() && finite.instances.empty()) return out;
   Neighbors<float> nearest;
-  for (const auto& p : out.points) {
-    if ((out.views.size() & 0xFFF) == 0) throw_if_cancelled();
-    search.knn(p, 1, nearest);
-    out.views.push_back(finite.views[static_cast<std::size_t>(nearest.front().index)]);
+  for (std::size_t i = 0; i < out.size(); ++i) {
+    if ((i & 0xFFF) == 0) throw_if_cancelled();
+    search.knn(out.points[i], 1, nearest);
+    const auto from = static_cast<std::size_t>(nearest.front().index);
+    if (!finite.views.empty()) out.views.push_back(finite.views[from]);
+    if (!finite.colors.empty()) out.colors.push_back(finite.colors[from]);
+    if (!finite.instances.empty()) out.instances.push_back(finite.instances[from]);
   }
   return out;
 }

@@ -13,6 +13,7 @@
 
 namespace agrisee {
 
+struct Ellipsoid;
 struct Split;
 
 /// The origin of the cluster frame {R} in world (m): the corner of the scan volume that is lowest, leftmost and
@@ -31,6 +32,9 @@ std::vector<int> trusses_of(const std::vector<Fruit>& fruits, double truss_gap);
 
 /// The trusses of located fruit, by their `truss`, with their growth frames.
 std::vector<FoundTruss> found_trusses(const std::vector<Fruit>& fruits);
+
+/// The ellipsoid of a located body.
+Ellipsoid ellipsoid_of(const Body& body);
 
 /// The fruit of a segmented cloud, numbered truss by truss, each from the top down; the truss with the highest fruit
 /// comes first.

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <agrisee/cloud/parameters.hpp>
+#include <agrisee/cloud/ripeness.hpp>
 #include <agrisee/core/parameter_range.hpp>
 #include <agrisee/fuse/parameters.hpp>
 #include <agrisee/pick/parameters.hpp>
@@ -31,25 +32,30 @@ struct Parameters {
   int max_views = 20;              ///< largest number of views, for every planner
   bool fuse_surfaces = true;   ///< smooth frames and fuse them as surfels; off: merge raw points, the first one stays
   bool register_views = true;  ///< register each view to what is fused so far (ICP) before it is fused
-  bool filter_each_view = false;  ///< remove outliers after every view, not only at the end; for raw points only
-  bool adaptive_normals = true;   ///< derive the radius of the normals from the cloud's spacing
-  double normal_reach = 3.0;      ///< adaptive: that radius, in spacings of the cloud
+  bool filter_each_view = false;   ///< remove outliers after every view, not only at the end; for raw points only
+  bool adaptive_normals = true;    ///< derive the radius of the normals from the cloud's spacing
+  double normal_reach = 3.0;       ///< adaptive: that radius, in spacings of the cloud
+  double max_incidence = deg(75);  ///< largest angle of incidence (rad) at which points of a cloud from one viewpoint
+                                   ///< were seen; others are dropped. pi/2: none
   bool growth_axis = true;  ///< z of the pose frames points to the calyx; off: to the cloud's highest point, as [1]
   double truss_gap = 1.5;   ///< fruit hang on one truss if the gap between them is at most this many of their radii
   double scan_confidence = 0.3;  ///< a body that several views looked at is taken for a fruit from this probability on,
                                  ///< one of a single cloud from `split.bodies.min_confidence` on
-  sensor::SurfaceParameters surface;          ///< how a surface is reconstructed from each frame
-  fuse::SurfelParameters surfels;             ///< how views are fused
-  IcpParameters icp;                          ///< how views are registered
-  SorParameters sor = SorParameters::wide();  ///< outlier removal, with a std_ratio of 6 instead of the 2 of [1]
-  NormalParameters normals;                   ///< how normals are estimated for clouds without any
-  SplitParameters split;                      ///< which points belong to which fruit
-  GrowthAxisParameters axis;                  ///< how z of the pose frames is found
-  MassParameters mass;                        ///< from volume to mass
-  fuse::FreeSpaceParameters free_space;       ///< when a sight line counts as evidence that something is not there
-  plan::GainPlannerParameters gain;           ///< planner `gain`
-  pick::PickingParameters picking;            ///< how to approach each fruit
-  see::Parameters see;                        ///< planner `see`
+  sensor::SurfaceParameters surface;              ///< how a surface is reconstructed from each frame
+  fuse::SurfelParameters surfels;                 ///< how views are fused
+  IcpParameters icp = IcpParameters::of_views();  ///< how views are registered
+  SorParameters sor = SorParameters::wide();      ///< outlier removal, with a std_ratio of 6 instead of the 2 of [1]
+  NormalParameters normals;                       ///< how normals are estimated for clouds without any
+  SplitParameters split;                          ///< which points belong to which fruit
+  GrowthAxisParameters axis;                      ///< how z of the pose frames is found
+  MassParameters mass;                            ///< from volume to mass
+  fuse::FreeSpaceParameters free_space;           ///< when a sight line counts as evidence that something is not there
+  fuse::MaskParameters masks;                     ///< what the masks of a detector say
+  fuse::ColorPriorParameters color_prior;         ///< what colors say where no detector has looked
+  RipenessParameters ripeness;                    ///< from colours to ripeness
+  plan::GainPlannerParameters gain;               ///< planner `gain`
+  pick::PickingParameters picking;                ///< how to approach each fruit
+  see::Parameters see;                            ///< planner `see`
 
   /// The stages of [1] with its values.
   static Parameters paper() {
@@ -61,6 +67,7 @@ struct Parameters {
     p.register_views = false;
     p.filter_each_view = true;
     p.adaptive_normals = false;
+    p.max_incidence = kPi / 2;
     p.growth_axis = false;
     p.icp = IcpParameters::paper();
     p.sor = SorParameters::paper();
@@ -154,6 +161,7 @@ struct Parameters {
     f("filter_each_view", p.filter_each_view);
     f("adaptive_normals", p.adaptive_normals);
     f("normal_reach", p.normal_reach, Range::positive());
+    f("max_incidence", p.max_incidence, Range::above(0.0).up_to(kPi / 2).in_radians());
     f("growth_axis", p.growth_axis);
     f("truss_gap", p.truss_gap, Range::not_negative());
     f("scan_confidence", p.scan_confidence, Range::between(0.0, 1.0));
@@ -166,6 +174,9 @@ struct Parameters {
     f("axis", p.axis);
     f("mass", p.mass);
     f("free_space", p.free_space);
+    f("masks", p.masks);
+    f("color_prior", p.color_prior);
+    f("ripeness", p.ripeness);
     f("gain", p.gain);
     f("picking", p.picking);
     f("see", p.see);

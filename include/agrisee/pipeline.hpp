@@ -8,6 +8,7 @@
 /// `agrisee::agrisee`.
 #pragma once
 
+#include <agrisee/fuse/masks.hpp>
 #include <agrisee/fuse/views.hpp>
 #include <agrisee/parameters.hpp>
 #include <agrisee/pick/approach.hpp>
@@ -17,6 +18,7 @@
 #include <agrisee/workcell.hpp>
 
 #include <cstdint>
+#include <map>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -53,14 +55,20 @@ class Pipeline {
 
   /// Take in a depth frame that was seen from `world_T_optical` (at `joints`, where an arm is known).
   ///
-  /// A frame without returns inside the scan volume counts as a view that showed nothing. A view is discarded, and
-  /// marked so, if its frame repeats the last one bit for bit (the camera hangs), or if it contradicts what other views
-  /// saw (fuse/fused_views.hpp), because then its pose is wrong.
+  /// A frame with colours, or that a detector has looked at, is kept for the result: move it in, or share it, to avoid
+  /// a copy. What a detector says is given to the planner, too. A frame without returns inside the scan volume counts
+  /// as a view that showed nothing. A view is discarded, and marked so, if its frame repeats the last one bit for bit
+  /// (the camera hangs), or if it contradicts what other views saw (fuse/fused_views.hpp), because then its pose is
+  /// wrong.
   /// @return the view as recorded
   /// @throws InputError for a frame whose size disagrees with its intrinsics or whose depths cannot be in metres
   ///   (sensor::check_depth_unit), or a pose that is not rigid within kRigidTolerance; Cancelled. The scan so far is
   ///   kept.
-  const View& observe(const sensor::DepthFrame& frame, const Pose& world_T_optical,
+  const View& observe(sensor::DepthFrame frame, const Pose& world_T_optical,
+                      const std::optional<Joints>& joints = std::nullopt);
+
+  /// The same for a frame that is shared; it must not be null.
+  const View& observe(std::shared_ptr<const sensor::DepthFrame> frame, const Pose& world_T_optical,
                       const std::optional<Joints>& joints = std::nullopt);
 
   /// The same for unorganised points (m, optical frame), any cloud type.
@@ -95,6 +103,8 @@ class Pipeline {
   Cloud raw() const { return map_->all(); }
   /// What was put right and should be looked at, in sentences: poses whose rotation matrices are rounded.
   std::vector<std::string> warnings() const;
+  /// What the detector's masks of all views so far say; empty where no detector has looked.
+  const MaskEvidence& masks() const { return masks_; }
   /// The workcell of this scan; its poses are rigid.
   const Workcell& workcell() const { return workcell_; }
   /// The parameters of this scan.
@@ -113,6 +123,9 @@ class Pipeline {
   void remember(const sensor::DepthFrame& frame);
   bool repeats_last_frame(const sensor::DepthFrame& frame) const;
   plan::Progress progress(const fuse::Change& change) const;
+  void tell_center_errors(ScanResult& out) const;
+  std::vector<fuse::DetectedView> detected_views() const;
+  void read_masks();
   void center_on_reported_poses(ScanResult& out) const;
   void plan_picking(ScanResult& out) const;
 
@@ -124,8 +137,10 @@ class Pipeline {
   std::unique_ptr<plan::Planner> planner_;
   int threads_;
   std::unique_ptr<fuse::Views> map_;
-  Cloud cloud_;                    // of the map, as of the last view
-  std::vector<float> last_frame_;  // the last that showed anything
+  std::map<std::size_t, fuse::DetectedView> detected_;  // the views with masks or colours, by number
+  MaskEvidence masks_;                                  // what the masks of all views say
+  Cloud cloud_;                                         // of the map, as of the last view
+  std::vector<float> last_frame_;                       // the last that showed anything
   std::vector<View> views_;
   int refusals_ = 0;  // since the last view
   StopReason stop_reason_ = StopReason::not_stopped;

@@ -7,6 +7,7 @@
 #pragma once
 
 #include <agrisee/cloud/seen_through.hpp>
+#include <agrisee/fuse/masks.hpp>
 #include <agrisee/parameters.hpp>
 #include <agrisee/result.hpp>
 
@@ -22,6 +23,10 @@ struct CloudOrigin {
   std::optional<Eigen::Vector3d> viewpoint;  ///< one sensor position (m) for all points, for a cloud of a single view
   bool check_normals = false;                ///< also turn the cloud's own normals where they face away from the sensor
   bool trust_viewpoint = false;              ///< use `viewpoint` although the points speak against it
+  /// Views with masks or colours, and where they were taken: masks propose bodies and change how far bodies are
+  /// believed (fuse/masks.hpp); a cloud without colours takes theirs (fuse/paint.hpp). May be empty.
+  std::vector<fuse::DetectedView> detected = {};
+  fuse::MaskOrder mask_order = fuse::MaskOrder::masks_first;  ///< points first where several views show each fruit
   /// Origin of the cluster frame {R} in world (m); empty: that of the box around the cloud, seen from the origin.
   std::optional<Eigen::Vector3d> cluster_origin;
 };
@@ -92,8 +97,8 @@ ScanResult process(const C& cloud, const Parameters& parameters = {}, const Clou
 /// A ready cloud, thinned to the spacing that fused surfaces have.
 ///
 /// A cloud that is denser than `surfels.separation` is averaged in voxels of that size, which removes noise and saves
-/// time; each mean keeps the view of the point nearest to it. A sparser cloud is returned unchanged. Points that are
-/// not finite are dropped.
+/// time; each mean keeps the view, colour and detection of the point nearest to it. A sparser cloud is returned
+/// unchanged. Points that are not finite are dropped.
 /// @param cloud points (m); normals and views where it has them
 /// @param parameters only `surfels.separation` is used
 /// @throws Cancelled

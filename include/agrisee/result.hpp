@@ -7,6 +7,7 @@
 #include <agrisee/core/body_counts.hpp>
 #include <agrisee/core/cloud.hpp>
 #include <agrisee/core/pose.hpp>
+#include <agrisee/core/ripeness.hpp>
 #include <agrisee/core/stop_reason.hpp>
 
 #include <optional>
@@ -56,6 +57,8 @@ struct Body {
   Eigen::Vector3d radii = Eigen::Vector3d::Zero();              ///< semi-axes (m), largest first
   Eigen::Matrix3d axes = Eigen::Matrix3d::Identity();           ///< columns: directions of the semi-axes, right-handed
   Eigen::Matrix3d center_covariance = Eigen::Matrix3d::Zero();  ///< m2
+  /// The part of it that the unseen side's shape adds; what else there is comes from the sensor (m2).
+  Eigen::Matrix3d center_covariance_by_shape = Eigen::Matrix3d::Zero();
   double rms = 0.0;           ///< root mean square distance of its points from the surface (m)
   double completeness = 0.0;  ///< share of its surface that was observed, 0..1
   double confidence = 0.0;    ///< probability that it is a fruit, 0..1
@@ -128,6 +131,7 @@ struct Fruit {
   Eigen::Matrix3d orientation = Eigen::Matrix3d::Identity();   ///< the pose frame's axes in world
   std::optional<Body> body;                                    ///< where one was fitted
   std::optional<Picking> picking;                              ///< where it was planned (pick/picking.hpp)
+  std::optional<Ripeness> ripeness = {};                       ///< where the cloud has colours
 
   /// Where the fruit is (m, world): the centre of its body where one was fitted, else the centroid of its points.
   const Eigen::Vector3d& position() const { return body ? body->center : centroid; }
@@ -156,6 +160,7 @@ struct FoundTruss {
   /// strung, upwards; where no direction stands out, the mean growth axis of its fruit. x: as near to the x axis of
   /// world as z allows.
   Pose world_T_truss = Pose::Identity();
+  std::optional<Ripeness> ripeness = {};  ///< of the surface of all its fruit, where the cloud has colours
 };
 
 /// How much of the fruit's surface has been seen, and how much the arm can see at all, as the planner estimates it from

@@ -37,9 +37,13 @@ void add_paper_scenes(CLI::App& app, Run& run);
 void add_experiment(CLI::App& app, Run& run);
 void add_limit(CLI::App& app, Run& run);
 void add_merge(CLI::App& app, Run& run);
+void add_season(CLI::App& app, Run& run);
 void add_faults(CLI::App& app, Run& run);
 void add_export_views(CLI::App& app, Run& run);
 void add_parameters(CLI::App& app, Run& run);
+void add_doctor(CLI::App& app, Run& run);
+void add_completion(CLI::App& app, Run& run);
+void add_manual(CLI::App& app, Run& run);
 
 /// Values of --preset.
 std::vector<std::string> preset_choices();
@@ -55,6 +59,7 @@ struct CommonOptions {
   std::uint64_t seed = 0;
   int threads = 0;  ///< 0 = one per core
   bool force = false, json = false, quiet = false, no_report = false, no_picture = false;
+  bool prepared = false;  ///< a list of inputs has prepared the folder
 };
 /// Add these options to a subcommand. @return the option that names the output folder
 CLI::Option* add_common_options(CLI::App& command, CommonOptions& options);
@@ -80,6 +85,9 @@ constexpr const char* kResultFiles[] = {"run.json",    "views.csv",  "cloud.ply"
 /// Check that a folder can take a new result: that it holds none, or that `force` is on.
 /// @throws UsageError, which says how to go on, if it holds a result or an unfinished scan and `force` is off
 void check_output(const std::string& folder, bool force);
+
+/// Whether a folder holds all files of a result that the options ask for.
+bool is_finished(const std::string& folder, const CommonOptions& options);
 
 /// Prepare a folder for a new result. With `force`, an older result is removed, whether it is finished or not.
 /// @throws UsageError as check_output

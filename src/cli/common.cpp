@@ -6,17 +6,21 @@
 #include <agrisee/pipeline.hpp>
 
 #include <algorithm>
+#include <cstdlib>
 #include <filesystem>
 #include <iomanip>
 #include <iostream>
 #include <nlohmann/json.hpp>
 #include <sstream>
+#include <sys/ioctl.h>
 #include <system_error>
 #include <thread>
 #include <unistd.h>
 
 #include "commands.hpp"
 #include "interrupt.hpp"
+#include "io/formats/text.hpp"
+#include "job_record.hpp"
 #include "words.hpp"
 
 namespace agrisee::cli {
@@ -34,7 +38,7 @@ std::vector<std::string> planner_choices() {
 CLI::Option* add_common_options(CLI::App& command, CommonOptions& options) {
   CLI::Option* output = command.add_option("-o,--output", options.output, "folder for the result");
   command.add_option("--preset", options.preset, "initial parameter values")
-      ->check(CLI::IsMember(preset_choices()))
+      ->check(one_of(preset_choices()))
       ->capture_default_str();
   command.add_option("--params", options.parameter_file, "YAML file with parameters to change");
   command
@@ -75,7 +79,8 @@ study::NoiseModel noise_of(const std::string& text) {
   try {
     return study::parse_noise(text);
   } catch (const ParameterError& e) {
-    throw UsageError(e.what());
+    const std::vector<std::string> known{"none", "gaussian", "l515", "azure", "d405", "l515-white", "rough"};
+    throw UsageError(e.what() + io::did_you_mean(text.substr(0, text.find(':')), known));
   }
 }
 
@@ -105,11 +110,19 @@ void check_output(const std::string& folder, bool force) {
       throw UsageError(folder + ": already holds a result (" + name + "); use --force to overwrite it");
 }
 
+bool is_finished(const std::string& folder, const CommonOptions& options) {
+  return std::all_of(std::begin(kResultFiles), std::end(kResultFiles), [&](const std::string& name) {
+    return fs::exists(fs::path(folder) / name) || (options.no_picture && name == kPicture) ||
+           (options.no_report && name == kReport);
+  });
+}
+
 void prepare_output(const std::string& folder, bool force) {
   check_output(folder, force);
   std::error_code error;
   make_folder(folder);
   io::remove_leftovers(folder);
+  remove_job(folder);  // a list must not take the new result for its own
   if (!force) return;
   for (const char* name : kResultFiles) {  // no file of an older result may be mistaken for one of the new result
     const fs::path path = fs::path(folder) / name;
@@ -127,23 +140,37 @@ void write_files(const std::string& folder, const ScanResult& result, const Work
   if (!options.no_picture) io::write_picture(fs::path(folder) / kPicture, result, workcell);
 }
 
+namespace {
+
+/// The width of the terminal that stderr is; 0 if it is none, or one that cannot draw over a line (TERM=dumb).
+std::size_t columns_of_terminal() {
+  const char* const term = std::getenv("TERM");
+  if (!isatty(STDERR_FILENO) || !term || std::string_view(term) == "dumb") return 0;
+  winsize size{};
+  constexpr std::size_t kUsual = 80;
+  return ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 1 ? size.ws_col : kUsual;
+}
+
+}  // namespace
+
 void show_progress(const std::vector<View>& views, std::size_t budget) {
   const View& v = views.back();
   const std::size_t n = views.size();
   const std::string line = std::to_string(n) + "/" + std::to_string(budget) + " views: " + std::to_string(v.points_in) +
                            " points in the scan volume, " + std::to_string(v.points_new) + " new";
-  if (isatty(STDERR_FILENO)) {
-    constexpr std::size_t kWidth = 24;
-    const std::size_t done = std::min(kWidth, kWidth * n / std::max<std::size_t>(1, budget));
-    std::cerr << "\r[" << std::string(done, '#') << std::string(kWidth - done, '.') << "] " << line << "\033[K"
-              << std::flush;
-  } else {
+  const std::size_t columns = columns_of_terminal();
+  if (columns == 0) {
     std::cerr << line << "\n";
+    return;
   }
+  constexpr std::size_t kWidth = 24;
+  const std::size_t done = std::min(kWidth, kWidth * n / std::max<std::size_t>(1, budget));
+  const std::string drawn = "[" + std::string(done, '#') + std::string(kWidth - done, '.') + "] " + line;
+  std::cerr << "\r" << drawn.substr(0, columns - 1) << "\033[K" << std::flush;  // a line that wraps stays behind
 }
 
 void end_progress() {
-  if (isatty(STDERR_FILENO)) std::cerr << "\n";
+  if (columns_of_terminal() > 0) std::cerr << "\n";
 }
 
 namespace {
@@ -175,8 +202,10 @@ std::string summary_text(const ScanResult& result, const std::string& folder) {
   text << std::fixed;
   text << result.fruits.size() << " fruit, " << result.cloud.size() << " points" << views_text(result) << ", "
        << std::setprecision(2) << result.seconds.total << " s of computing\n";
+  const bool colored = !result.cloud.colors.empty();
   if (!result.fruits.empty())
-    text << "  id   points  found by              position x, y, z (m)        radius  seen  axis z (world)\n";
+    text << "  id   points  found by              position x, y, z (m)        radius  seen  axis z (world)"
+         << (colored ? "      ripeness" : "") << "\n";
   for (const Fruit& f : result.fruits) {
     const Eigen::Vector3d& c = f.position();
     const Eigen::Vector3d z = f.orientation.col(2);
@@ -186,7 +215,11 @@ std::string summary_text(const ScanResult& result, const std::string& folder) {
     if (f.body)
       text << std::setprecision(1) << std::setw(9) << 1e3 * f.body->radii.mean() << " mm" << std::setprecision(0)
            << std::setw(4) << 100.0 * f.body->completeness << " %";
-    text << std::setprecision(2) << std::setw(8) << z.x() << std::setw(6) << z.y() << std::setw(6) << z.z() << "\n";
+    text << std::setprecision(2) << std::setw(8) << z.x() << std::setw(6) << z.y() << std::setw(6) << z.z();
+    if (f.ripeness)
+      text << "  " << to_string(f.ripeness->grade) << std::setprecision(0) << " (" << 100.0 * f.ripeness->probability
+           << " %)";
+    text << "\n";
   }
   if (result.fruits.empty()) text << "No fruit: " << why_no_fruit(result) << "\n";
   const std::string discarded = discarded_views(result.views);

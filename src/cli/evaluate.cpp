@@ -6,6 +6,7 @@
 #include <agrisee/io/scene.hpp>
 #include <agrisee/study/evaluate.hpp>
 #include <agrisee/study/limit.hpp>
+#include <agrisee/study/true_ripeness.hpp>
 
 #include <filesystem>
 #include <iomanip>
@@ -79,6 +80,7 @@ Json to_json(const study::Metrics& m) {
     fruit["centroid_error_observable"] = optional(f.centroid_error);
     fruit["centroid_error_seen"] = optional(f.centroid_error_seen);
     fruit["center_error"] = optional(f.center_error);
+    fruit["center_error_normalised"] = optional(f.center_error_normalised);
     fruit["radius_error"] = optional(f.radius_error);
     fruit["semi_axis_error"] = optional(f.semi_axis_error);
     fruit["axis_error"] = optional(f.axis_error);
@@ -86,6 +88,37 @@ Json to_json(const study::Metrics& m) {
     out["fruits"].push_back(std::move(fruit));
   }
   return out;
+}
+
+/// The figures of the ripeness; null where it is not known in truth, or was not found.
+Json ripeness_to_json(const std::vector<study::RipenessMetrics>& fruits) {
+  if (fruits.empty()) return nullptr;
+  const study::RipenessSummary all = study::summarize(fruits);
+  Json out = {{"judged", all.judged},
+              {"right", all.right},
+              {"adjacent", all.adjacent},
+              {"share_error", all.share_error},
+              {"fruits", Json::array()}};
+  for (const study::RipenessMetrics& f : fruits)
+    out["fruits"].push_back({{"id", f.id},
+                             {"real", to_string(f.real)},
+                             {"found", to_string(f.found)},
+                             {"real_share", f.real_share},
+                             {"found_share", f.found_share},
+                             {"probability", f.probability}});
+  return out;
+}
+
+void print(const std::vector<study::RipenessMetrics>& fruits) {
+  if (fruits.empty()) return;
+  const study::RipenessSummary all = study::summarize(fruits);
+  std::cout << std::fixed << std::setprecision(1) << "Ripeness of " << all.judged << " fruit: class right for "
+            << 100.0 * all.right << " %, the next one for " << 100.0 * all.adjacent << " %, ripe share off by "
+            << 100.0 * all.share_error << " % on average\n";
+  for (const study::RipenessMetrics& f : fruits)
+    if (f.off() > 0)
+      std::cout << std::setw(4) << f.id << "  " << to_string(f.real) << " (" << 100.0 * f.real_share << " %) taken for "
+                << to_string(f.found) << " (" << 100.0 * f.found_share << " %)\n";
 }
 
 void print(const study::Metrics& m) {
@@ -140,10 +173,15 @@ int run_evaluate(const EvaluateOptions& options) {
   study::MetricParameters parameters;
   parameters.threshold = options.threshold;
   const study::Metrics metrics = study::evaluate(truth, result, observability.observable, parameters, threads);
-  if (options.json)
-    std::cout << to_json(metrics).dump(2) << "\n";
-  else
+  const auto ripeness = study::judge_ripeness(truth.fruits, metrics, result.fruits);
+  if (options.json) {
+    Json out = to_json(metrics);
+    if (Json judged = ripeness_to_json(ripeness); !judged.is_null()) out["ripeness"] = std::move(judged);
+    std::cout << out.dump(2) << "\n";
+  } else {
     print(metrics);
+    print(ripeness);
+  }
   return kSuccess;
 }
 

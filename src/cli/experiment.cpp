@@ -20,9 +20,11 @@
 #include <sstream>
 
 #include "commands.hpp"
+#include "interrupt.hpp"
 #include "report/experiment_report.hpp"
 #include "report/records.hpp"
 #include "trusses.hpp"
+#include "words.hpp"
 
 namespace agrisee::cli {
 namespace {
@@ -216,6 +218,7 @@ std::vector<std::string> run_cells(std::vector<CellJob>& cells, std::vector<Scen
     cells[i].record = finished<study::CellRecord>(cells[i].path, cells[i].fingerprint, report::read_cell_record);
     if (!cells[i].record) open.push_back(i);
   }
+  const StopMessage message("agrisee: stopped; the same command goes on: cells with a record are not run again");
   std::cerr << cells.size() << " cells, " << open.size() << " of them to run\n";
   const auto start = std::chrono::steady_clock::now();
   std::mutex mutex;
@@ -317,12 +320,12 @@ void add_experiment(CLI::App& app, Run& run) {
       ->required();
   command->add_option("--presets", options->presets, "presets to compare")
       ->delimiter(',')
-      ->check(CLI::IsMember(preset_choices()))
+      ->check(one_of(preset_choices()))
       ->capture_default_str();
   command->add_option("--planner", options->planners, "planners (default: that of each preset)")
       ->delimiter(',')
-      ->check(CLI::IsMember(planner_choices()));
-  command->add_option("--noise", options->noises, "noise models: none, gaussian:SIGMA (m), l515, rough")
+      ->check(one_of(planner_choices()));
+  command->add_option("--noise", options->noises, std::string("noise models: ") + study::kNoiseNames)
       ->delimiter(',')
       ->capture_default_str();
   command

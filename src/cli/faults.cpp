@@ -16,6 +16,7 @@
 #include "commands.hpp"
 #include "report/fault_report.hpp"
 #include "trusses.hpp"
+#include "words.hpp"
 
 namespace agrisee::cli {
 namespace {
@@ -150,16 +151,16 @@ void add_faults(CLI::App& app, Run& run) {
       ->required();
   command->add_option("--kinds", options->kinds, "kinds of fault: any (all of them mixed), or single kinds")
       ->delimiter(',')
-      ->check(CLI::IsMember(kind_names()))
+      ->check(one_of(kind_names()))
       ->capture_default_str();
   command->add_option("--rates", options->rates, "shares of the views that go wrong")
       ->delimiter(',')
       ->check(CLI::Range(0.0, 1.0))
       ->capture_default_str();
-  command->add_option("--noise", options->noise, "noise model of the sensor: none, gaussian:SIGMA (m), l515 or rough")
+  command->add_option("--noise", options->noise, std::string("noise model of the sensor: ") + study::kNoiseNames)
       ->capture_default_str();
   command->add_option("--preset", options->preset, "parameter values")
-      ->check(CLI::IsMember(preset_choices()))
+      ->check(one_of(preset_choices()))
       ->capture_default_str();
   command
       ->add_option("--scenes", options->scenes,

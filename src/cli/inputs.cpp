@@ -56,6 +56,7 @@ Kind input_kind_of(const std::string& input) {
   std::error_code error;
   if (!fs::is_regular_file(input, error)) return Kind::unknown;
   if (ends(input, {".yaml", ".yml"})) return kind_of_yaml(input);
+  if (is_mcap(input)) return Kind::recording;
   return ends(input, {".ply", ".pcd", ".npy", ".xyz", ".csv"}) ? Kind::cloud : Kind::unknown;
 }
 
@@ -65,7 +66,7 @@ const char* text_of(Kind kind) {
     case Kind::scene:
       return "a scene, which `agrisee scan` takes";
     case Kind::recording:
-      return "a list of recorded views (views.yaml), which `agrisee process` takes";
+      return "a list of recorded views (views.yaml or MCAP), which `agrisee process` takes";
     case Kind::cloud:
       return "a point cloud, which `agrisee process` takes";
     case Kind::scan:
@@ -140,7 +141,9 @@ std::string scene_file(const std::string& input) { return file_of(input, Kind::s
 
 std::string recording_file(const std::string& input) { return file_of(input, Kind::recording, "views.yaml"); }
 
-bool is_recording(const std::string& input) { return is_folder(input) || ends(input, {".yaml", ".yml"}); }
+bool is_mcap(const std::string& input) { return ends(input, {".mcap"}); }
+
+bool is_recording(const std::string& input) { return is_folder(input) || ends(input, {".yaml", ".yml", ".mcap"}); }
 
 std::string name_of(const std::string& input) {
   return input == "-" ? "standard input" : fs::path(input).filename().string();

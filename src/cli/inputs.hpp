@@ -12,7 +12,7 @@ namespace agrisee::cli {
 /// What an input may be.
 enum class Kind {
   scene,      ///< scene.yaml, or a folder with it
-  recording,  ///< views.yaml, or a folder with it
+  recording,  ///< views.yaml, a folder with it, or an MCAP file
   cloud,      ///< a file with points
   scan,       ///< the result folder of a scan
   processed,  ///< any other result folder
@@ -29,8 +29,11 @@ std::string scene_file(const std::string& input);
 /// views.yaml that an input names: it, or that in it. @throws FileError if it is something else
 std::string recording_file(const std::string& input);
 
-/// Whether an input is a recording of views (views.yaml, or a folder with it) and not a cloud.
+/// Whether an input is a recording of views (views.yaml, a folder with it, or an MCAP file) and not a cloud.
 bool is_recording(const std::string& input);
+
+/// Whether an input is an MCAP file, by its name.
+bool is_mcap(const std::string& input);
 
 /// The name of an input in messages and in run.json: that of its file, or "standard input" for `-`.
 std::string name_of(const std::string& input);

@@ -1,17 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <agrisee/version.hpp>
-
 #include <csignal>
 #include <iostream>
 
 #include "commands.hpp"
+#include "version.hpp"
 #include "words.hpp"
 
 int main(int argc, char** argv) {
   using namespace agrisee;
   std::signal(SIGXFSZ, SIG_IGN);  // a write beyond the limit on file sizes then fails with an error, not a signal
   CLI::App app{"AgriSEE: scan a truss, find every fruit, and tell where it is."};
-  app.set_version_flag("--version", std::string("agrisee ") + AGRISEE_VERSION);
+  app.set_version_flag("--version", cli::version_text, "print the version and how it was built");
   app.require_subcommand(1);
   const auto complaint = [](const std::string& what) {
     return "agrisee: " + what + "\nRun with --help for more information.\n";
@@ -41,8 +40,12 @@ int main(int argc, char** argv) {
   cli::add_limit(app, run);
   cli::add_faults(app, run);
   cli::add_merge(app, run);
+  cli::add_season(app, run);
   cli::add_export_views(app, run);
   cli::add_parameters(app, run);
+  cli::add_doctor(app, run);
+  cli::add_completion(app, run);
+  cli::add_manual(app, run);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& e) {

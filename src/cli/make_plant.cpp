@@ -72,7 +72,7 @@ void add_make_plant(CLI::App& app, Run& run) {
   auto options = std::make_shared<PlantOptions>();
   study::PlantParameters& plant = options->plant;
   const std::vector<std::string> kinds(study::kPlantKinds.begin(), study::kPlantKinds.end());
-  command->add_option("--kind", plant.kind, "what grows on it")->check(CLI::IsMember(kinds))->capture_default_str();
+  command->add_option("--kind", plant.kind, "what grows on it")->check(one_of(kinds))->capture_default_str();
   command
       ->add_option("--total", options->total,
                    "number of fruit, at most 12 for each truss; by default, as usual for the kind")

@@ -11,6 +11,7 @@
 
 #include "commands.hpp"
 #include "io/formats/text.hpp"
+#include "words.hpp"
 
 namespace agrisee::cli {
 
@@ -93,7 +94,7 @@ void add_parameters(CLI::App& app, Run& run) {
   auto* command = app.add_subcommand("parameters", "print a parameter file with every key, its default and meaning");
   auto options = std::make_shared<ParameterOptions>();
   command->add_option("--preset", options->preset, "whose values to print")
-      ->check(CLI::IsMember(preset_choices()))
+      ->check(one_of(preset_choices()))
       ->capture_default_str();
   command->footer("Example:\n  agrisee parameters > my.yaml");
   command->callback([options, &run] { run = [options] { return run_parameters(*options); }; });

@@ -1,8 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // agrisee process: locates the fruit in a cloud, or in the views of a camera, from another source.
+#include <agrisee/io/depth_image.hpp>
+#include <agrisee/io/detections.hpp>
+#include <agrisee/io/fingerprint.hpp>
 #include <agrisee/io/parameters.hpp>
+#include <agrisee/io/recorded_views.hpp>
 #include <agrisee/io/results.hpp>
 #include <agrisee/process.hpp>
+#include <agrisee/sensor/rectify.hpp>
 #include <agrisee/version.hpp>
 
 #include <filesystem>
@@ -11,6 +16,7 @@
 
 #include "commands.hpp"
 #include "inputs.hpp"
+#include "job_record.hpp"
 #include "many.hpp"
 #include "recorded.hpp"
 
@@ -22,6 +28,11 @@ struct ProcessOptions : CommonOptions {
   std::string cloud, views, shard;
   std::vector<double> viewpoint;
   bool turn_normals = false;
+  std::string depth, color, masks, boxes;  // files of a single depth image
+  std::vector<double> intrinsics;          // fx, fy, cx, cy
+  std::vector<double> distortion;          // k1, k2, p1, p2, k3, k4, k5, k6; empty: none
+  double depth_scale = 0.0;                // m per unit; 0: the default
+  io::McapChoice mcap;
 };
 
 /// What is known about where the points of a cloud were seen from. @throws FileError if views are missing
@@ -101,21 +112,168 @@ Processed process_cloud(const ProcessOptions& options, const Parameters& paramet
   return out;
 }
 
+/// The depth image of --depth with its channels. @throws FileError, UsageError
+sensor::DepthFrame frame_of(const ProcessOptions& options) {
+  const io::DepthImage image = io::read_depth_image(options.depth);
+  sensor::Intrinsics k;
+  k.width = image.width;
+  k.height = image.height;
+  k.fx = options.intrinsics[0];
+  k.fy = options.intrinsics[1];
+  k.cx = options.intrinsics[2];
+  k.cy = options.intrinsics[3];
+  if (!(k.fx > 0.0 && k.fy > 0.0)) throw UsageError("--intrinsics: fx and fy have to be above 0 (pixels)");
+  if (!(k.cx >= -0.5 && k.cx <= k.width - 0.5 && k.cy >= -0.5 && k.cy <= k.height - 0.5))
+    throw FileError(options.depth + ": has " + std::to_string(k.width) + " x " + std::to_string(k.height) +
+                    " pixels, so the principal point cx,cy of --intrinsics lies outside of it");
+  const double scale = options.depth_scale > 0.0 ? options.depth_scale : io::default_depth_scale(image);
+  sensor::DepthFrame frame = io::to_frame(image, k, scale);
+  try {
+    sensor::check_depth_unit(frame);
+  } catch (const InputError& e) {
+    throw FileError(options.depth + ": " + e.what() + " (--depth-scale)");
+  }
+  io::add_channels(frame, {options.color, options.masks, options.boxes});
+  try {
+    return sensor::rectified(frame, sensor::distortion_from(options.distortion));
+  } catch (const InputError& e) {
+    throw UsageError("--distortion: " + std::string(e.what()));
+  }
+}
+
+/// The points of a frame (m, optical frame) with the colours and detections of their pixels.
+Cloud points_of(const sensor::DepthFrame& frame) {
+  Cloud cloud;
+  for (int v = 0; v < frame.intrinsics.height; ++v)
+    for (int u = 0; u < frame.intrinsics.width; ++u) {
+      if (!sensor::DepthFrame::valid(frame.at(u, v))) continue;
+      const std::size_t pixel = frame.intrinsics.index(u, v);
+      cloud.points.push_back(frame.point(u, v));
+      if (!frame.color.empty()) cloud.colors.push_back(frame.color[pixel]);
+      if (!frame.instances.empty()) cloud.instances.push_back(frame.instances[pixel]);
+    }
+  return cloud;
+}
+
+/// Process a single depth image; the frame of the result is the camera's optical frame.
+Processed process_frame(const ProcessOptions& options, const Parameters& parameters) {
+  sensor::DepthFrame frame = frame_of(options);
+  const Cloud all = points_of(frame);
+  CloudOrigin origin;
+  origin.viewpoint = Eigen::Vector3d::Zero();
+  origin.trust_viewpoint = true;
+  if (frame.detected || !frame.color.empty()) origin.detected.push_back({std::move(frame), Pose::Identity()});
+  const Cloud cloud = parameters.fuse_surfaces ? thinned(all, parameters) : all;
+  Processed out;
+  out.workcell.name = name_of(options.depth);
+  out.workcell.scan_volume = bounding_box(cloud.points);
+  try {
+    out.result = process(cloud, parameters, origin, {}, threads_of(options.threads));
+  } catch (const InputError& e) {
+    throw FileError(options.depth + ": " + e.what());
+  }
+  return out;
+}
+
+/// Refuse options that do not go together. @throws UsageError
+void check_input_options(const ProcessOptions& options) {
+  const bool image = !options.depth.empty();
+  if (!image && options.cloud.empty()) throw UsageError("an input is needed: a cloud, views.yaml, or --depth");
+  if (image && !options.cloud.empty()) throw UsageError("give either an input or --depth, not both");
+  if (!image) return;
+  if (!(options.views.empty() && options.viewpoint.empty()))
+    throw UsageError("--depth: the image was seen from its own origin, so leave out --views and --viewpoint");
+  if (options.intrinsics.empty()) throw UsageError("--depth needs --intrinsics fx,fy,cx,cy");
+}
+
+/// Append all files of recorded views to a fingerprint.
+void add_recording(io::Fingerprint& print, const std::string& path) {
+  add_file(print, path);
+  if (is_mcap(path)) return;
+  const io::RecordedViews recorded = io::read_recorded_views(path);
+  for (const io::RecordedView& view : recorded.views)
+    for (const std::filesystem::path& image :
+         {view.depth, view.channels.color, view.channels.masks, view.channels.boxes}) {
+      if (image.empty()) continue;
+      add_file(print, recorded.folder / image);
+      if (image != view.channels.masks) continue;
+      for (const char* extension : {".json", ".csv"}) {  // classes and scores beside a label image
+        const auto beside = (recorded.folder / image).replace_extension(extension);
+        if (std::filesystem::exists(beside)) add_file(print, beside);
+      }
+    }
+}
+
+/// Fingerprint of all that changes the result of an input: version, files, parameters, where it was seen from. Empty
+/// for what can be read only once, such as a pipe.
+std::string key_of(const ProcessOptions& options, const std::string& input) {
+  const bool recording = is_recording(input);
+  if (!recording && std::filesystem::exists(input) && !std::filesystem::is_regular_file(input)) return "";
+  if (input == "-") return "";
+  io::Fingerprint print;
+  print.add("process\n" AGRISEE_VERSION "\n" + io::parameters_to_json(parameters_of(options)) + "\n" +
+            std::to_string(options.seed) + (options.turn_normals ? " turned" : "") + "\n" + options.mcap.topic + "\n" +
+            options.mcap.world_frame + "\n");
+  for (const double x : options.viewpoint) print.add(&x, sizeof x);
+  if (!options.views.empty()) add_file(print, options.views);
+  if (recording)
+    add_recording(print, recording_file(input));
+  else
+    add_file(print, input);
+  return print.text();
+}
+
 int run_process(const ProcessOptions& options) {
+  check_input_options(options);
   const Parameters parameters = parameters_of(options);
   parameters.check();
   check_input_is_kept(options);
-  check_output(options.output, options.force);
-  const bool recording = is_recording(options.cloud);
+  if (!options.prepared) check_output(options.output, options.force);
+  const bool recording = options.depth.empty() && is_recording(options.cloud);
   if (recording && !(options.views.empty() && options.viewpoint.empty()))
     throw FileError(options.cloud + ": states where its views were seen from, so leave out --views and --viewpoint");
-  const Processed done = recording ? process_recording(recording_file(options.cloud), options, parameters)
-                                   : process_cloud(options, parameters);
-  prepare_output(options.output, options.force);
+  const Processed done = !options.depth.empty() ? process_frame(options, parameters)
+                         : recording
+                             ? process_recording(recording_file(options.cloud), options, parameters, options.mcap)
+                             : process_cloud(options, parameters);
+  if (!options.prepared) prepare_output(options.output, options.force);
   write_files(options.output, done.result, done.workcell, run_info(options, parameters, done.workcell.name), options,
               done.history);
   print_summary(done.result, options.output, options);
   return kSuccess;
+}
+
+/// Add --depth and the options that belong to it.
+void add_image_options(CLI::App& command, ProcessOptions& options) {
+  auto* depth =
+      command.add_option("--depth", options.depth,
+                         "instead of an input: a depth image (PNG with 16 bits, or NPY); the result is in its "
+                         "optical frame (z forward, x right, y down)");
+  command.add_option("--intrinsics", options.intrinsics, "fx,fy,cx,cy of the depth image (pixels)")
+      ->delimiter(',')
+      ->expected(4)
+      ->needs(depth);
+  command
+      .add_option("--distortion", options.distortion,
+                  "k1,k2,p1,p2,k3 (or 4, or 8 with k4,k5,k6) of the lens, which is then taken out; none by default")
+      ->delimiter(',')
+      ->expected(4, 8)
+      ->needs(depth);
+  command
+      .add_option("--depth-scale", options.depth_scale,
+                  "metres per unit of the depth image (0.001 for whole numbers, 1 for floats)")
+      ->check(CLI::PositiveNumber)
+      ->needs(depth);
+  command.add_option("--color", options.color, "colour image (PNG) registered to the depth image")->needs(depth);
+  command
+      .add_option("--masks", options.masks,
+                  "label image (PNG): the instance of each pixel, 0 = none; classes and scores in a file beside it, of "
+                  "the same name but .json or .csv")
+      ->needs(depth);
+  command
+      .add_option("--boxes", options.boxes,
+                  "boxes of a detector (JSON or CSV): instance, class, score, u, v, width, height")
+      ->needs(depth);
 }
 
 }  // namespace
@@ -123,12 +281,12 @@ int run_process(const ProcessOptions& options) {
 void add_process(CLI::App& app, Run& run) {
   auto* command = app.add_subcommand("process", "locate the fruit in a cloud, or in recorded depth images");
   auto options = std::make_shared<ProcessOptions>();
-  command
-      ->add_option("input", options->clouds,
-                   "cloud (PLY, PCD, NPY, XYZ, CSV; metres; - for standard input), or views.yaml, or a folder with it, "
-                   "which names depth images and camera poses; with several, or a pattern, each gets its own folder in "
-                   "the output folder")
-      ->required();
+  command->add_option(
+      "input", options->clouds,
+      "cloud (PLY, PCD, NPY, XYZ, CSV; metres; - for standard input), or views.yaml, or a folder with it, "
+      "which names depth images and camera poses, or a recording of ROS 2 (MCAP); with several, or a pattern, each "
+      "gets its own folder in "
+      "the output folder");
   add_common_options(*command, *options)->required();
   command
       ->add_option("--viewpoint", options->viewpoint,
@@ -142,6 +300,11 @@ void add_process(CLI::App& app, Run& run) {
       ->add_option("--views", options->views,
                    "views.csv with the sensor poses that the property 'view' of the points refers to")
       ->excludes("--viewpoint");
+  add_image_options(*command, *options);
+  command->add_option("--topic", options->mcap.topic,
+                      "topic of the depth images in an MCAP file (default: the only one)");
+  command->add_option("--world-frame", options->mcap.world_frame,
+                      "frame of the result, for an MCAP file (default: world, base_link, or the root of tf)");
   add_shard_option(*command, options->shard);
   command->footer(
       "Normals in the file are kept; those that face away from the view of their point are turned. Missing normals\n"
@@ -151,18 +314,24 @@ void add_process(CLI::App& app, Run& run) {
       "Examples:\n"
       "  agrisee process cloud.ply -o result\n"
       "  agrisee process recorded/views.yaml -o result\n"
+      "  agrisee process recorded.mcap -o result --topic /camera/depth/image_rect_raw\n"
       "  zcat cloud.ply.gz | agrisee process - -o result\n"
       "  agrisee process frame.pcd -o result --viewpoint 0,0,0 --radius 0.025,0.06\n"
+      "  agrisee process --depth depth.png --color color.png --masks masks.png --intrinsics 911,911,640,360 -o result\n"
       "  agrisee process 'season/*.ply' -o results --shard 2/8");
   command->callback([options, &run] {
     run = [options] {
-      return run_inputs(options->clouds, options->shard, options->output,
-                        [&](const std::string& input, const std::string& folder) {
-                          ProcessOptions one = *options;
-                          one.cloud = input;
-                          one.output = folder;
-                          return run_process(one);
-                        });
+      ListedCommand list{"process", options->force, {}, {}, {}};
+      list.run = [&](const std::string& input, const std::string& folder, Begin begin) {
+        ProcessOptions one = *options;
+        one.cloud = input;
+        one.output = folder;
+        one.prepared = begin != Begin::as_asked;
+        return run_process(one);
+      };
+      list.key = [&](const std::string& input) { return key_of(*options, input); };
+      list.is_complete = [&](const std::string& folder) { return is_finished(folder, *options); };
+      return run_inputs(options->clouds, options->shard, options->output, list);
     };
   });
 }

@@ -13,6 +13,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <functional>
 #include <iostream>
 #include <memory>
 
@@ -40,15 +41,40 @@ struct Survey {
   std::vector<fuse::ViewSample> samples;  ///< some of their points
 };
 
+/// Views from any kind of recording.
+struct ViewSource {
+  Workcell workcell;        ///< an empty scan volume if none is stated
+  std::vector<Pose> poses;  ///< world_T_optical of each view
+  std::function<sensor::DepthFrame(std::size_t view)> frame;
+  std::vector<std::string> warnings;
+};
+
+/// The views of views.yaml.
+ViewSource source_of_yaml(const std::string& path) {
+  const auto recorded = std::make_shared<io::RecordedViews>(io::read_recorded_views(path));
+  ViewSource out{recorded->workcell, {}, {}, recorded->warnings};
+  for (const io::RecordedView& view : recorded->views) out.poses.push_back(view.world_T_optical);
+  out.frame = [recorded](std::size_t view) { return io::read_frame(*recorded, view); };
+  return out;
+}
+
+/// The views of an MCAP file.
+ViewSource source_of_mcap(const std::string& path, const io::McapChoice& choice) {
+  const auto recorded = std::make_shared<io::McapRecording>(path, choice);
+  ViewSource out{recorded->workcell(), recorded->world_T_optical(), {}, recorded->warnings()};
+  out.frame = [recorded](std::size_t view) { return recorded->frame(view); };
+  return out;
+}
+
 /// Look at all views; where the scan volume is known, at some are enough.
-Survey survey(const io::RecordedViews& recorded) {
+Survey survey(const ViewSource& source) {
   constexpr std::size_t kEnough = 16;
-  const std::size_t step = recorded.workcell.scan_volume.empty() ? 1 : recorded.views.size() / kEnough + 1;
+  const std::size_t step = source.workcell.scan_volume.empty() ? 1 : source.poses.size() / kEnough + 1;
   Survey out;
-  for (std::size_t i = 0; i < recorded.views.size(); i += step) {
-    const sensor::DepthFrame frame = io::read_frame(recorded, i);
-    out.samples.push_back(fuse::sample_of(frame, recorded.views[i].world_T_optical));
-    const Aabb seen = io::extent_of(frame, recorded.views[i].world_T_optical);
+  for (std::size_t i = 0; i < source.poses.size(); i += step) {
+    const sensor::DepthFrame frame = source.frame(i);
+    out.samples.push_back(fuse::sample_of(frame, source.poses[i]));
+    const Aabb seen = io::extent_of(frame, source.poses[i]);
     if (seen.empty()) continue;
     out.seen.extend(seen.min);
     out.seen.extend(seen.max);
@@ -125,7 +151,7 @@ int run_export(const ExportOptions& options) {
   for (std::size_t i = 0;; ++i) {
     const auto view = io::read_view_record(from, i, task.fingerprint(), pixels);
     if (!view) break;
-    recorded.views.push_back({image_name(i, options.npy), view->world_T_optical, ""});
+    recorded.views.push_back({image_name(i, options.npy), view->world_T_optical, "", {}});
     if (options.npy)
       io::write_depth_npy(to / recorded.views.back().depth, view->frame);
     else
@@ -139,12 +165,13 @@ int run_export(const ExportOptions& options) {
 
 }  // namespace
 
-Processed process_recording(const std::string& path, const CommonOptions& options, const Parameters& parameters) {
-  const io::RecordedViews recorded = io::read_recorded_views(path);
+Processed process_recording(const std::string& path, const CommonOptions& options, const Parameters& parameters,
+                            const io::McapChoice& choice) {
+  const ViewSource source = is_mcap(path) ? source_of_mcap(path, choice) : source_of_yaml(path);
   Processed out;
-  out.workcell = recorded.workcell;
-  const Survey first = survey(recorded);
-  const std::optional<std::string> doubt = doubt_of_poses(path, first, recorded.workcell.scan_volume);
+  out.workcell = source.workcell;
+  const Survey first = survey(source);
+  const std::optional<std::string> doubt = doubt_of_poses(path, first, source.workcell.scan_volume);
   if (out.workcell.scan_volume.empty()) out.workcell.scan_volume = all_that_is_seen(path, first.seen);
   PipelineOptions pipeline_options;
   pipeline_options.planner = std::make_unique<NoPlanner>();
@@ -152,15 +179,15 @@ Processed process_recording(const std::string& path, const CommonOptions& option
   pipeline_options.seed = options.seed;
   pipeline_options.threads = threads_of(options.threads);
   Pipeline pipeline(out.workcell, parameters, std::move(pipeline_options));
-  for (std::size_t i = 0; i < recorded.views.size(); ++i) {
-    const sensor::DepthFrame frame = io::read_frame(recorded, i);
+  for (std::size_t i = 0; i < source.poses.size(); ++i) {
+    sensor::DepthFrame frame = source.frame(i);
     out.history.depth.push_back(io::depth_picture(frame));
-    pipeline.observe(frame, recorded.views[i].world_T_optical);
-    if (!options.quiet) show_progress(pipeline.views(), recorded.views.size());
+    pipeline.observe(std::move(frame), source.poses[i]);
+    if (!options.quiet) show_progress(pipeline.views(), source.poses.size());
   }
   if (!options.quiet) end_progress();
   out.result = pipeline.result();
-  const std::vector<std::string> notes = shortened(recorded.warnings);
+  const std::vector<std::string> notes = shortened(source.warnings);
   out.result.warnings.insert(out.result.warnings.begin(), notes.begin(), notes.end());
   if (doubt) out.result.warnings.push_back(*doubt);
   return out;

@@ -2,6 +2,7 @@
 // Views that a camera recorded, processed as those of a scan are.
 #pragma once
 
+#include <agrisee/io/mcap.hpp>
 #include <agrisee/result.hpp>
 #include <agrisee/workcell.hpp>
 
@@ -19,7 +20,9 @@ struct Processed {
 };
 
 /// Fuse, register and segment the views of a recording. Where it states no scan volume, all that the views show counts.
-/// @param path views.yaml  @throws FileError
-Processed process_recording(const std::string& path, const CommonOptions& options, const Parameters& parameters);
+/// @param path views.yaml, or an MCAP file  @param choice what to take from an MCAP file
+/// @throws FileError
+Processed process_recording(const std::string& path, const CommonOptions& options, const Parameters& parameters,
+                            const io::McapChoice& choice = {});
 
 }  // namespace agrisee::cli

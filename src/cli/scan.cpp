@@ -2,6 +2,7 @@
 // agrisee scan: simulates the scan of a scene file.
 #include <agrisee/io/files.hpp>
 #include <agrisee/io/fingerprint.hpp>
+#include <agrisee/io/mcap.hpp>
 #include <agrisee/io/parameters.hpp>
 #include <agrisee/io/ply.hpp>
 #include <agrisee/io/results.hpp>
@@ -24,6 +25,7 @@
 #include "inputs.hpp"
 #include "interrupt.hpp"
 #include "many.hpp"
+#include "words.hpp"
 
 namespace agrisee::cli {
 namespace {
@@ -33,8 +35,8 @@ namespace fs = std::filesystem;
 struct ScanOptions : CommonOptions {
   std::vector<std::string> scenes;
   std::string shard;
-  std::string scene, planner, noise = "none", resume;
-  bool live = false;
+  std::string scene, planner, noise = "none", light, detector, resume, mcap;
+  bool live = false, color = false;
   int max_views = 0;
 };
 
@@ -112,8 +114,9 @@ io::ScanTask task_of(const ScanOptions& options) {
   task.version = AGRISEE_VERSION;
   task.seed = options.seed;
   task.threads = threads_of(options.threads);
-  task.noise = options.noise;
-  noise_of(options.noise);
+  task.noise = to_string(noise_of(options.light.empty() ? options.noise : options.noise + ":" + options.light));
+  task.color = options.color || !options.detector.empty();
+  task.detector = options.detector;
   return task;
 }
 
@@ -134,6 +137,19 @@ std::string content_of(const std::string& scene, const io::SceneFile& file) {
   io::Fingerprint print;
   print.add(io::read_bytes(scene).view());
   print.add(file.scene);
+  return print.text();
+}
+
+/// Fingerprint of all that changes the result of a scan: version, scene, parameters, noise, seed.
+std::string key_of(const ScanOptions& options, const std::string& scene) {
+  ScanOptions one = options;
+  one.scene = scene;
+  const io::ScanTask task = task_of(one);
+  io::Fingerprint print;
+  for (const std::string& text : {std::string("scan"), task.version, content_of(scene, io::read_scene(scene)),
+                                  task.noise, task.planner, task.detector, std::string(task.color ? "color" : ""),
+                                  std::to_string(task.seed), io::parameters_to_json(task.parameters)})
+    print.add(text + "\n");
   return print.text();
 }
 
@@ -164,14 +180,6 @@ study::ViewTaker observed(study::ViewTaker take_view, HistoryRecorder& recorder)
   };
 }
 
-/// Whether a folder holds all files that are asked for.
-bool is_finished(const fs::path& folder, const CommonOptions& options) {
-  return std::all_of(std::begin(kResultFiles), std::end(kResultFiles), [&](const std::string& name) {
-    return fs::exists(folder / name) || (options.no_picture && name == kPicture) ||
-           (options.no_report && name == kReport);
-  });
-}
-
 /// The planner `greedy`; null for the planners that the pipeline makes. @throws FileError if the scene has no fruit
 std::unique_ptr<plan::Planner> study_planner(const io::ScanTask& task, const io::SceneFile& file,
                                              const study::TracedScene& traced) {
@@ -189,6 +197,7 @@ io::RunInfo run_info(const io::ScanTask& task, const Workcell& workcell) {
   info.seed = task.seed;
   info.threads = task.threads;
   info.noise = task.noise;
+  info.detector = task.detector;
   info.preset = task.parameters.preset;
   info.planner = task.planner;
   info.parameters_json = io::parameters_to_json(task.parameters);
@@ -200,6 +209,8 @@ int run_task(const fs::path& folder, const io::ScanTask& task, const io::SceneFi
              const study::TracedScene& traced, std::unique_ptr<plan::Planner> planner, const ScanOptions& options) {
   study::SimulationOptions simulation;
   simulation.noise = study::parse_noise(task.noise);
+  simulation.images.color = task.color;
+  if (!task.detector.empty()) simulation.images.detector = study::detector_named(task.detector);
   simulation.seed = task.seed;
   simulation.threads = task.threads;
   simulation.planner = std::move(planner);
@@ -234,6 +245,13 @@ int run_task(const fs::path& folder, const io::ScanTask& task, const io::SceneFi
     result = study::scan(file.workcell, traced, task.parameters, std::move(simulation));
     result.warnings.insert(result.warnings.begin(), file.warnings.begin(), file.warnings.end());
     if (!options.quiet) end_progress();
+    if (!options.mcap.empty())
+      io::write_mcap(
+          options.mcap, file.workcell,
+          [&](std::size_t view) {
+            return io::read_view_record(folder, view, task.fingerprint(), file.workcell.sensor.intrinsics.size());
+          },
+          result);
     write_files(folder.string(), result, file.workcell, run_info(task, file.workcell), options,
                 recorder.history(result));
   } catch (const std::exception& e) {
@@ -262,9 +280,9 @@ int run_scan(const ScanOptions& options) {
   check_scan(file.workcell, task.parameters);  // an impossible scan is rejected before anything is written
   std::unique_ptr<plan::Planner> planner = study_planner(task, file, traced);
   if (!resuming) {
-    prepare_output(folder.string(), options.force);
+    if (!options.prepared) prepare_output(folder.string(), options.force);
     io::write_scan_task(folder / "scan.json", task);
-  } else if (is_finished(folder, options)) {
+  } else if (is_finished(folder.string(), options)) {
     std::cerr << folder.string() << ": the scan is finished, there is nothing to do\n";
     return kSuccess;
   } else {
@@ -288,25 +306,35 @@ void add_scan(CLI::App& app, Run& run) {
       ->add_option(
           "--planner", options->planner,
           "decides where to look next; greedy knows the truth and is for studies (default: that of the preset)")
-      ->check(CLI::IsMember(planner_choices()));
-  command->add_option("--noise", options->noise, "noise model of the sensor: none, gaussian:SIGMA (m), l515 or rough")
+      ->check(one_of(planner_choices()));
+  command->add_option("--noise", options->noise, std::string("noise model of the sensor: ") + study::kNoiseNames)
       ->capture_default_str();
+  command->add_option("--light", options->light, "light on the plant, for the noise models l515, azure and d405")
+      ->check(one_of({"shade", "sun"}));
+  command->add_flag("--color", options->color, "the camera returns colours, too, and each fruit gets a ripeness");
+  command
+      ->add_option("--detector", options->detector,
+                   "a simulated detector looks at the colours: its masks are used, errors and all")
+      ->check(one_of(std::vector<std::string>(study::kDetectorNames.begin(), study::kDetectorNames.end())));
   command->add_option("--max-views", options->max_views, "largest number of views (default: that of the preset)")
       ->check(CLI::Range(1, 10000));
   command->add_flag("--live", options->live,
                     "write report.html after every view; open in a browser, it then shows the scan as it goes on");
+  command->add_option("--mcap", options->mcap,
+                      "write the scan to this file, too, as a recording of ROS 2 for Foxglove; for a single scene");
   add_shard_option(*command, options->shard);
   auto* resume =
       command->add_option("--resume", options->resume,
                           "continue the interrupted scan in this folder; name the scene only if its file was moved");
   for (const char* given : {"--output", "--preset", "--params", "--radius", "--seed", "--force", "--planner", "--noise",
-                            "--max-views", "--shard"})
+                            "--light", "--max-views", "--shard", "--color", "--detector"})
     resume->excludes(given);  // a resumed scan keeps the values that it was started with
   command->footer(
       "Examples:\n"
       "  agrisee scan truss/scene.yaml -o result --noise l515 --seed 1\n"
       "  agrisee scan truss/scene.yaml -o paper --preset paper --noise gaussian:0.002 --max-views 20\n"
       "  agrisee scan cherries/scene.yaml -o result --radius 0.01,0.02\n"
+      "  agrisee scan plant/scene.yaml -o result --noise l515 --detector typical\n"
       "  agrisee scan --resume result\n"
       "  agrisee scan 'season/*/scene.yaml' -o results --shard 2/8\n"
       "The output folder then holds cloud.ply, cloud_raw.ply, views.csv, fruits.json, fruits.csv, run.json, truss.png\n"
@@ -318,13 +346,20 @@ void add_scan(CLI::App& app, Run& run) {
     if (resume->count() > 0 && options->scenes.size() > 1)
       throw CLI::ValidationError("--resume", "continues one scan, so at most one scene can be named");
     run = [options] {
-      return run_inputs(options->scenes, options->shard, options->output,
-                        [&](const std::string& input, const std::string& folder) {
-                          ScanOptions one = *options;
-                          one.scene = input.empty() ? input : scene_file(input);
-                          one.output = folder;
-                          return run_scan(one);
-                        });
+      ListedCommand list{"scan", options->force, {}, {}, {}};
+      if (!options->mcap.empty() && is_list(options->scenes, options->shard))
+        throw UsageError("--mcap: is one file, so name one scene without --shard");
+      list.run = [&](const std::string& input, const std::string& folder, Begin begin) {
+        ScanOptions one = *options;
+        one.scene = input.empty() ? input : scene_file(input);
+        one.output = folder;
+        if (begin == Begin::resume && fs::exists(fs::path(folder) / "scan.json")) one.resume = folder;
+        one.prepared = begin != Begin::as_asked;
+        return run_scan(one);
+      };
+      list.key = [&](const std::string& input) { return key_of(*options, scene_file(input)); };
+      list.is_complete = [&](const std::string& folder) { return is_finished(folder, *options); };
+      return run_inputs(options->scenes, options->shard, options->output, list);
     };
   });
 }

@@ -2,6 +2,7 @@
 #include <agrisee/cloud/icp.hpp>
 #include <agrisee/core/cancellation.hpp>
 #include <agrisee/core/parallel.hpp>
+#include <agrisee/fuse/center_errors.hpp>
 #include <agrisee/fuse/fused_views.hpp>
 #include <agrisee/sensor/reconstruct_surface.hpp>
 
@@ -17,6 +18,7 @@ FusedViews::FusedViews(const Aabb& scan_volume, const FusionParameters& paramete
 Observation FusedViews::look(const sensor::DepthFrame& frame, const Pose& world_T_optical) const {
   Observation out;
   out.surface = sensor::reconstruct_surface(frame, world_T_optical, scan_volume_, parameters_.surface, threads_);
+  out.surface.fill = std::min(out.surface.fill, measured_again(out.surface).share());
   if (!parameters_.register_views) return out;
   if (contradicted(out.surface)) {
     // A pose that is wrong by millimetres contradicts at borders and thin parts, until the view is registered.
@@ -94,6 +96,14 @@ Eigen::Vector3d FusedViews::shift_to_reported(const Eigen::Vector3d& center) con
   return shift / static_cast<double>(std::max<std::size_t>(used, 1));
 }
 
+std::vector<Eigen::Matrix3d> FusedViews::center_errors(const std::vector<Ellipsoid>& bodies,
+                                                       const FitParameters& parameters) const {
+  std::vector<RegisteredView> views;
+  for (std::size_t v = 0; v < images_.size(); ++v)
+    if (!views_[v].discarded) views.push_back({&images_[v], views_[v].reported});
+  return fuse::center_errors(bodies, views, parameters);
+}
+
 /// A new view, of which only the pose is known so far.
 /// @return its number
 std::size_t FusedViews::begin(const Pose& world_T_optical, std::size_t points_in, bool discarded) {
@@ -116,6 +126,25 @@ bool FusedViews::contradicted(const sensor::SurfaceImage& image) const {
   return all.contradiction() > parameters_.free_space.max_contradiction;
 }
 
+/// How much of what the views of the map show an image measures again.
+Returned FusedViews::measured_again(const sensor::SurfaceImage& image) const {
+  Returned all;
+  for (const auto& other : images_) all += returned(image, other, parameters_.free_space);
+  return all;
+}
+
+/// Learn from a new image how much of what they look at the earlier views measure.
+void FusedViews::learn_returns(const sensor::SurfaceImage& image) {
+  measured_.resize(images_.size());
+  for (std::size_t v = 0; v < images_.size(); ++v) {
+    sensor::SurfaceImage& other = images_[v];
+    measured_[v] += returned(other, image, parameters_.free_space);
+    const bool was_full = other.fill >= parameters_.free_space.min_fill;
+    other.fill = std::min(other.fill, measured_[v].share());
+    if (was_full && other.fill < parameters_.free_space.min_fill) refuting_.clear();  // to be counted again
+  }
+}
+
 /// The discarded views that agree with an image, by number.
 std::vector<std::size_t> FusedViews::views_that_agree(const sensor::SurfaceImage& image) const {
   std::vector<std::size_t> group;
@@ -136,6 +165,7 @@ void FusedViews::start_again(const std::vector<std::size_t>& views, Change& chan
   const std::size_t before = surfels_.size();
   surfels_ = SurfelMap(parameters_.surfels);
   refuting_.clear();
+  measured_.clear();
   for (std::size_t v = 0; v < views_.size(); ++v) {
     views_[v].discarded |= views_[v].points_in > 0;
     images_[v] = {};
@@ -156,6 +186,7 @@ void FusedViews::add(sensor::SurfaceImage image, std::size_t id, std::vector<Eig
   for (std::size_t c = 0; c < image.points.size(); ++c)
     if (surfels_.add(image.points[c], image.normals[c], image.sigma[c], static_cast<int>(id)))
       added.push_back(image.points[c]);
+  learn_returns(image);
   // From now on only the depths are needed, as evidence of free space, and some points to compare later views with.
   std::vector<Eigen::Vector3f> points, normals;
   const std::size_t step = compared_step(image);

@@ -40,6 +40,14 @@ std::vector<char> points_since(const Cloud& cloud, std::size_t view) {
   return since;
 }
 
+/// How much a view counts that did not show what was expected of it, 0..1: the share of the surface before it that it
+/// measured, but at least a quarter, so that no view is tried for ever. A view of which nothing was taken counts in
+/// full.
+double measured_share(const sensor::SurfaceImage& image, const fuse::FreeSpaceParameters& free_space) {
+  constexpr double kLeast = 0.25;
+  return image.depth.empty() || image.fill >= free_space.min_fill ? 1.0 : std::max(kLeast, image.fill);
+}
+
 /// A coarse depth image of obstacles, seen from one view.
 class ObstacleImage {
  public:
@@ -99,15 +107,16 @@ void ExpectedSurface::update(const Progress& progress, const SplitParameters& sp
   for (; images_read_ < progress.images.size(); ++images_read_) mark_known(progress.images[images_read_], free_space);
   const Labels labels = find_fruit(progress, split_parameters, free_space);
   collect_samples(progress.cloud);
-  weigh(promised, progress.cloud);
+  weigh(promised, progress.cloud, progress.images.empty() ? 1.0 : measured_share(progress.images.back(), free_space));
   PointCloud<float> rest;
   for (std::size_t i = 0; i < progress.cloud.size(); ++i)
     if (labels[i] == 0) rest.points.push_back(progress.cloud.points[i]);
   obstacles_ = average_in_voxels(rest, 0.006).points;
   // Samples that earlier views should have shown count less.
-  for (const auto& image : progress.images)
-    for_each_shown(image.world_T_optical,
-                   [&](std::size_t i) { areas_[i] *= static_cast<float>(parameters_.missed_factor); });
+  for (const auto& image : progress.images) {
+    const double factor = 1.0 - (1.0 - parameters_.missed_factor) * measured_share(image, free_space);
+    for_each_shown(image.world_T_optical, [&](std::size_t i) { areas_[i] *= static_cast<float>(factor); });
+  }
 }
 
 std::vector<ExpectedSurface::Promise> ExpectedSurface::promises(const Progress& progress) const {
@@ -119,7 +128,7 @@ std::vector<ExpectedSurface::Promise> ExpectedSurface::promises(const Progress& 
   return out;
 }
 
-void ExpectedSurface::weigh(const std::vector<Promise>& promised, const Cloud& cloud) {
+void ExpectedSurface::weigh(const std::vector<Promise>& promised, const Cloud& cloud, double measured) {
   constexpr double kForget = 0.5;
   if (promised.empty()) return;
   const auto cover = static_cast<float>(parameters_.cover_radius);
@@ -127,14 +136,14 @@ void ExpectedSurface::weigh(const std::vector<Promise>& promised, const Cloud& c
   promised_ *= kForget;
   kept_ *= kForget;
   for (const Promise& p : promised) {
-    promised_ += double(p.area);
+    promised_ += measured * double(p.area);
     if (p.voxel ? is_known(p.point) : grid.count(p.point, cover, 1) > 0) kept_ += double(p.area);
   }
 }
 
 double ExpectedSurface::reliability() const {
   const double before = kTrusted * area_;
-  return promised_ > 0.0 ? (kept_ + before) / (promised_ + before) : 1.0;
+  return promised_ > 0.0 ? std::min(1.0, (kept_ + before) / (promised_ + before)) : 1.0;
 }
 
 bool ExpectedSurface::is_known(const Eigen::Vector3f& point) const {
@@ -165,8 +174,9 @@ Labels ExpectedSurface::find_fruit(const Progress& progress, const SplitParamete
   const Cloud& cloud = fused ? progress.cloud : estimated;
   // Segment from scratch while the cloud grows fast; later only bring the known fruit up to date.
   const bool anew = bodies_.empty() || static_cast<double>(cloud.size()) > kGrowth * static_cast<double>(segmented_at_);
-  Split found = anew ? split(cloud, with_bodies, through)
-                     : track(cloud, bodies_, with_bodies, through, points_since(cloud, tracked_views_));
+  const MaskEvidence masks = progress.masks ? *progress.masks : MaskEvidence{};
+  Split found = anew ? split(cloud, with_bodies, through, 1, masks)
+                     : track(cloud, bodies_, with_bodies, through, points_since(cloud, tracked_views_), masks);
   tracked_views_ = progress.views.size();
   if (anew) segmented_at_ = cloud.size();
   bodies_ = std::move(found.found);

@@ -16,12 +16,13 @@ using io::to_number;
 /// Sort key of a noise model: mild ones first, unknown ones last, by name.
 std::tuple<int, double, std::string> harshness(const std::string& noise) {
   if (noise == "none") return {0, 0.0, {}};
-  if (noise == "l515") return {1, 0.0, {}};
-  if (noise == "rough") return {2, 0.0, {}};
+  const std::string models[] = {"l515-white", "l515", "l515:sun", "azure", "azure:sun", "d405", "d405:sun", "rough"};
+  for (const std::string& model : models)
+    if (noise == model) return {1 + static_cast<int>(&model - models), 0.0, {}};
   const std::string gaussian = "gaussian:";
   if (noise.rfind(gaussian, 0) == 0)
-    if (const auto sigma = to_number(std::string_view(noise).substr(gaussian.size()))) return {3, *sigma, noise};
-  return {4, 0.0, noise};
+    if (const auto sigma = to_number(std::string_view(noise).substr(gaussian.size()))) return {20, *sigma, noise};
+  return {21, 0.0, noise};
 }
 
 /// The planner of a preset.

@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <agrisee/core/parallel.hpp>
+#include <agrisee/geometry/bvh.hpp>
 #include <agrisee/study/capture.hpp>
 #include <agrisee/study/raycast.hpp>
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <utility>
 
 namespace agrisee::study {
 
@@ -36,8 +39,49 @@ std::vector<float> incidence_angles(const TracedScene& scene, const RayImage& tr
   return incidence;
 }
 
-/// Replaces ranges along the ray by depths z (m), and by 0 those outside the sensor's limits.
-void ranges_to_depths(std::vector<float>& image, const sensor::DepthCamera& sensor, int threads) {
+/// From the surface of each translucent object on along the ray: how far to the next surface that light does not enter
+/// (m). Infinite where there is none, and for all other objects.
+std::vector<float> distances_behind(const TracedScene& scene, const TrueImage& truth, const NoiseParameters& noise,
+                                    const sensor::Intrinsics& k, const Pose& world_T_optical, int threads) {
+  constexpr float kFar = std::numeric_limits<float>::infinity();
+  std::vector<float> behind(k.size(), kFar);
+  if (scene.solids().size() == 0) return behind;
+  const Eigen::Matrix3d world_R_optical = world_T_optical.linear();
+  const Eigen::Vector3d eye = world_T_optical.translation();
+  for_each_pixel(k, threads, [&](double u, double v, std::size_t i) {
+    if (!(truth.range[i] > 0.0f)) return;
+    const Translucency& t = noise.translucency[static_cast<std::size_t>(truth.materials[truth.object[i]])];
+    if (!(t.depth > 0.0)) return;
+    const Eigen::Vector3d ray = world_R_optical * k.ray(u, v).normalized();
+    const Eigen::Vector3f from = (eye + double(truth.range[i]) * ray).cast<float>();
+    const float reach = static_cast<float>(2.0 * (t.depth + 4.0 * t.spread));
+    if (const auto hit = scene.solids().closest(from, ray.cast<float>(), 0.0f, reach)) behind[i] = hit->t;
+  });
+  return behind;
+}
+
+/// What the camera would see without errors.
+TrueImage true_image(const TracedScene& scene, const sensor::DepthCamera& sensor, const Pose& world_T_optical,
+                     const NoiseParameters& noise, int threads) {
+  const sensor::Intrinsics& k = sensor.intrinsics;
+  RayImage rays = raycast(scene, k, world_T_optical, sensor.range_min, sensor.range_max, threads);
+  TrueImage out;
+  out.incidence = incidence_angles(scene, rays, k, world_T_optical, threads);
+  if (noise.knows_materials()) {
+    out.materials = scene.materials();
+    out.object.resize(k.size());
+    for_each_pixel(k, threads, [&](double, double, std::size_t i) {
+      if (rays.triangle[i] != kNoHit) out.object[i] = scene.object(rays.triangle[i]);
+    });
+  }
+  out.range = std::move(rays.range);
+  if (noise.knows_materials()) out.behind = distances_behind(scene, out, noise, k, world_T_optical, threads);
+  return out;
+}
+
+/// Replaces ranges along the ray by depths z (m) that are multiples of `unit` (m; 0 = any), and by 0 those outside the
+/// sensor's limits.
+void ranges_to_depths(std::vector<float>& image, const sensor::DepthCamera& sensor, double unit, int threads) {
   const sensor::Intrinsics& k = sensor.intrinsics;
   for_each_pixel(k, threads, [&](double u, double v, std::size_t i) {
     float& z = image[i];
@@ -46,6 +90,7 @@ void ranges_to_depths(std::vector<float>& image, const sensor::DepthCamera& sens
       z = 0.0f;
     else
       z = static_cast<float>(double(z) / k.ray(u, v).norm());
+    if (unit > 0.0) z = static_cast<float>(std::round(double(z) / unit) * unit);
   });
 }
 
@@ -55,14 +100,24 @@ Capture capture(const TracedScene& scene, const sensor::DepthCamera& sensor, con
                 const NoiseModel& noise, std::uint64_t seed, std::uint64_t view, int threads) {
   sensor.check();
   const sensor::Intrinsics& k = sensor.intrinsics;
-  const RayImage truth = raycast(scene, k, world_T_optical, sensor.range_min, sensor.range_max, threads);
-  const std::vector<float> incidence = incidence_angles(scene, truth, k, world_T_optical, threads);
+  const NoiseParameters parameters = noise_parameters(noise);
+  const TrueImage truth = true_image(scene, sensor, world_T_optical, parameters, threads);
   Capture out;
   out.frame.intrinsics = k;
-  out.frame.depth = measured_ranges(k, truth.range, incidence, sensor.max_incidence, noise, seed, view, threads);
+  out.frame.depth = measured_ranges(k, truth, sensor.max_incidence, noise, seed, view, threads);
   out.world_T_optical = reported_pose(world_T_optical, noise, seed, view);
-  ranges_to_depths(out.frame.depth, sensor, threads);
+  ranges_to_depths(out.frame.depth, sensor, parameters.unit, threads);
   return out;
+}
+
+void add_images(sensor::DepthFrame& frame, const TracedScene& scene, const sensor::DepthCamera& sensor,
+                const Pose& world_T_optical, const ImageOptions& options, std::uint64_t seed, std::uint64_t view,
+                int threads) {
+  if (!options.any()) return;
+  const sensor::Intrinsics& k = frame.intrinsics;
+  const RayImage rays = raycast(scene, k, world_T_optical, 0.0, sensor.range_max, threads);
+  if (options.color) frame.color = color_image(scene, rays, k, world_T_optical, options.light, seed, view, threads);
+  if (options.detector) detect(frame, scene, rays, world_T_optical, *options.detector, seed, view);
 }
 
 }  // namespace agrisee::study

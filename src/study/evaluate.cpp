@@ -210,7 +210,10 @@ void judge_location(const Fruit& found, const TrueFruit& real, const Samples& sa
     out.axis_error = std::atan2(z.cross(*real.growth_axis).norm(), z.dot(*real.growth_axis));
   }
   if (!found.body) return;
-  out.center_error = (found.body->center - real.center).norm();
+  const Eigen::Vector3d off = found.body->center - real.center;
+  out.center_error = off.norm();
+  if (const Eigen::LLT<Eigen::Matrix3d> covariance(found.body->center_covariance); covariance.info() == Eigen::Success)
+    out.center_error_normalised = std::sqrt(off.dot(covariance.solve(off)) / 3.0);
   out.radius_error = std::cbrt(found.body->radii.prod()) - std::cbrt(real.radii.prod());
   out.semi_axis_error = (found.body->radii - real.radii).cwiseAbs().maxCoeff();
   out.completeness_error = found.body->completeness - out.scanned;
@@ -270,7 +273,10 @@ Truth make_truth(const Scene& scene, const std::optional<GroundTruth>& known, co
                 "ground truth: it does not list as many fruit as the scene has");
     for (std::size_t i = 0; i < fruits.fruits.size(); ++i)
       check_input(known->fruits[i].id == fruits.fruits[i].id, "ground truth: its ids differ from the scene's");
-    fruits = *known;
+    GroundTruth all = *known;
+    for (std::size_t i = 0; i < all.fruits.size(); ++i)
+      if (!all.fruits[i].ripeness) all.fruits[i].ripeness = fruits.fruits[i].ripeness;
+    fruits = std::move(all);
   }
   Mesh surface;
   std::vector<int> labels;

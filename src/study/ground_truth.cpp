@@ -17,6 +17,7 @@ GroundTruth ground_truth(const Scene& scene) {
     fruit.radii = m.radii;
     fruit.axes = m.axes;
     fruit.volume = m.volume;
+    fruit.ripeness = object.ripeness;
     truth.fruits.push_back(fruit);
   }
   return truth;

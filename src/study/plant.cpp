@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <agrisee/study/plant.hpp>
+#include <agrisee/study/true_ripeness.hpp>
 #include <agrisee/study/visibility.hpp>
 
 #include <algorithm>
@@ -90,6 +91,9 @@ std::optional<Plant> grow_plant(const PlantParameters& parameters, const PlantSt
       truth.visible_share = share(samples, seen, truth.id);
       truth.hidden = *truth.visible_share < kHiddenBelow;
     }
+  std::vector<std::size_t> trusses;
+  for (const TrussLayout& truss : layout.trusses) trusses.push_back(truss.fruits.size());
+  ripen(plant.scene, plant.truth, trusses, parameters.seed);
   return plant;
 }
 

@@ -13,6 +13,17 @@ ViewTaker simulated_views(const TracedScene& scene, const sensor::DepthCamera& s
   };
 }
 
+ViewTaker with_images(ViewTaker take_view, const TracedScene& scene, const sensor::DepthCamera& sensor,
+                      const ImageOptions& options, std::uint64_t seed, int threads) {
+  if (!options.any()) return take_view;
+  return [take_view = std::move(take_view), &scene, sensor, options, seed, threads](const plan::ReachableView& view,
+                                                                                    std::size_t number) {
+    auto taken = take_view(view, number);
+    if (taken) add_images(taken->frame, scene, sensor, view.world_T_optical, options, seed, number, threads);
+    return taken;
+  };
+}
+
 ScanResult scan(const Workcell& workcell, const TracedScene& scene, const Parameters& parameters,
                 SimulationOptions options) {
   PipelineOptions pipeline_options;
@@ -23,17 +34,18 @@ ScanResult scan(const Workcell& workcell, const TracedScene& scene, const Parame
   Pipeline pipeline(workcell, parameters, std::move(pipeline_options));
   ViewTaker take_view = simulated_views(scene, workcell.sensor, options.noise, options.seed, options.threads);
   if (options.around) take_view = options.around(std::move(take_view));
+  take_view = with_images(std::move(take_view), scene, workcell.sensor, options.images, options.seed, options.threads);
 
   Joints joints = workcell.start;
   double capture_seconds = 0.0;
   while (const auto next = pipeline.next_view(joints)) {
-    const auto taken = timed(capture_seconds, [&] { return take_view(*next, pipeline.views().size()); });
+    auto taken = timed(capture_seconds, [&] { return take_view(*next, pipeline.views().size()); });
     if (!taken) {
       pipeline.refused();
       continue;
     }
     if (next->joints) joints = *next->joints;
-    pipeline.observe(taken->frame, taken->world_T_optical, next->joints);
+    pipeline.observe(std::move(taken->frame), taken->world_T_optical, next->joints);
     if (options.on_view) options.on_view(pipeline);
   }
   ScanResult result = pipeline.result();

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <agrisee/study/true_ripeness.hpp>
 #include <agrisee/study/truss.hpp>
 #include <agrisee/study/visibility.hpp>
 
@@ -99,7 +100,9 @@ Truss find_truss(const TrussParameters& parameters, const LayoutDraw& draw_layou
 
 Truss make_truss(const TrussParameters& parameters) {
   parameters.check();
-  return find_truss(parameters, [&](double spread, Rng& rng) { return herringbone(parameters, spread, rng); });
+  Truss truss = find_truss(parameters, [&](double spread, Rng& rng) { return herringbone(parameters, spread, rng); });
+  ripen(truss.scene, truss.truth, {truss.truth.fruits.size()}, parameters.seed);
+  return truss;
 }
 
 }  // namespace agrisee::study

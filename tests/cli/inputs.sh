@@ -202,6 +202,67 @@ assert "(zero or more)" in row or "(" in row, row
 PY
     done
     ;;
+  image)  # a single depth image, alone and with masks, boxes and colours
+    small_truss t --total 3 --hidden 0 --seed 3
+    expect 0 '' scan t -o r --noise none --seed 5 --max-views 1
+    expect 0 '' export-views r -o e
+    camera=$(python3 -c '
+import re
+text = open("e/views.yaml").read()
+print(",".join(re.search(rf"\b{key}: (\S+)", text).group(1) for key in ("fx", "fy", "cx", "cy")))')
+    image="--depth e/depth/0000.png --intrinsics $camera --depth-scale 0.0001"
+    expect 0 '' process $image -o plain
+    grep -q '"ripeness"' plain/fruits.json && fail "ripeness without colours"
+    python3 - <<'PY'
+import json, re, struct, zlib
+text = open("e/views.yaml").read()
+width, height, fx, fy, cx, cy = (float(re.search(rf"\b{key}: (\S+)", text).group(1))
+                                 for key in ("width", "height", "fx", "fy", "cx", "cy"))
+width, height = int(width), int(height)
+fruits = json.load(open("plain/fruits.json"))
+assert fruits
+def png(path, color, rows):
+    def chunk(kind, body):
+        return struct.pack(">I", len(body)) + kind + body + struct.pack(">I", zlib.crc32(kind + body))
+    open(path, "wb").write(b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", struct.pack(">IIBBBBB", width, height, 8, color, 0, 0, 0)) +
+                           chunk(b"IDAT", zlib.compress(b"".join(b"\0" + row for row in rows))) + chunk(b"IEND", b""))
+labels, boxes = [bytearray(width) for _ in range(height)], ["instance,score,u,v,width,height"]
+for f in fruits:
+    x, y, z = f["center_world"]
+    u, v, r = fx * x / z + cx, fy * y / z + cy, fx * sum(f["radii"]) / 3 / z
+    boxes.append(f"{f['id']},0.9,{u - r + 0.5},{v - r + 0.5},{2 * r},{2 * r}")
+    for row in range(height):
+        for column in range(width):
+            if (row - v) ** 2 + (column - u) ** 2 < r * r:
+                labels[row][column] = f["id"]
+png("masks.png", 0, labels)
+png("color.png", 2, [b"\xc8\x28\x1e" * width] * height)
+height -= 1
+png("small.png", 0, labels[1:])
+open("boxes.csv", "w").write("\n".join(boxes) + "\n")
+PY
+    expect 0 '' process $image --masks masks.png --color color.png -o masked
+    grep -q '"class": "red"' masked/fruits.json || fail "no ripeness by colour"
+    grep -q '"found_by": "mask"' masked/fruits.json || fail "no body by a mask"
+    expect 0 '' process $image --boxes boxes.csv -o boxed
+    for f in masked boxed; do
+      [ "$(grep -c '"id"' $f/fruits.json)" = "$(grep -c '"id"' plain/fruits.json)" ] || fail "$f: another number of fruit"
+    done
+    expect 2 'small.png: is damaged|small.png: .*pixels, but the depth image' process $image --masks small.png -o x
+    expect 2 'has colours or opacity' process $image --masks color.png -o x
+    expect 2 'no such file' process $image --color none.png -o x
+    expect 2 'depth needs 16' process --depth masks.png --intrinsics $camera -o x
+    expect 1 'needs --intrinsics' process --depth e/depth/0000.png -o x
+    expect 1 'not both' process e $image -o x
+    expect 1 'an input is needed' process -o x
+    [ -e x ] && fail "a result of bad input"
+    # The same channels of recorded views.
+    sed -i 's|^  - depth: .*|&\n    color: ../color.png\n    masks: ../masks.png|' e/views.yaml
+    expect 0 '' process e -o views
+    grep -q '"class": "red"' views/fruits.json || fail "views.yaml: no ripeness"
+    sed -i 's|masks.png|none.png|' e/views.yaml
+    expect 2 'views.yaml:[0-9]+: views\[0\].masks: no such file' process e -o x
+    ;;
   interrupted)  # a scan that is stopped says how to go on, and keeps what it has
     small_truss t --total 4 --hidden 1 --seed 3
     expect 0 '' scan t -o whole --noise rough --seed 5 --max-views 8

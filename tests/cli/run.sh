@@ -199,6 +199,36 @@ subprocess.run([sys.argv[1], "scan", "--resume", "live", "--live"], check=True, 
 assert page("live") == plain and "running" not in plain, "--live changes the result"
 PY
     ;;
+  detector)
+    # Colours and masks in a scan: what it says of them, any number of threads, resumed or not, and judged.
+    small_truss t --total 4 --hidden 0 --seed 2
+    grep -q 'ripeness: ' t/scene.yaml || fail "the fruit of a truss have no ripeness"
+    scan="t/scene.yaml --noise l515 --seed 3 --max-views 4 --no-picture"
+    expect 0 '' scan $scan -o plain --threads 2
+    expect 0 '' scan $scan -o a --detector typical --threads 1
+    expect 0 '' scan $scan -o b --detector typical --threads 2
+    for file in cloud.ply fruits.json fruits.csv; do cmp -s a/$file b/$file || fail "$file depends on the number of threads"; done
+    grep -q '"detector": "typical"' a/run.json || fail "run.json does not name the detector"
+    grep -q detector plain/run.json && fail "run.json names a detector that there was not"
+    cmp -s plain/views/0000.view a/views/0000.view && fail "records of different scans are the same"
+    rm a/run.json a/views/0003.view
+    expect 0 '' scan --resume a --no-picture
+    cmp -s a/fruits.json b/fruits.json || fail "a resumed scan sees other colours"
+    expect 1 'detector' scan $scan -o c --detector clever
+    python3 - plain/fruits.json a/fruits.json <<'PY' || fail "ripeness in fruits.json"
+import json, sys
+plain, colored = (json.load(open(name)) for name in sys.argv[1:])
+assert len(plain) == len(colored) == 4, (len(plain), len(colored))
+assert not any("ripeness" in f for f in plain) and all("ripeness" in f for f in colored)
+PY
+    expect 0 '' evaluate t/scene.yaml a --json
+    python3 -c 'import json; r = json.load(open("out.txt"))["ripeness"]; assert r["judged"] == 4 and r["right"] >= 0.5' || fail "evaluate does not judge ripeness"
+    expect 0 '' evaluate t/scene.yaml a
+    grep -q 'Ripeness of 4 fruit' out.txt || fail "evaluate does not tell of ripeness"
+    expect 0 '' evaluate t/scene.yaml plain
+    grep -q Ripeness out.txt && fail "evaluate judges a ripeness that was not found"
+    true
+    ;;
   paper)
     "$agrisee" make-truss --total 4 --hidden 1 --seed 3 -o t >/dev/null || fail make-truss
     small_sensor t/scene.yaml
@@ -262,7 +292,7 @@ PY
     small_sensor t/scene.yaml
     expect 2 'missing.yaml' limit missing.yaml -o d
     sed 's/scan_volume/scan_volum/' t/scene.yaml >t/typo.yaml && expect 2 'typo.yaml.*scan_volum' limit t/typo.yaml -o d
-    sed 's/class: fruit/class: other/; s/id: [0-9]*/id: 0/' t/scene.yaml >t/bare.yaml && expect 2 'bare.yaml.*no fruit' limit t/bare.yaml -o d
+    sed 's/class: fruit/class: other/; s/id: [0-9]*/id: 0/; s/ripeness: [^,}]*,//' t/scene.yaml >t/bare.yaml && expect 2 'bare.yaml.*no fruit' limit t/bare.yaml -o d
     expect 2 'bare.yaml.*no fruit' scan t/bare.yaml -o d --planner greedy
     expect 1 'base-search' limit t/scene.yaml -o d --base-step 0.1
     expect 1 'step' limit t/scene.yaml -o d --base-search --base-range 1 --base-step 0.001

@@ -214,6 +214,29 @@ TEST_CASE("the split follows a rigid motion of the cloud") {
   }
 }
 
+TEST_CASE("each fruit of a whole tree is proposed") {
+  std::vector<Sphere> fruit;
+  Cloud cloud;
+  for (int x = 0; x < 12; ++x)
+    for (int z = 0; z < 10; ++z) {
+      fruit.push_back({{0.07 * x, 1.0, 0.07 * z}, 0.03});
+      test::add_sphere(cloud, fruit.back(), 0.003, [](const Eigen::Vector3d& d) { return d.dot(front()) > 0.0; });
+    }
+  SplitParameters parameters;
+  parameters.bodies.radius_min = 0.025;
+  parameters.bodies.radius_max = 0.05;
+  const Grid<float> grid(cloud, 0.006f);
+  const auto stages = stages_for(estimate_spacing(cloud, grid), parameters);
+  REQUIRE(stages);
+  std::vector<BodyCandidate> candidates;
+  detail::propose_voted(cloud, cloud, {}, grid, *stages, parameters, candidates);
+  std::size_t proposed = 0;
+  for (const Sphere& s : fruit)
+    proposed += std::any_of(candidates.begin(), candidates.end(),
+                            [&](const BodyCandidate& c) { return (c.body.center - s.center).norm() < 0.2 * s.radius; });
+  CHECK(proposed == fruit.size());
+}
+
 TEST_CASE("too little to split is nothing") {
   Cloud cloud;
   CHECK(split(cloud).found.empty());
@@ -260,4 +283,51 @@ TEST_CASE("bodies are tracked where a cloud has grown") {
 
   fresh.pop_back();
   CHECK_THROWS_AS(track(after, first.found, {}, {}, fresh), InputError);
+}
+
+TEST_CASE("masks propose bodies for what points leave, unless sight lines go through these") {
+  const Sphere seen{{0.0, 0.5, 0.3}, 0.035};
+  const Eigen::Vector3d hidden(0.09, 0.5, 0.3);
+  Cloud cloud;
+  test::add_sphere(cloud, seen, 0.0025, [](const Eigen::Vector3d& d) { return d.dot(front()) > 0.2; });
+  MaskEvidence masks;
+  masks.log_odds = [](const Ellipsoid&) { return 1.0; };
+  masks.most = 4.0;
+  std::size_t explained = 0;
+  masks.remaining = [&](const std::vector<Ellipsoid>& known) {
+    explained = known.size();
+    MaskBody body;
+    body.fit.body = Ellipsoid(agrisee::Sphere{hidden, 0.03});
+    body.log_odds = 2.0;
+    return std::vector<MaskBody>{body};
+  };
+  const Split with = split(cloud, {}, {}, 1, masks);
+  CHECK(explained == 1);
+  REQUIRE(with.found.size() == 2);
+  CHECK(with.found[0].found_by != "mask");
+  CHECK(with.found[1].found_by == "mask");
+  CHECK(with.found[1].by_mask);
+  CHECK(with.found[1].confidence == Approx(1.0 / (1.0 + std::exp(-2.0))));
+  const SeenThrough through = [&](const Ellipsoid& body) { return (body.center - hidden).norm() < 0.02 ? 0.3 : 0.0; };
+  CHECK(split(cloud, {}, through, 1, masks).found.size() == 1);
+}
+
+TEST_CASE("masks change how far a body of points is believed") {
+  Cloud cloud;
+  test::add_sphere(cloud, {{0.0, 0.5, 0.3}, 0.035}, 0.0025,
+                   [](const Eigen::Vector3d& d) { return d.dot(front()) > 0.5; });
+  const auto confidence = [&](double odds) {
+    MaskEvidence masks;
+    masks.log_odds = [odds](const Ellipsoid&) { return odds; };
+    masks.most = 4.0;
+    SplitParameters parameters;
+    parameters.bodies.min_confidence = 0.0;
+    const Split found = split(cloud, parameters, {}, 1, masks);
+    return found.found.empty() ? 0.0 : found.found.front().confidence;
+  };
+  const double alone = confidence(0.0);
+  REQUIRE(alone > 0.5);
+  const double odds = std::log(alone / (1.0 - alone));
+  CHECK(confidence(-3.0) == Approx(1.0 / (1.0 + std::exp(3.0 - odds))).epsilon(1e-6));
+  CHECK(confidence(2.0) > alone);
 }

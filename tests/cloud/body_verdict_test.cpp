@@ -86,3 +86,19 @@ TEST_CASE("whatever speaks against a fruit lowers its probability") {
   CHECK(with([](Verdict& v) { v.support = 20; }) < believed);
   CHECK(fruit_probability(Verdict(), fit_of(0.0), BodyParameters()) == 0.0);
 }
+
+TEST_CASE("the spread of normals that the sensor accounts for does not speak against a fruit") {
+  Verdict v = verdict_of(cap(kPi / 2));
+  v.normal_spread = 0.3;
+  const EllipsoidFit fit = fit_of(0.0005);
+  BodyParameters noisy;
+  noisy.normal_noise = 0.2;
+  const double believed = fruit_probability(v, fit, noisy);
+  CHECK(believed > fruit_probability(v, fit, BodyParameters()));
+  Verdict rest = v;
+  rest.normal_spread = std::sqrt(0.3 * 0.3 - 0.2 * 0.2);  // variances are added
+  CHECK(believed == Approx(fruit_probability(rest, fit, BodyParameters())));
+  noisy.normal_noise = 0.5;  // more than there is
+  rest.normal_spread = 0.0;
+  CHECK(fruit_probability(v, fit, noisy) == Approx(fruit_probability(rest, fit, BodyParameters())));
+}

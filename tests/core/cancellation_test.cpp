@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <agrisee/core/cancellation.hpp>
+#include <agrisee/core/cloud.hpp>
 #include <agrisee/core/parallel.hpp>
 
 #include "catch.hpp"
@@ -34,6 +35,15 @@ TEST_CASE("cancellation: the innermost scope counts, and ends with its block") {
     const CancellationScope lasting{Cancellation()};  // a scope keeps its cancellation alive
     CHECK_NOTHROW(throw_if_cancelled());
   }
+}
+
+TEST_CASE("cancellation: copying the finite points of a cloud can be cancelled") {
+  const std::vector<Eigen::Vector3d> points(3, Eigen::Vector3d::Ones());
+  const Cancellation stop;
+  const CancellationScope scope(stop);
+  CHECK(finite_points(points).size() == 3);
+  stop.request();
+  CHECK_THROWS_AS(finite_points(points), Cancelled);
 }
 
 TEST_CASE("cancellation: loops stop between chunks, on all threads, and only those of the scope's thread") {

@@ -2,13 +2,16 @@
 """The snippets of the documents, compiled and run.
 
   python3 snippets.py cpp WORKDIR COMPILER FOLDERS...  ```cpp blocks; FOLDERS of headers, separated by colons
-  python3 snippets.py shell WORKDIR AGRISEE            ```sh and ```python blocks, and other lines that call agrisee
+  python3 snippets.py shell WORKDIR AGRISEE [PYTHON FOLDER]
+                                                       ```sh and ```python blocks, and other lines that call agrisee;
+                                                       an interpreter, and the folder of the package agrisee
 
 A ```cpp block with `<!-- from: FILE -->` above it consists of lines of that file, which a ctest of its own compiles and
 runs. All others are compiled, not run, with what tests/docs/context.hpp declares: a whole program as it is, others
 as the body of a function below their #include lines.
 The ```sh and ```python blocks of a document are run one after the other, in a folder of the document's own. In other
-blocks, lines that begin with `agrisee` are not run: that the command has their options is checked.
+blocks, lines that begin with `agrisee` are not run: that the command has their options is checked. ```python blocks
+that import agrisee are run only if the package is there.
 """
 import os
 import re
@@ -87,20 +90,26 @@ def check_options(agrisee, place, line):
             fail(f"{place}: agrisee {words[1]} has no option {word}")
 
 
-def run_shell(work, agrisee):
+def run_shell(work, agrisee, python=None, package=None):
     binary = os.path.join(work, "bin")
     os.makedirs(binary)
     os.symlink(agrisee, os.path.join(binary, "agrisee"))
     environment = {**os.environ, "PATH": binary + os.pathsep + os.environ["PATH"]}
-    ran = checked = 0
+    with_package = {**environment, "PYTHONPATH": package or ""}
+    ran = checked = skipped = 0
     for document in documents():
         folder = os.path.join(work, document.replace(os.sep, "_"))
         for block in blocks(document)[0]:
             if block.language in ("sh", "python"):
                 os.makedirs(folder, exist_ok=True)
                 script = "\n".join(block.lines) + "\n"
-                command = ["bash", "-euo", "pipefail", "-c", script] if block.language == "sh" else [sys.executable, "-c", script]
-                done = subprocess.run(command, cwd=folder, env=environment, capture_output=True, text=True)
+                needs_package = block.language == "python" and "import agrisee" in script
+                if needs_package and not package:
+                    skipped += 1
+                    continue
+                command = ["bash", "-euo", "pipefail", "-c"] if block.language == "sh" else [python or sys.executable, "-B", "-c"]
+                done = subprocess.run([*command, script], cwd=folder, env=with_package if needs_package else environment,
+                                      capture_output=True, text=True)
                 if done.returncode:
                     fail(f"{block.place}: ends with {done.returncode}\n{done.stdout}{done.stderr}")
                 ran += 1
@@ -116,6 +125,8 @@ def run_shell(work, agrisee):
                     check_options(agrisee, f"{document}:{number}", code)
                     checked += 1
     print(f"{ran} blocks run, {checked} further command lines have options that exist")
+    if skipped:
+        print(f"{skipped} blocks skipped: they need the Python module (AGRISEE_BUILD_PYTHON)")
 
 
 what, work = sys.argv[1], os.path.abspath(sys.argv[2])
@@ -124,4 +135,4 @@ os.makedirs(work)
 if what == "cpp":
     compile_cpp(work, sys.argv[3], sys.argv[4:])
 else:
-    run_shell(work, os.path.abspath(sys.argv[3]))
+    run_shell(work, os.path.abspath(sys.argv[3]), *sys.argv[4:])

@@ -142,6 +142,7 @@ TEST_CASE("views that share no surface do not agree") {
 TEST_CASE("views agree from 50 common points and up to the largest contradiction") {
   FusionParameters parameters;
   parameters.free_space.margin = 0.25;
+  parameters.free_space.max_contradiction = 0.3;
   // A small view of a wall at 2 m: some points on the wall and some 1 m in front of it.
   const auto seen = [](int agree, int refute, bool consistent) {
     Observation out;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <agrisee/io/depth_image.hpp>
 #include <agrisee/io/files.hpp>
+#include <agrisee/io/mcap.hpp>
 #include <agrisee/io/recorded_views.hpp>
 
 #include "targets.hpp"
@@ -43,6 +44,17 @@ void recorded(const std::uint8_t* data, std::size_t size) {
     }
     io::write_recorded_views(scratch() / "again.yaml", read);
     require(io::read_recorded_views(scratch() / "again.yaml").views.size() == read.views.size(), "views survive");
+  });
+}
+
+void mcap(const std::uint8_t* data, std::size_t size) {
+  attempt([&] {
+    const io::McapRecording recording(as_file(data, size));
+    require(!recording.world_T_optical().empty(), "a recording has views");
+    for (std::size_t i = 0; i < recording.world_T_optical().size(); ++i) {
+      require(is_rigid(recording.world_T_optical()[i]), "poses are rigid");
+      attempt([&] { check(recording.frame(i)); });
+    }
   });
 }
 

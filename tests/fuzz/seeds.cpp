@@ -3,6 +3,7 @@
 
 #include <agrisee/io/depth_image.hpp>
 #include <agrisee/io/files.hpp>
+#include <agrisee/io/mcap.hpp>
 #include <agrisee/io/mesh_file.hpp>
 #include <agrisee/io/parameters.hpp>
 #include <agrisee/io/ply.hpp>
@@ -101,6 +102,27 @@ void add_tables(std::vector<Seed>& seeds) {
   seeds.push_back({"table", "xyz", "1 2 3\n# c\n4 -5e-3 nan 6\n"});
   seeds.push_back({"table", "named", "//X Y Z nx ny nz view label\n1 2 3 0 0 1 4 5\n"});
   seeds.push_back({"table", "csv", "z;x;y;\"name\"\n1;2;3;a\n;;;\n"});
+}
+
+/// A recording of two views; once more without the checksum of its chunk, behind which damage is not looked at.
+void add_mcap(std::vector<Seed>& seeds, const fs::path& folder) {
+  const auto view = [](std::size_t i) -> std::optional<io::ViewRecord> {
+    if (i == 2) return std::nullopt;
+    io::ViewRecord record;
+    record.frame.intrinsics = {4, 2, 5.0, 6.0, 1.5, 0.5};
+    record.frame.depth.assign(8, 0.5f);
+    record.world_T_optical.translation().x() = 0.1 * static_cast<double>(i);
+    return record;
+  };
+  Workcell cell;
+  cell.scan_volume.min = Eigen::Vector3d::Constant(-1.0);
+  cell.scan_volume.max = Eigen::Vector3d::Constant(1.0);
+  io::write_mcap(folder / "scan.mcap", cell, view, {});
+  std::string bytes = bytes_of(folder / "scan.mcap");
+  seeds.push_back({"mcap", "scan", bytes});
+  const std::size_t chunk = 8 + 9 + static_cast<unsigned char>(bytes[9]);  // behind the magic and a short header
+  bytes.replace(chunk + 9 + 24, 4, 4, '\0');
+  seeds.push_back({"mcap", "unchecked", bytes});
 }
 
 void add_depth(std::vector<Seed>& seeds, const fs::path& folder) {
@@ -219,6 +241,7 @@ std::vector<Seed> make_seeds() {
   add_clouds(seeds, folder);
   add_tables(seeds);
   add_depth(seeds, folder);
+  add_mcap(seeds, folder);
   add_meshes(seeds, folder);
   add_texts(seeds, folder);
   add_messages(seeds);

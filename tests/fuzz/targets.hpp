@@ -19,6 +19,7 @@ void pcd(const std::uint8_t* data, std::size_t size);
 void table(const std::uint8_t* data, std::size_t size);     ///< XYZ, CSV and NPY clouds
 void depth(const std::uint8_t* data, std::size_t size);     ///< depth images, PNG and NPY
 void recorded(const std::uint8_t* data, std::size_t size);  ///< views.yaml
+void mcap(const std::uint8_t* data, std::size_t size);      ///< recordings of ROS 2
 void stl(const std::uint8_t* data, std::size_t size);
 void obj(const std::uint8_t* data, std::size_t size);
 void scene(const std::uint8_t* data, std::size_t size);
@@ -30,10 +31,10 @@ struct Target {
   const char* name;
   void (*run)(const std::uint8_t*, std::size_t);
 };
-constexpr Target kTargets[] = {{"ply", ply},         {"pcd", pcd},           {"table", table},
-                               {"depth", depth},     {"recorded", recorded}, {"stl", stl},
-                               {"obj", obj},         {"scene", scene},       {"parameters", parameters},
-                               {"records", records}, {"messages", messages}};
+constexpr Target kTargets[] = {
+    {"ply", ply},         {"pcd", pcd},          {"table", table}, {"depth", depth}, {"recorded", recorded},
+    {"mcap", mcap},       {"stl", stl},          {"obj", obj},     {"scene", scene}, {"parameters", parameters},
+    {"records", records}, {"messages", messages}};
 
 /// The bytes as a file; without a disk. There is one at a time.
 std::filesystem::path as_file(const std::uint8_t* data, std::size_t size);

@@ -3,6 +3,7 @@
 #include <agrisee/io/scene.hpp>
 
 #include "io/io_support.hpp"
+#include "support/says.hpp"
 
 using namespace agrisee;
 using namespace agrisee::test;
@@ -82,7 +83,7 @@ objects:
   - {id: 7, class: fruit, mesh: fruit.stl, xyz: [0.05, 0.55, 0.13], rpy: [0.1, 0.2, 0.4], scale: 2.0}
   - {id: 0, class: stem, mesh: fruit.stl}
   - {id: 0, class: leaf, mesh: fruit.stl, scale: 0.5}
-  - {id: 0, class: other, mesh: fruit.stl, xyz: [1, 0, 0]}
+  - {id: 0, class: other, material: leaf, mesh: fruit.stl, xyz: [1, 0, 0]}
 )");
   const Workcell& cell = file.workcell;
   CHECK(cell.name == "full: one");
@@ -104,6 +105,30 @@ objects:
   CHECK(file.scene.objects[1].cls == study::ObjectClass::stem);
   CHECK(file.scene.objects[2].cls == study::ObjectClass::leaf);
   CHECK(file.scene.objects[3].cls == study::ObjectClass::other);
+  CHECK(file.scene.objects[3].material == study::ObjectClass::leaf);
+  CHECK_FALSE(file.scene.objects[2].material);
+}
+
+TEST_CASE("objects have a ripeness and a colour where the scene says so") {
+  const SceneFolder folder;
+  const auto with = [&](const std::string& keys) {
+    return folder.read(replaced(kScene, "mesh: fruit.stl", keys + ", mesh: fruit.stl")).scene.objects.front();
+  };
+  CHECK(with("ripeness: 0.4").ripeness == 0.4);
+  CHECK(with("ripeness: green").ripeness == 0.0);
+  CHECK(with("ripeness: pink").ripeness.value() == Approx(0.45));
+  CHECK(with("color: [250, 0, 7]").color == Rgb{250, 0, 7});
+  CHECK_FALSE(folder.read(kScene).scene.objects.front().ripeness);
+  CHECK_FALSE(folder.read(kScene).scene.objects.front().color);
+}
+
+TEST_CASE("a text is read as the file that it stands for") {
+  const SceneFolder folder;
+  const io::SceneFile file = io::scene_from_yaml(kScene, folder / "absent.yaml");
+  CHECK(file.workcell.name == "small");
+  REQUIRE(file.scene.objects.size() == 1);
+  CHECK(file.scene.objects[0].mesh.triangles.size() == 4);
+  CHECK_THROWS_WITH(io::scene_from_yaml("name: small\n", "cell"), ::test::says("cell"));
 }
 
 TEST_CASE("scenes round trip") {
@@ -117,8 +142,10 @@ TEST_CASE("scenes round trip") {
   file.workcell.sensor.intrinsics = sensor::intrinsics_from_fov(320, 200, deg(69.5), deg(41));
   file.workcell.keep_out = {{"null", Box{{0, 1, 2}, {0.1, 0.2, 0.3}}}, {"pot 1", Cylinder{{3, 2, 1}, 0.25, 0.5}}};
   file.scene.objects.push_back({0, study::ObjectClass::leaf, tetrahedron(0.02f)});
-  file.scene.objects.push_back({0, study::ObjectClass::leaf, tetrahedron(0.03f)});
+  file.scene.objects.push_back({0, study::ObjectClass::leaf, tetrahedron(0.03f), study::ObjectClass::stem});
   file.scene.objects.push_back({12, study::ObjectClass::fruit, tetrahedron(0.04f)});
+  file.scene.objects.back().ripeness = 1.0 / 3.0;
+  file.scene.objects.back().color = Rgb{1, 20, 255};
   io::write_scene(folder / "out.yaml", file);
   for (const char* mesh : {"fruit_1.stl", "fruit_12.stl", "leaf_1.stl", "leaf_2.stl"})
     CHECK(std::filesystem::exists(folder / mesh));
@@ -139,6 +166,9 @@ TEST_CASE("scenes round trip") {
   for (std::size_t i = 0; i < 4; ++i) {
     CHECK(back.scene.objects[i].id == file.scene.objects[i].id);
     CHECK(back.scene.objects[i].cls == file.scene.objects[i].cls);
+    CHECK(back.scene.objects[i].material == file.scene.objects[i].material);
+    CHECK(back.scene.objects[i].ripeness == file.scene.objects[i].ripeness);
+    CHECK(back.scene.objects[i].color == file.scene.objects[i].color);
     CHECK(volume(back.scene.objects[i].mesh) == Approx(volume(file.scene.objects[i].mesh)));
   }
   file.workcell.tool0_T_optical = pose_from_xyz_rpy({0, 0, 0.03}, {0.2, -1.3, 0.4});
@@ -152,8 +182,7 @@ TEST_CASE("unknown, missing and repeated keys are named with file and line") {
   folder.refuse(kScene + "colour: red\n", ":7: unknown key 'colour'");
   folder.refuse(kScene + "name: again\n", "key 'name' twice");
   folder.refuse(replaced(kScene, "rpy: [0, 0, 0]}", "rpy: [0, 0, 0], yaw: 3}"), ":3: robot.base: unknown key 'yaw'");
-  folder.refuse(replaced(kScene, "mesh: fruit.stl", "mesh: fruit.stl, color: 3"),
-                ":6: objects[0]: unknown key 'color'");
+  folder.refuse(replaced(kScene, "mesh: fruit.stl", "mesh: fruit.stl, hue: 3"), ":6: objects[0]: unknown key 'hue'");
   folder.refuse(kScene + "sensor: {model: l515, fps: 30}\n", "sensor: unknown key 'fps'");
   folder.refuse(kScene + "keep_out: [{name: a, box: {center: [0, 0, 0], size: [1, 1, 1], yaw: 1}}]\n",
                 "keep_out[0].box: unknown key 'yaw'");
@@ -186,6 +215,10 @@ TEST_CASE("values out of range are named") {
   refuse("mesh: fruit.stl", "mesh: fruit.stl, xyz: [1, 2]", "objects[0].xyz: expected a list of 3 numbers");
   refuse("mesh: fruit.stl", "mesh: fruit.stl, xyz: [1, 2, three]", "objects[0].xyz[2]: 'three' is not a number");
   refuse("mesh: fruit.stl", "mesh: fruit.stl, xyz: [1, 2, nan]", "must be finite");
+  refuse("mesh: fruit.stl", "mesh: fruit.stl, ripeness: 1.5", "objects[0].ripeness: must be from 0 to 1, or green");
+  refuse("mesh: fruit.stl", "mesh: fruit.stl, ripeness: rosy", "objects[0].ripeness: must be a share from 0 to 1, or");
+  refuse("mesh: fruit.stl", "mesh: fruit.stl, color: [1, 2]", "objects[0].color: expected red, green and blue");
+  refuse("mesh: fruit.stl", "mesh: fruit.stl, color: [1, 2, 256]", "objects[0].color[2]: must be from 0 to 255");
   refuse("mesh: fruit.stl", "mesh: [fruit.stl]", "objects[0].mesh: expected a text");
   refuse("max: [0.1, 0.6, 0.3]", "max: [0.1, 0.4, 0.3]", "scan_volume: min must be below max, but along y");
   refuse("max: [0.1, 0.6, 0.3]", "max: [0.1, 0.6, -3]", "along z");

@@ -53,10 +53,11 @@ CloudOrigin from_eye(bool views) {
   return origin;
 }
 
-/// No point is an outlier.
+/// No point is an outlier, or seen at too much of a slant.
 Parameters all_points() {
   Parameters parameters;
   parameters.sor.std_ratio = 1e6;
+  parameters.max_incidence = kPi / 2;
   return parameters;
 }
 
@@ -263,6 +264,59 @@ TEST_CASE("a cloud's own noise widens its neighbourhoods") {
   Cloud bare = seen(0.002);
   bare.normals.clear();
   check_found(process(bare, {}, from_eye(false)), 0.008);
+}
+
+TEST_CASE("of one viewpoint's cloud, what is seen at a slant is dropped") {
+  const auto steepest = [](const Cloud& cloud) {
+    double least = 1.0;
+    for (std::size_t i = 0; i < cloud.size(); ++i)
+      least =
+          std::min(least, cloud.normals[i].cast<double>().dot((kEye - cloud.points[i].cast<double>()).normalized()));
+    return std::acos(least);
+  };
+  Parameters parameters = all_points();
+  parameters.max_incidence = Parameters().max_incidence;
+  const Cloud all = seen();
+  REQUIRE(steepest(all) > deg(77));
+  const ScanResult sure = process(all, parameters, from_eye(false));
+  CHECK(steepest(sure.cloud) < deg(75.01));
+  CHECK(steepest(sure.cloud) > deg(74));
+  CHECK(sure.raw.size() == all.size());
+  check_found(sure);
+  CHECK(process(all, parameters, from_eye(true)).cloud.size() == all.size());  // views: merged clouds are left alone
+  parameters.max_incidence = kPi / 2;
+  CHECK(process(all, parameters, from_eye(false)).cloud.size() == all.size());
+  parameters.max_incidence = 0.0;
+  CHECK_THROWS_AS(process(all, parameters, from_eye(false)), ParameterError);
+}
+
+TEST_CASE("flying pixels behind the rim do not lengthen a fruit") {
+  Cloud cloud = seen();
+  Rng rng(7);
+  for (const Sphere& s : kFruit) {
+    const Eigen::Vector3d sight = (s.center - kEye).normalized(), right = sight.unitOrthogonal(),
+                          up = sight.cross(right);
+    for (int i = 0; i < 600; ++i) {
+      const double turn = 2.0 * kPi * rng.uniform();
+      const Eigen::Vector3d rim = s.center + s.radius * (std::cos(turn) * right + std::sin(turn) * up);
+      cloud.points.push_back((rim + 0.02 * rng.uniform() * (rim - kEye).normalized()).cast<float>());
+    }
+  }
+  cloud.normals.clear();
+  cloud.views.clear();
+  const auto longest = [&](double max_incidence) {
+    Parameters parameters = all_points();
+    parameters.max_incidence = max_incidence;
+    const ScanResult result = process(cloud, parameters, from_eye(false));
+    double sum = 0.0;
+    for (const Fruit& f : result.fruits) sum += f.body->radii.maxCoeff();
+    REQUIRE(result.fruits.size() == kFruit.size());
+    return sum / 2.0;
+  };
+  const double with_them = longest(kPi / 2), without = longest(Parameters().max_incidence);
+  INFO("mean of the longest semi-axes (m): " << with_them << ", " << without);
+  CHECK(without < with_them - 0.001);
+  CHECK(without == Approx(0.0325).margin(0.002));
 }
 
 TEST_CASE("thinned clouds keep the views of their points") {

@@ -253,7 +253,7 @@ TEST_CASE("expected surface: each view that should have shown a sample lowers it
   ExpectedSurface model = model_of(scan, p);
   const Pose above = look_at(kFruit, kFruit + Vector3d(0, 0, 0.385));
   const Pose below = look_at(kFruit, kFruit - Vector3d(0, 0, 0.385));
-  scan.images = {flat_image(above, 0.0, 0.0), flat_image(below, 0.0, 0.0), flat_image(above, 0.0, 0.0)};
+  scan.images = {flat_image(above, 0.1), flat_image(below, 0.1), flat_image(above, 0.1)};  // something is in the way
   for (int again = 0; again < 2; ++again) {  // the second time changes nothing
     model.update(scan.progress(), {}, {});
     REQUIRE(model.areas().size() == 200);
@@ -294,4 +294,43 @@ TEST_CASE("expected surface: how far it can be relied on follows from what views
   const double half = model_after([](const Vector3d& d) { return d.y() >= 0.0 && d.x() > 0.0; });
   CHECK(half > 0.45);
   CHECK(half < 0.65);
+}
+
+TEST_CASE("expected surface: a view that lost a part of its returns lowers areas by less") {
+  ExpectedSurfaceParameters p = bare();
+  Scan scan;
+  add_fruit(scan, kFruit);
+  ExpectedSurface model = model_of(scan, p);
+  scan.images = {flat_image(look_at(kFruit, kFruit + Vector3d(0, 0, 0.385)), 0.1, 0.4)};
+  model.update(scan.progress(), {}, {});
+  CHECK(double(model.areas()[0]) == Approx(kSurface / 200 * (1.0 - 0.4 * (1.0 - p.missed_factor))).epsilon(1e-4));
+  CHECK(double(model.areas()[199]) == Approx(kSurface / 200).epsilon(1e-4));
+}
+
+TEST_CASE("a body that masks alone propose is expected, so that a view of it is worth taking") {
+  const Vector3d hidden(0.07, 0.5, 0.2);
+  Scan scan;
+  add_fruit(scan, kFruit);
+  ExpectedSurface without(camera(), box(kFruit, 0.12), bare()), with(camera(), box(kFruit, 0.12), bare());
+  const Progress plain = scan.progress();
+  without.update(plain, {}, {});
+  MaskEvidence masks;
+  masks.log_odds = [](const Ellipsoid&) { return 0.0; };
+  masks.most = 4.0;
+  masks.remaining = [&](const std::vector<Ellipsoid>& known) {
+    CHECK(known.size() == 1);  // that of the points
+    MaskBody body;
+    body.fit.body = Ellipsoid(Sphere{hidden, kRadius});
+    body.fit.inliers = 50;
+    body.log_odds = 1.5;
+    return std::vector<MaskBody>{body};
+  };
+  Progress told{plain.cloud, plain.images, plain.views, plain.added, plain.observed, plain.kept, &masks};
+  for (int i = 0; i < 2; ++i) {  // from scratch, and brought up to date
+    with.update(told, {}, {});
+    REQUIRE(with.bodies().size() == 2);
+    CHECK(with.bodies()[1].by_mask);
+    const Pose view = look_at(hidden, hidden + Vector3d(0.05, -0.3, 0.0));
+    CHECK(with.gain(view) > without.gain(view) + 0.2 * kSurface);
+  }
 }

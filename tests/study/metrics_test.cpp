@@ -392,7 +392,9 @@ TEST_CASE("errors of centre, radii, axis, completeness, and of the centroid of w
   body.center = known.fruits[0].center + Eigen::Vector3d(0.0, 0.002, 0.0);
   body.radii = known.fruits[0].radii - Eigen::Vector3d(0.001, 0.001, 0.003);
   body.completeness = 0.9;
+  body.center_covariance = Eigen::Vector3d(0.01, 0.001, 0.01).array().square().matrix().asDiagonal();
   result.fruits[0].body = body;
+  result.fruits[1].body = Body();  // states no covariance
   result.fruits[0].orientation = Eigen::AngleAxisd(0.3, Eigen::Vector3d::UnitX()).toRotationMatrix();
   View view;
   view.world_T_optical = look_along({0.05, 0.1, 0.25}, {0, 1, 0});
@@ -402,13 +404,15 @@ TEST_CASE("errors of centre, radii, axis, completeness, and of the centroid of w
   CHECK(off > 0.01);
   const Metrics m = evaluate(t, result);
   CHECK(*m.fruits[0].center_error == Approx(0.002));
+  CHECK(*m.fruits[0].center_error_normalised == Approx(2.0 / std::sqrt(3.0)));
+  CHECK_FALSE(m.fruits[1].center_error_normalised);
   CHECK(*m.fruits[0].semi_axis_error == Approx(0.003));
   CHECK(*m.fruits[0].radius_error == Approx(std::cbrt(body.radii.prod()) - std::cbrt(known.fruits[0].radii.prod())));
   CHECK(*m.fruits[0].radius_error < -0.001);
   CHECK(*m.fruits[0].completeness_error == Approx(-0.1));
   CHECK(*m.fruits[0].axis_error == Approx(0.3));
   CHECK(*m.fruits[1].axis_error == Approx(0.0).margin(1e-9));
-  CHECK_FALSE(m.fruits[1].center_error);
+  CHECK_FALSE(m.fruits[2].center_error);
   CHECK(*m.fruits[0].centroid_error_seen == Approx(off));
 }
 

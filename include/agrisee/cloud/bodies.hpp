@@ -12,6 +12,7 @@
 
 #include <agrisee/cloud/body_verdict.hpp>
 #include <agrisee/cloud/fit.hpp>
+#include <agrisee/cloud/mask_evidence.hpp>
 #include <agrisee/cloud/parameters.hpp>
 #include <agrisee/cloud/seen_through.hpp>
 #include <agrisee/core/body_counts.hpp>
@@ -28,7 +29,8 @@ struct BodyCandidate {
   std::string found_by;  ///< what proposed it; see Fruit::found_by
   /// What to count if its points do not support it: that they suggest a radius outside of what is expected, say.
   std::size_t BodyCounts::*doubt = nullptr;
-  std::optional<EllipsoidFit> fit = {};  ///< its fit to the same points as now, if it is known already
+  std::optional<EllipsoidFit> fit = {};      ///< its fit to the same points as now, if it is known already
+  std::optional<double> mask_log_odds = {};  ///< masks proposed it with these odds, and `fit` is that of their outlines
 };
 
 /// A body that won.
@@ -37,6 +39,7 @@ struct FoundBody {
   std::string found_by;     ///< the stage that found it; see Fruit::found_by
   double coverage = 0.0;    ///< share of its surface covered by its points
   double confidence = 0.0;  ///< probability that it is a fruit, see detail::fruit_probability
+  bool by_mask = false;     ///< `fit` is that of the outline of a mask, and better than one of the few points seen
 };
 
 namespace detail {
@@ -59,10 +62,12 @@ inline double overlap(const Ellipsoid& a, const Ellipsoid& b) {
 template <typename S>
 class Competition {
  public:
-  Competition(const PointCloud<S>& cloud, const BodyParameters& parameters, const SeenThrough& seen_through)
+  Competition(const PointCloud<S>& cloud, const BodyParameters& parameters, const SeenThrough& seen_through,
+              const MaskEvidence& masks)
       : cloud_(cloud),
         parameters_(parameters),
         seen_through_(seen_through),
+        masks_(masks),
         grid_(cloud, static_cast<S>(parameters.cell())),
         taken_(cloud.size(), 0) {}
 
@@ -77,7 +82,9 @@ class Competition {
       }
       const auto fit = c.fit ? c.fit : fitted(c, known);
       if (!fit) continue;
-      Entry e{*fit, &c.found_by, {}, 0.0, true};
+      Entry e{*fit, &c.found_by, {}, 0.0, true, c.mask_log_odds, 0.0};
+      e.prior = prior_of(e.fit.body);
+      if (e.mask_log_odds) prefer_points(e);
       if (std::size_t BodyCounts::*const fault = assess(e)) {
         ++(counts_.*(c.doubt ? c.doubt : fault));
         continue;
@@ -86,9 +93,8 @@ class Competition {
     }
   }
 
-  /// Take the best body again and again until none is left. @return the bodies taken, best first
-  std::vector<FoundBody> decide() {
-    std::vector<FoundBody> found;
+  /// Take the best body again and again until none is left. @param found receives the bodies taken, best first
+  void decide(std::vector<FoundBody>& found) {
     while (Entry* best = best_entry()) {
       best->alive = false;
       if (clashes(best->fit.body, found)) {
@@ -96,12 +102,28 @@ class Competition {
         continue;
       }
       ++counts_.taken;
-      found.push_back({best->fit, *best->found_by, best->verdict.coverage, best->confidence});
+      found.push_back(
+          {best->fit, *best->found_by, best->verdict.coverage, best->confidence, best->mask_log_odds.has_value()});
       take_points(best->fit.body);
       judge_anew(best->fit.body);
     }
+  }
+
+  /// Let the masks that no body explains propose bodies for what is left. @param found receives those that are taken
+  void fill_gaps(std::vector<FoundBody>& found) {
+    std::vector<Ellipsoid> known;
+    for (const FoundBody& f : found) known.push_back(f.fit.body);
+    std::vector<BodyCandidate> candidates;
+    for (const MaskBody& m : masks_.remaining(known))
+      candidates.push_back({m.fit.body, "mask", nullptr, m.fit, m.log_odds});
+    if (candidates.empty()) return;
+    enter(candidates);
+    decide(found);
+  }
+
+  /// Count the bodies that are left when all is decided.
+  void close() {
     for (const Entry& e : entries_) counts_.doubtful += e.alive;
-    return found;
   }
 
   /// What became of the candidates so far.
@@ -118,7 +140,32 @@ class Competition {
     Verdict verdict;
     double confidence = 0.0;
     bool alive = true;
+    std::optional<double> mask_log_odds = {};  // its fit is that of an outline, which the points do not change
+    double prior = 0.0;                        // log-odds by the masks
   };
+
+  /// How far sight lines through a body, and points inside it, speak against masks of several views: log-odds. A single
+  /// view's have been weighed when the body was proposed.
+  double against_masks(const Ellipsoid& body, const Verdict& v) const {
+    constexpr double kThrough = 25.0, kUnsure = 0.02, kInside = 10.0;
+    if (!masks_.remaining) return 0.0;
+    const double through = seen_through_ ? seen_through_(body) : 0.0;
+    return kThrough * std::max(0.0, through - kUnsure) + kInside * v.inside;
+  }
+
+  /// What the masks say of a body; 0 without any.
+  double prior_of(const Ellipsoid& body) const { return masks_.log_odds ? masks_.log_odds(body) : 0.0; }
+
+  /// Fit a body that a mask proposed to its points, where these cover half of it: from there on they say more of it
+  /// than its outline.
+  void prefer_points(Entry& e) {
+    constexpr double kEnough = 0.5;
+    const auto fit = refine(e.fit.body, parameters_.fit);
+    if (!fit || !plausible(fit->body, parameters_)) return;
+    if (judge(cloud_, grid_, taken_, fit->body, parameters_, {}).coverage < kEnough) return;
+    e.fit = *fit;
+    e.mask_log_odds.reset();
+  }
 
   /// Fit a body to the free points near it.
   std::optional<EllipsoidFit> refine(const Ellipsoid& start, const FitParameters& fit) {
@@ -161,7 +208,11 @@ class Competition {
   /// Whether a rough fit, to the points of near_, is so unlike a fruit that a better one is not worth its time.
   bool hopeless(const EllipsoidFit& fit) const {
     const Verdict v = judge_quickly(cloud_, near_, taken_, fit.body, parameters_);
-    return fruit_probability(v, fit, parameters_) < 0.1 * kHopeless * parameters_.min_confidence;
+    const double least = 0.1 * kHopeless * parameters_.min_confidence;
+    const auto below = [&](double prior) { return fruit_probability(v, fit, parameters_, prior) < least; };
+    if (!masks_.log_odds) return below(0.0);
+    if (below(masks_.most)) return true;  // whatever the masks say
+    return below(-masks_.most) && below(prior_of(fit.body));
   }
 
   /// Judge an entry by the free points; it is alive while it may win.
@@ -169,7 +220,12 @@ class Competition {
   std::size_t BodyCounts::*assess(Entry& e) const {
     const bool right_size = plausible(e.fit.body, parameters_);
     e.verdict = judge(cloud_, grid_, taken_, e.fit.body, parameters_, seen_through_);
-    e.confidence = fruit_probability(e.verdict, e.fit, parameters_);
+    e.confidence = fruit_probability(e.verdict, e.fit, parameters_, e.prior);
+    if (e.mask_log_odds) {  // little of it may show: the depths under the masks have decided
+      e.confidence = 1.0 / (1.0 + std::exp(against_masks(e.fit.body, e.verdict) - *e.mask_log_odds));
+      e.alive = right_size && e.confidence >= parameters_.min_confidence;
+      return e.alive ? nullptr : &BodyCounts::doubtful;
+    }
     e.alive = right_size && e.verdict.score() >= parameters_.min_coverage &&
               e.verdict.roundness >= parameters_.min_roundness &&
               e.confidence >= kHopeless * parameters_.min_confidence;
@@ -183,13 +239,16 @@ class Competition {
   }
 
   /// Of the living entries with enough confidence that with the largest score times radius squared times confidence,
-  /// the first of equals; null if there is none.
+  /// the first of equals; null if there is none. Those that masks proposed come first, the surest before the others.
   Entry* best_entry() {
     const auto area = [](const Entry& e) {
       const double r = e.fit.body.mean_radius();
       return e.verdict.score() * r * r * e.confidence;
     };
     Entry* best = nullptr;
+    for (Entry& e : entries_)
+      if (e.alive && e.mask_log_odds && (!best || e.confidence > best->confidence)) best = &e;
+    if (best) return best;
     for (Entry& e : entries_)
       if (e.alive && e.confidence >= parameters_.min_confidence && (!best || area(e) > area(*best))) best = &e;
     return best;
@@ -227,9 +286,10 @@ class Competition {
       if (gap > 0.5 * body.mean_radius()) continue;
       const std::size_t support = e.verdict.support;
       assess(e);  // most end here: their points are taken
-      if (!e.alive || e.verdict.support == support) continue;
+      if (!e.alive || e.mask_log_odds || e.verdict.support == support) continue;
       if (const auto again = refine(e.fit.body, parameters_.fit)) {
         e.fit = *again;
+        e.prior = prior_of(e.fit.body);
         assess(e);
       } else {
         e.alive = false;
@@ -240,6 +300,7 @@ class Competition {
   const PointCloud<S>& cloud_;
   const BodyParameters& parameters_;
   const SeenThrough& seen_through_;
+  const MaskEvidence& masks_;
   Grid<S> grid_;
   std::vector<char> taken_;  // whether a point belongs to a body that has won
   std::vector<Entry> entries_;
@@ -256,17 +317,21 @@ class Competition {
 /// @param parameters see their struct
 /// @param seen_through evidence of free space, or empty
 /// @param counts receives what became of the candidates, where it is not null
+/// @param masks evidence of a detector, or empty
 /// @return the bodies that won, best first; assign_to_bodies gives them their points
 /// @throws ParameterError; InputError if the cloud has no normals
 template <typename S>
 std::vector<FoundBody> find_bodies(const PointCloud<S>& cloud, const std::vector<BodyCandidate>& candidates,
                                    const BodyParameters& parameters = {}, const SeenThrough& seen_through = {},
-                                   BodyCounts* counts = nullptr) {
+                                   BodyCounts* counts = nullptr, const MaskEvidence& masks = {}) {
   parameters.check();
   check_input(cloud.normals.size() == cloud.points.size(), "find_bodies: the cloud has no normals");
-  detail::Competition<S> competition(cloud, parameters, seen_through);
+  detail::Competition<S> competition(cloud, parameters, seen_through, masks);
   competition.enter(candidates);
-  std::vector<FoundBody> found = competition.decide();
+  std::vector<FoundBody> found;
+  competition.decide(found);
+  if (masks.remaining) competition.fill_gaps(found);
+  competition.close();
   if (counts) *counts = competition.counts();
   return found;
 }

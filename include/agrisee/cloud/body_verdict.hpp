@@ -153,17 +153,21 @@ Verdict judge_quickly(const PointCloud<S>& cloud, const Indices& near, const std
 ///
 /// The weights were fitted to 1,700 bodies: in 33 simulated scenes (plants of six kinds and bare trusses, one to 14
 /// views, four noise models) and in three frames of real apple trees; docs/segmentation.md shows how well they hold.
-inline double fruit_probability(const Verdict& v, const EllipsoidFit& fit, const BodyParameters& parameters) {
+/// @param prior log-odds from elsewhere, which are added (MaskEvidence::log_odds)
+inline double fruit_probability(const Verdict& v, const EllipsoidFit& fit, const BodyParameters& parameters,
+                                double prior = 0.0) {
   if (v.support == 0 || !(v.coverage > 0.0)) return 0.0;
   constexpr double kMostPoints = 1500.0, kMostMisfit = 0.08, kRoundEnough = 0.8, kLarge = 0.5;  // more changes nothing
   const double radius = fit.body.mean_radius();
   const double points = std::min(static_cast<double>(v.support), kMostPoints);
   const double through = v.seen_through / (v.coverage + v.seen_through);
-  const double evidence = 3.95 - 14.4 * v.normal_spread - 2.32 * std::log1p(v.clutter) -
+  const double spread =
+      std::sqrt(std::max(0.0, v.normal_spread * v.normal_spread - parameters.normal_noise * parameters.normal_noise));
+  const double evidence = 3.95 - 14.4 * spread - 2.32 * std::log1p(v.clutter) -
                           29.4 * std::min(fit.rms / radius, kMostMisfit) + 1.05 * std::log(points / 50.0) +
                           1.55 * std::min(v.roundness, kRoundEnough) - 3.69 * through - 5.65 * v.inside / v.coverage +
                           1.7 * std::min(radius / parameters.radius_max, kLarge);
-  return 1.0 / (1.0 + std::exp(-evidence));
+  return 1.0 / (1.0 + std::exp(-(evidence + prior)));
 }
 
 }  // namespace agrisee::detail

@@ -81,8 +81,9 @@ inline std::pair<Eigen::Vector3d, Eigen::Matrix3d> semi_axes(const Ellipsoid& e)
 
 /// The result of a fit.
 struct EllipsoidFit {
-  Ellipsoid body;                                               ///< the fitted ellipsoid
-  Eigen::Matrix3d center_covariance = Eigen::Matrix3d::Zero();  ///< covariance of body.center (m2)
+  Ellipsoid body;                                                        ///< the fitted ellipsoid
+  Eigen::Matrix3d center_covariance = Eigen::Matrix3d::Zero();           ///< covariance of body.center (m2)
+  Eigen::Matrix3d center_covariance_by_shape = Eigen::Matrix3d::Zero();  ///< the part of it that the prior causes (m2)
   /// Covariance of body.A as (xx, yy, zz, xy, xz, yz) (1/m2), with the prior on its shape.
   Eigen::Matrix<double, 6, 6> shape_covariance = Eigen::Matrix<double, 6, 6>::Zero();
   double rms = 0.0;         ///< root mean square distance of the inliers (m)
@@ -281,6 +282,9 @@ std::optional<EllipsoidFit> fit_ellipsoid(const PointCloud<S>& cloud, const Indi
   if (fit.inliers < least / 2) return std::nullopt;
   const detail::Matrix9 covariance = Eigen::LDLT<detail::Matrix9>(information).solve(detail::Matrix9::Identity());
   fit.center_covariance = covariance.topLeftCorner<3, 3>() * size * size;
+  const Eigen::Matrix<double, 3, 9> center = covariance.topRows<3>();
+  fit.center_covariance_by_shape =
+      center * detail::shape_information(fit.body, size, parameters.shape_prior) * center.transpose() * size * size;
   fit.shape_covariance = covariance.bottomRightCorner<6, 6>() / (size * size);
   return fit;
 }

@@ -121,9 +121,20 @@ struct IcpParameters {
   int min_matches = 20;      ///< with fewer matches the cloud is left where it is
   double max_translation = 0.005;  ///< larger corrections are rejected (m, at the source's centroid)
   double max_rotation = deg(1.0);  ///< larger rotations are rejected (rad)
+  /// Every how many matches one tells something of its own, as the errors of neighboring pixels are alike. A correction
+  /// has to lower the residual by more than chance would then. 0: every correction that lowers it is accepted.
+  double independent = 0.0;
+  double pose_translation = 0.002;  ///< expected error of the initial position (m); only `independent` > 0 reads it
+  double pose_rotation = deg(0.3);  ///< expected error of the initial rotation (rad); only `independent` > 0 reads it
 
   /// The defaults, which suit the stages of [1]; it does no registration and gives no values.
   static IcpParameters paper() { return {}; }
+  /// For dense views of a depth camera.
+  static IcpParameters of_views() {
+    IcpParameters p;
+    p.independent = 30.0;
+    return p;
+  }
 
   /// Smallest scale (m) of the robust kernels: a thousandth of `max_distance`, for data without noise.
   double min_scale() const { return 1e-3 * max_distance; }
@@ -146,6 +157,9 @@ struct IcpParameters {
     f("min_matches", p.min_matches, Range::at_least(6));
     f("max_translation", p.max_translation, Range::positive());
     f("max_rotation", p.max_rotation, Range::positive());
+    f("independent", p.independent, Range::not_negative());
+    f("pose_translation", p.pose_translation, Range::positive());
+    f("pose_rotation", p.pose_rotation, Range::positive().in_radians());
   }
 };
 
@@ -190,6 +204,7 @@ struct BodyParameters {
   double min_coverage = 0.08;     ///< least share of the surface that is covered by points, less what contradicts it
   double min_roundness = 0.35;    ///< least ratio of the smaller to the larger principal curvature of its points
   double min_confidence = 0.5;    ///< least probability that it is a fruit (detail::fruit_probability)
+  double normal_noise = 0.0;      ///< standard deviation of the angle of a normal that is the sensor's alone (rad)
   double max_overlap = 0.30;      ///< deepest penetration of two bodies, as a share of the smaller radius
   FitParameters fit;              ///< fit of the ellipsoids
 
@@ -217,6 +232,7 @@ struct BodyParameters {
     f("min_coverage", p.min_coverage, Range::above(0.0).below(1.0));
     f("min_roundness", p.min_roundness, Range::between(0.0, 1.0));
     f("min_confidence", p.min_confidence, Range::between(0.0, 1.0));
+    f("normal_noise", p.normal_noise, Range::not_negative().in_radians());
     f("max_overlap", p.max_overlap, Range::not_negative());
     f("fit", p.fit);
   }

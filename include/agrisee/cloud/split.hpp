@@ -168,10 +168,14 @@ template <typename S>
 void propose_voted(const PointCloud<S>& cloud, const PointCloud<S>& voters, const std::vector<char>& fresh,
                    const Grid<S>& grid, const StageParameters& stages, const SplitParameters& parameters,
                    std::vector<BodyCandidate>& candidates) {
-  constexpr double kWidest = 2.5;    // largest over smallest radius that vote together
-  constexpr std::size_t kMost = 60;  // proposals; weaker maxima are noise
-  constexpr double kVotes = 1.5;     // votes that a center needs, for each of the fewest points that may be a fruit
+  constexpr double kWidest = 2.5;      // largest over smallest radius that vote together
+  constexpr double kMost = 60;         // proposals of each part of the range; weaker maxima are noise
+  constexpr double kMostOnDisc = 2.8;  // and of each disc of the largest radius, so that a whole tree has enough
+  constexpr double kVotes = 1.5;       // votes that a center needs, for each of the fewest points that may be a fruit
+  const double area = static_cast<double>(cloud.size()) * stages.spacing * stages.spacing;
   const BodyParameters& bodies = parameters.bodies;
+  const double discs = area / (kPi * bodies.radius_max * bodies.radius_max);
+  const auto most = static_cast<std::size_t>(std::max(kMost, kMostOnDisc * discs));
   const std::size_t known = candidates.size();
   const double range = bodies.radius_max / bodies.radius_min;
   const int parts = std::max(1, static_cast<int>(std::ceil(std::log(range) / std::log(kWidest) - 1e-9)));
@@ -189,7 +193,7 @@ void propose_voted(const PointCloud<S>& cloud, const PointCloud<S>& voters, cons
       };
       if (std::none_of(candidates.begin(), candidates.begin() + static_cast<std::ptrdiff_t>(known), same))
         propose({v.center, radius}, "sphere_voting", bodies, candidates);
-      if (candidates.size() >= proposed + kMost) break;
+      if (candidates.size() >= proposed + most) break;
     }
   }
 }
@@ -205,7 +209,7 @@ bool has_changed(const Grid<S>& grid, const Ellipsoid& body, const std::vector<c
   return news * kFewest >= near;
 }
 
-/// Fit each body once more to all points of its own label, and assign the points anew; twice.
+/// Fit each body once more to all points of its own label, and assign the points anew; twice. Bodies by masks stay.
 template <typename S>
 void refit(const PointCloud<S>& cloud, const BodyParameters& bodies, Split& out) {
   FitParameters last_fit = bodies.fit;
@@ -213,9 +217,11 @@ void refit(const PointCloud<S>& cloud, const BodyParameters& bodies, Split& out)
   for (int round = 0; round < 2; ++round) {
     auto own = indices_by_label(out.labels);
     own.resize(out.found.size());
-    for (std::size_t b = 0; b < out.found.size(); ++b)
+    for (std::size_t b = 0; b < out.found.size(); ++b) {
+      if (out.found[b].by_mask) continue;
       if (const auto fit = fit_ellipsoid(cloud, own[b], out.found[b].fit.body, last_fit))
         if (plausible(fit->body, bodies)) out.found[b].fit = *fit;
+    }
     out.labels = assign_to_bodies(cloud, out.found, bodies);
   }
 }
@@ -264,10 +270,11 @@ void extend_labels(Labels& labels, const PointCloud<S>& cloud, const std::vector
   }
 }
 
-/// Let segments and voted centers propose bodies, and give the points to the bodies that win.
+/// Let segments, masks and voted centers propose bodies, and give the points to the bodies that win.
 template <typename S>
 void split_by_bodies(const PointCloud<S>& cloud, const Segments& segments, const StageParameters& stages,
-                     const SplitParameters& parameters, const SeenThrough& seen_through, int threads, Split& out) {
+                     const SplitParameters& parameters, const SeenThrough& seen_through, const MaskEvidence& masks,
+                     int threads, Split& out) {
   const BodyParameters& bodies = parameters.bodies;
   std::vector<BodyCandidate> candidates;
   BodyCounts not_proposed;
@@ -277,7 +284,8 @@ void split_by_bodies(const PointCloud<S>& cloud, const Segments& segments, const
         ++(not_proposed.*fault);
   const Grid<S> grid(cloud, static_cast<S>(stages.growing.radius), threads);
   propose_voted(cloud, cloud, {}, grid, stages, parameters, candidates);
-  out.found = find_bodies(cloud, candidates, bodies, seen_through, &out.bodies);
+  for (const MaskBody& m : masks.bodies) candidates.push_back({m.fit.body, "mask", nullptr, m.fit, m.log_odds});
+  out.found = find_bodies(cloud, candidates, bodies, seen_through, &out.bodies, masks);
   out.bodies.too_small += not_proposed.too_small;
   out.bodies.too_large += not_proposed.too_large;
   out.bodies.inside_out += not_proposed.inside_out;
@@ -289,7 +297,8 @@ void split_by_bodies(const PointCloud<S>& cloud, const Segments& segments, const
   for (std::size_t s = 0; s < segments.members.size(); ++s) sizes[s + 1] = segments.members[s].size();
   auto own = indices_by_label(out.labels);
   own.resize(out.found.size());
-  for (std::size_t b = 0; b < out.found.size(); ++b) out.found[b].found_by = found_by(own[b], segments, sizes);
+  for (std::size_t b = 0; b < out.found.size(); ++b)
+    if (!out.found[b].by_mask) out.found[b].found_by = found_by(own[b], segments, sizes);
 }
 
 }  // namespace detail
@@ -299,10 +308,11 @@ void split_by_bodies(const PointCloud<S>& cloud, const Segments& segments, const
 /// @param parameters see their struct
 /// @param seen_through evidence of free space for the competition, or empty
 /// @param threads the result does not depend on it
+/// @param masks evidence of a detector, or empty; only bodies use it
 /// @throws ParameterError; InputError if the cloud has no normals; Cancelled
 template <typename S>
 Split split(const PointCloud<S>& cloud, const SplitParameters& parameters = {}, const SeenThrough& seen_through = {},
-            int threads = 1) {
+            int threads = 1, const MaskEvidence& masks = {}) {
   parameters.check();
   check_input(cloud.normals.size() == cloud.points.size(), "split: the cloud has no normals");
   Split out;
@@ -314,7 +324,7 @@ Split split(const PointCloud<S>& cloud, const SplitParameters& parameters = {}, 
 
   const detail::Segments segments = detail::find_segments(cloud, *stages, threads, out);
   if (parameters.fit_bodies) {
-    detail::split_by_bodies(cloud, segments, *stages, parameters, seen_through, threads, out);
+    detail::split_by_bodies(cloud, segments, *stages, parameters, seen_through, masks, threads, out);
     return out;
   }
   out.labels = segments.labels;
@@ -333,10 +343,12 @@ Split split(const PointCloud<S>& cloud, const SplitParameters& parameters = {}, 
 /// @param known bodies found before
 /// @param parameters see their struct
 /// @param seen_through evidence of free space for the competition, or empty
+/// @param fresh one a point, nonzero for those that are new; empty: all
+/// @param masks evidence of a detector, or empty
 /// @throws ParameterError; InputError if the cloud has no normals; Cancelled
 template <typename S>
 Split track(const PointCloud<S>& cloud, const std::vector<FoundBody>& known, const SplitParameters& parameters = {},
-            const SeenThrough& seen_through = {}, const std::vector<char>& fresh = {}) {
+            const SeenThrough& seen_through = {}, const std::vector<char>& fresh = {}, const MaskEvidence& masks = {}) {
   parameters.check();
   check_input(cloud.normals.size() == cloud.points.size(), "track: the cloud has no normals");
   check_input(fresh.empty() || fresh.size() == cloud.size(), "track: fresh needs one value a point");
@@ -349,6 +361,7 @@ Split track(const PointCloud<S>& cloud, const std::vector<FoundBody>& known, con
   if (!stages) return out;
   std::vector<BodyCandidate> candidates;
   for (const FoundBody& k : known) {
+    if (k.by_mask) continue;  // its masks propose it again
     candidates.push_back({k.fit.body, k.found_by});
     if (!fresh.empty() && !detail::has_changed(grid, k.fit.body, fresh)) candidates.back().fit = k.fit;
   }
@@ -357,7 +370,8 @@ Split track(const PointCloud<S>& cloud, const std::vector<FoundBody>& known, con
   if (!fresh.empty())
     for (const Index i : off_them) fresh_off_them.push_back(fresh[static_cast<std::size_t>(i)]);
   detail::propose_voted(cloud, select(cloud, off_them), fresh_off_them, grid, *stages, parameters, candidates);
-  out.found = find_bodies(cloud, candidates, bodies, seen_through);
+  for (const MaskBody& m : masks.bodies) candidates.push_back({m.fit.body, "mask", nullptr, m.fit, m.log_odds});
+  out.found = find_bodies(cloud, candidates, bodies, seen_through, nullptr, masks);
   out.labels = assign_to_bodies(cloud, out.found, bodies);
   return out;
 }

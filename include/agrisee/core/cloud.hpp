@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// @file
-/// AgriSEE's own point cloud: points and, if known, their normals and the view that each came from.
+/// AgriSEE's own point cloud: points and, if known, their normals, the view that each came from, their colours and
+/// what a detector took them for.
 #pragma once
 
+#include <agrisee/core/cancellation.hpp>
+#include <agrisee/core/color.hpp>
 #include <agrisee/core/error.hpp>
 #include <agrisee/core/traits.hpp>
 
@@ -10,12 +13,14 @@
 
 namespace agrisee {
 
-/// A point cloud as a structure of arrays. `normals` and `views` are empty or as long as `points`.
+/// A point cloud as a structure of arrays. All but `points` are empty or as long as `points`.
 template <typename S>
 struct PointCloud {
   std::vector<Vector3<S>> points;   ///< m, in the world frame unless said otherwise
   std::vector<Vector3<S>> normals;  ///< unit normals towards the side that was seen; zero = unknown
   std::vector<int> views;           ///< index of the view that observed the point; -1 = unknown
+  std::vector<Rgb> colors = {};     ///< measured colours
+  std::vector<int> instances = {};  ///< number of a detector's instance in the point's view; 0 = none
 
   /// Number of points.
   std::size_t size() const { return points.size(); }
@@ -57,11 +62,15 @@ Indices finite_indices(const C& cloud) {
 }
 
 /// Copies the finite points of any cloud, in single precision, with their normals if the traits know any. O(n).
+/// @throws Cancelled
 template <typename C>
 Cloud finite_points(const C& cloud) {
   Cloud out;
   bool any_normal = false;
+  out.points.reserve(agrisee::size(cloud));
+  if constexpr (detail::KnowsNormals<C>::value) out.normals.reserve(agrisee::size(cloud));
   for (std::size_t i = 0; i < agrisee::size(cloud); ++i) {
+    if ((i & 0x3FFF) == 0) throw_if_cancelled();
     const Eigen::Vector3f p = point(cloud, i).template cast<float>();
     if (!is_finite(p)) continue;
     out.points.push_back(p);
@@ -83,19 +92,20 @@ PointCloud<scalar_t<C>> select(const C& cloud, const Indices& indices) {
   return out;
 }
 
-/// Copies the points `indices` of a PointCloud with their normals and views.
+/// Copies the points `indices` of a PointCloud with all that is known of them.
 template <typename S>
 PointCloud<S> select(const PointCloud<S>& cloud, const Indices& indices) {
   PointCloud<S> out;
-  out.points.reserve(indices.size());
-  if (!cloud.normals.empty()) out.normals.reserve(indices.size());
-  if (!cloud.views.empty()) out.views.reserve(indices.size());
-  for (Index index : indices) {
-    const auto i = static_cast<std::size_t>(index);
-    out.points.push_back(cloud.points[i]);
-    if (!cloud.normals.empty()) out.normals.push_back(cloud.normals[i]);
-    if (!cloud.views.empty()) out.views.push_back(cloud.views[i]);
-  }
+  const auto copy = [&](const auto& from, auto& to) {
+    if (from.empty()) return;
+    to.reserve(indices.size());
+    for (const Index i : indices) to.push_back(from[static_cast<std::size_t>(i)]);
+  };
+  copy(cloud.points, out.points);
+  copy(cloud.normals, out.normals);
+  copy(cloud.views, out.views);
+  copy(cloud.colors, out.colors);
+  copy(cloud.instances, out.instances);
   return out;
 }
 

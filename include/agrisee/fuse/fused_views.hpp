@@ -35,6 +35,8 @@ class FusedViews : public Views {
   const std::vector<sensor::SurfaceImage>& images() const override { return images_; }
   bool discarded(std::size_t view) const override { return views_[view].discarded; }
   Eigen::Vector3d shift_to_reported(const Eigen::Vector3d& center) const override;
+  std::vector<Eigen::Matrix3d> center_errors(const std::vector<Ellipsoid>& bodies,
+                                             const FitParameters& parameters) const override;
 
  private:
   struct Taken {
@@ -58,6 +60,8 @@ class FusedViews : public Views {
   void add(sensor::SurfaceImage image, std::size_t id, std::vector<Eigen::Vector3f>& added);
   void count_refuting();
   void lay_on_map(sensor::SurfaceImage& image) const;
+  Returned measured_again(const sensor::SurfaceImage& image) const;
+  void learn_returns(const sensor::SurfaceImage& image);
 
   Aabb scan_volume_;
   FusionParameters parameters_;
@@ -65,6 +69,7 @@ class FusedViews : public Views {
   SurfelMap surfels_;
   std::vector<Refuting> refuting_;  // one a surfel
   std::vector<Taken> views_;
+  std::vector<Returned> measured_;                        // one a view: what it measures of what later ones show
   std::vector<sensor::SurfaceImage> images_;              // what each view saw; of discarded ones only the pose
   std::map<std::size_t, sensor::SurfaceImage> withheld_;  // what discarded views saw, by number
 };

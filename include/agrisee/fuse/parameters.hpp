@@ -35,7 +35,9 @@ struct FreeSpaceParameters {
   double min_fill = 0.85;  ///< cells without return count as evidence if surfaces return at least this share of pixels
   double max_incidence = deg(50);  ///< bodies are tested where their surface is seen at less than this angle (rad)
   int min_refuting = 2;            ///< a surfel is removed if this many views looked through it and at most half saw it
-  double max_contradiction = 0.3;  ///< a view is rejected if it contradicts more than this share of what others saw
+  double max_contradiction = 0.45;  ///< a view is rejected if it contradicts more than this share of what others saw
+  double leaf_depth = 0.03;  ///< but views whose depths differ by less do not contradict (m): leaves read too deep, and
+                             ///< by how much depends on what stands behind them
 
   /// @throws FieldError for the first field that is out of its range
   void check() const { check_fields(*this); }
@@ -48,16 +50,67 @@ struct FreeSpaceParameters {
     f("max_incidence", p.max_incidence, Range::above(0.0).below({kPi / 2, "pi/2"}).in_radians());
     f("min_refuting", p.min_refuting, Range::at_least(1));
     f("max_contradiction", p.max_contradiction, Range::above(0.0).up_to(1.0));
+    f("leaf_depth", p.leaf_depth, Range::not_negative());
+  }
+};
+
+/// Parameters of what the masks of a detector say (fuse/masks.hpp).
+struct MaskParameters {
+  double max_score = 0.95;  ///< no score counts for more than this, none for less than 1 less this
+  double trust = 0.5;       ///< the log-odds of a score count by this factor: detectors are surer than they should be
+  double recall = 0.5;      ///< share of the fruit for which the detector has a mask, at least: surface without a mask
+                            ///< is fruit with 1 less this times the odds
+  double max_log_odds = 4;  ///< all masks together change the log-odds of a body by no more than this
+  double edge = 1.5;        ///< standard deviation of a mask's outline (pixels)
+  bool alike = true;        ///< expect fruit whose outline is hidden to be as large as the others in sight
+
+  /// @throws FieldError for the first field that is out of its range
+  void check() const { check_fields(*this); }
+
+  /// f(name, field, range) for every field; without a range where there is none.
+  template <typename P, typename F>
+  static void fields(P& p, F&& f) {
+    f("max_score", p.max_score, Range::above(0.5).below(1.0));
+    f("trust", p.trust, Range::between(0.0, 1.0));
+    f("recall", p.recall, Range::at_least(0.0).below(1.0));
+    f("max_log_odds", p.max_log_odds, Range::positive());
+    f("edge", p.edge, Range::positive());
+    f("alike", p.alike);
+  }
+};
+
+/// Parameters of the color prior: what a simple rule on colors says where no detector has looked
+/// (fuse/color_prior.hpp).
+struct ColorPriorParameters {
+  bool enabled = false;      ///< whether colors speak for fruit and against all else
+  double hue_from = -1.1;    ///< a pixel has the color of fruit from this hue angle on (rad, CIELAB; red is at 0.6) ...
+  double hue_to = 1.1;       ///< ... to this one (rad)
+  double min_chroma = 15.0;  ///< and from this chroma on (CIELAB)
+  double score = 0.8;        ///< of a patch of such pixels, as of a detector's mask
+  double least_disc = 0.25;  ///< smaller patches than this share of the smallest expected fruit's disc are left out
+
+  /// @throws FieldError for the first field that is out of its range
+  void check() const { check_fields(*this); }
+
+  /// f(name, field, range) for every field; without a range where there is none.
+  template <typename P, typename F>
+  static void fields(P& p, F&& f) {
+    f("enabled", p.enabled);
+    f("hue_from", p.hue_from, Range::between({-kPi / 2, "-pi/2"}, {1.5 * kPi, "3 pi/2"}).in_radians());
+    f("hue_to", p.hue_to, Range::between({p.hue_from, "hue_from"}, {1.5 * kPi, "3 pi/2"}).in_radians());
+    f("min_chroma", p.min_chroma, Range::not_negative());
+    f("score", p.score, Range::between(0.0, 1.0));
+    f("least_disc", p.least_disc, Range::positive());
   }
 };
 
 /// Parameters of FusedViews: those of the stages that it calls. Parameters::fusion() returns the pipeline's.
 struct FusionParameters {
-  sensor::SurfaceParameters surface;  ///< how a surface is reconstructed from each frame
-  SurfelParameters surfels;           ///< how the surfaces are fused
-  IcpParameters icp;                  ///< how each view is registered
-  FreeSpaceParameters free_space;     ///< when a sight line counts as evidence that something is not there
-  bool register_views = true;         ///< register each view to what is fused so far (ICP) before it is fused
+  sensor::SurfaceParameters surface;              ///< how a surface is reconstructed from each frame
+  SurfelParameters surfels;                       ///< how the surfaces are fused
+  IcpParameters icp = IcpParameters::of_views();  ///< how each view is registered
+  FreeSpaceParameters free_space;                 ///< when a sight line counts as evidence that something is not there
+  bool register_views = true;  ///< register each view to what is fused so far (ICP) before it is fused
 };
 
 }  // namespace agrisee::fuse

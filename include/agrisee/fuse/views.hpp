@@ -6,6 +6,7 @@
 /// World frame, metres.
 #pragma once
 
+#include <agrisee/cloud/fit.hpp>
 #include <agrisee/core/cloud.hpp>
 #include <agrisee/core/pose.hpp>
 #include <agrisee/geometry/aabb.hpp>
@@ -81,6 +82,11 @@ class Views {
   /// @param center of the map (m)
   /// @return the shift (m)
   virtual Eigen::Vector3d shift_to_reported(const Eigen::Vector3d& center) const = 0;
+
+  /// Covariances of the centers of bodies fitted to the map by what the views err, see fuse::center_errors; zero for a
+  /// body where that cannot be told.
+  virtual std::vector<Eigen::Matrix3d> center_errors(const std::vector<Ellipsoid>& bodies,
+                                                     const FitParameters& parameters) const = 0;
 };
 
 }  // namespace agrisee::fuse

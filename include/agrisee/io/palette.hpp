@@ -3,15 +3,14 @@
 /// The colours that fruit have in cloud files, pictures and the page of a scan.
 #pragma once
 
+#include <agrisee/core/color.hpp>
 #include <agrisee/core/types.hpp>
 
-#include <array>
 #include <cmath>
 
 namespace agrisee::io {
 
-/// Red, green and blue, 0..255.
-using Rgb = std::array<std::uint8_t, 3>;
+using agrisee::Rgb;
 
 /// The colour of the fruit `id`, counted from 1; grey for 0 and below. There are ten colours that are easy to tell
 /// apart; after them come darker and lighter versions of the same ten.

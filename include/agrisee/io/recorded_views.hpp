@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// Views that a real camera took: `views.yaml`, which names the camera's intrinsics, and of each view the file of its
-/// depth image and the pose that it was taken from (docs/formats.md describes it). World frame, metres.
+/// depth image, the pose that it was taken from and, optionally, colours and what a detector found (docs/formats.md
+/// describes it). World frame, metres.
 #pragma once
 
+#include <agrisee/io/detections.hpp>
 #include <agrisee/sensor/depth_frame.hpp>
+#include <agrisee/sensor/rectify.hpp>
 #include <agrisee/workcell.hpp>
 
 #include <filesystem>
@@ -19,6 +22,7 @@ struct RecordedView {
   std::filesystem::path depth;              ///< file of the depth image; a relative path: from the folder of views.yaml
   Pose world_T_optical = Pose::Identity();  ///< pose of the camera's optical frame (z forward, x right, y down)
   std::string place;                        ///< "<file>:<line>: views[<i>].depth", for messages
+  ChannelFiles channels = {};               ///< colours and masks; relative paths as that of `depth`
 };
 
 /// The contents of views.yaml.
@@ -26,16 +30,18 @@ struct RecordedViews {
   std::filesystem::path folder;       ///< that of views.yaml
   Workcell workcell;                  ///< name, camera and base; an empty scan volume if the file states none
   std::optional<double> depth_scale;  ///< metres per unit of the depth images; none: default_depth_scale
+  sensor::Distortion distortion;      ///< of the images; read_frame takes it out
   std::vector<RecordedView> views;    ///< in the order in which they were taken
   std::vector<std::string> warnings;  ///< of each rotation that was rounded and has been put right
 };
 
-/// Read views.yaml. Depth images are not read yet, but have to exist.
+/// Read views.yaml. Images are not read yet, but have to exist.
 /// @throws FileError "<path>:<line>: <key>: ..." for a missing or unknown key, a value out of range, a pose that is not
-///   rigid to 1e-3, or a depth image that does not exist
+///   rigid to 1e-3, or an image that does not exist
 RecordedViews read_recorded_views(const std::filesystem::path& path);
 
-/// Read the depth image of one view. Depths outside of the camera's range have no return.
+/// Read the depth image of one view with its other channels, rectified. Depths outside of the camera's range have no
+/// return.
 /// @param recorded as read_recorded_views returns it
 /// @param view     number of the view, from 0
 /// @throws FileError, which names the view, for an image that cannot be read, of another size than the camera's, or

@@ -25,6 +25,7 @@ struct RunInfo {
   std::string preset = "default";  ///< see Parameters::preset
   std::string planner;             ///< see Parameters::planner
   std::string parameters_json;     ///< all parameters as a JSON object; empty means {}
+  std::string detector;            ///< the simulated detector; empty: there was none
 };
 
 /// The time now, in UTC, as ISO 8601 writes it: "2026-03-21T13:07:55Z". Where the environment variable

@@ -30,6 +30,13 @@ struct SceneFile {
 ///   same id, or a mesh that cannot be read or whose relative path leaves the folder
 SceneFile read_scene(const std::filesystem::path& path);
 
+/// The same from the text of a scene file.
+/// @param text YAML
+/// @param path the file that the text stands for: it is named in messages, and paths of meshes are relative to its
+/// folder
+/// @throws FileError as read_scene
+SceneFile scene_from_yaml(const std::string& text, const std::filesystem::path& path);
+
 /// Write a scene. Its meshes are written into the same folder, as `fruit_<id>.stl` for fruit and
 /// `<class>_<number>.stl` for other objects; the scene file is written last, and each file atomically. Reading the file
 /// gives the same scene, except that mesh vertices are in the order of their first use.

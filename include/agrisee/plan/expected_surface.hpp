@@ -84,7 +84,8 @@ class ExpectedSurface {
   /// What the last view was expected to show, before it is used.
   std::vector<Promise> promises(const Progress& progress) const;
   /// Compare what was expected of a view with the cloud and the space that are known since.
-  void weigh(const std::vector<Promise>& promised, const Cloud& cloud);
+  /// @param measured share (0..1) of the surface before it that the view measured
+  void weigh(const std::vector<Promise>& promised, const Cloud& cloud, double measured);
   /// Whether a sight line has reached the voxel of a point (m, world).
   bool is_known(const Eigen::Vector3f& point) const;
   /// Mark the voxels that a view's sight lines have reached.

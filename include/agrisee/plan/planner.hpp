@@ -6,6 +6,7 @@
 /// World frame, metres, seconds.
 #pragma once
 
+#include <agrisee/cloud/mask_evidence.hpp>
 #include <agrisee/result.hpp>
 #include <agrisee/sensor/surface_image.hpp>
 
@@ -47,6 +48,7 @@ struct Progress {
   const std::vector<Eigen::Vector3f>& observed;     ///< all points that the last view showed (m)
   const Indices* kept = nullptr;  ///< points that the filter kept which ran after the last view, as indices into the
                                   ///< points from before the view followed by `added`; null when no filter ran
+  const MaskEvidence* masks = nullptr;  ///< what a detector says of the views so far; null where none has looked
 };
 
 /// Decides where to look next.

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// @file
-/// A depth image: what a depth camera measures in one shot.
+/// A depth image: what a depth camera measures in one shot, with the colours and what a detector found in them.
 #pragma once
 
+#include <agrisee/core/color.hpp>
 #include <agrisee/core/median.hpp>
+#include <agrisee/sensor/detection.hpp>
 #include <agrisee/sensor/intrinsics.hpp>
 
 #include <optional>
@@ -11,16 +13,18 @@
 
 namespace agrisee::sensor {
 
-/// A depth image in the optical frame (z forward, x right, y down).
+/// A depth image in the optical frame (z forward, x right, y down). Its other channels are optional and registered to
+/// it: pixel by pixel the same rays.
 struct DepthFrame {
-  Intrinsics intrinsics;     ///< of the image
-  std::vector<float> depth;  ///< z (m) of each pixel, row by row; 0, negative or not finite: no return
+  Intrinsics intrinsics;                      ///< of the image
+  std::vector<float> depth;                   ///< z (m) of each pixel, row by row; 0, negative or not finite: no return
+  std::vector<Rgb> color = {};                ///< of each pixel, or empty
+  std::vector<std::uint16_t> instances = {};  ///< the detection whose mask holds each pixel, 0 = none; or empty
+  std::vector<Detection> detections = {};  ///< one per instance; an instance that is not listed is a fruit with score 1
+  bool detected = false;                   ///< whether a detector looked at this frame, found something or not
 
   /// Depth z (m) of the pixel in column u and row v.
-  float at(int u, int v) const {
-    return depth[static_cast<std::size_t>(v) * static_cast<std::size_t>(intrinsics.width) +
-                 static_cast<std::size_t>(u)];
-  }
+  float at(int u, int v) const { return depth[intrinsics.index(u, v)]; }
   /// Whether a depth (m) is that of a return.
   static bool valid(float z) { return z > 0.0f && std::isfinite(z); }
   /// The point (m, optical frame) of a pixel; meaningful where valid(at(u, v)).
@@ -34,6 +38,8 @@ inline void check(const DepthFrame& frame) {
                   std::isfinite(k.cx) && std::isfinite(k.cy),
               "depth frame: unusable intrinsics");
   check_input(frame.depth.size() == k.size(), "depth frame: the image size differs from its intrinsics");
+  check_input(frame.color.empty() || frame.color.size() == k.size(), "depth frame: not one colour a pixel");
+  check_input(frame.instances.empty() || frame.instances.size() == k.size(), "depth frame: not one instance a pixel");
 }
 
 /// The median (m) of the depths that are returns, of some 2000 pixels; none without any.

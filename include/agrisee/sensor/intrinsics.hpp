@@ -7,6 +7,8 @@
 #include <agrisee/core/types.hpp>
 
 #include <cmath>
+#include <cstddef>
+#include <optional>
 
 namespace agrisee::sensor {
 
@@ -26,6 +28,19 @@ struct Intrinsics {
   Eigen::Vector3d ray(double u, double v) const { return {(u - cx) / fx, (v - cy) / fy, 1.0}; }
   /// Pixel coordinates (u, v) of a point p (optical frame) with z > 0.
   Eigen::Vector2d project(const Eigen::Vector3d& p) const { return {fx * p.x() / p.z() + cx, fy * p.y() / p.z() + cy}; }
+  /// Index of a pixel inside the image, which is stored row by row.
+  std::size_t index(int u, int v) const {
+    return static_cast<std::size_t>(v) * static_cast<std::size_t>(width) + static_cast<std::size_t>(u);
+  }
+  /// Index of the pixel in which a point p (optical frame) is seen; none if that is outside the image or z is not
+  /// positive.
+  std::optional<std::size_t> pixel_of(const Eigen::Vector3d& p) const {
+    if (!(p.z() > 0.0)) return std::nullopt;
+    const Eigen::Vector2d uv = project(p);
+    const double u = std::floor(uv.x() + 0.5), v = std::floor(uv.y() + 0.5);
+    if (!(u >= 0.0 && v >= 0.0 && u < width && v < height)) return std::nullopt;
+    return index(static_cast<int>(u), static_cast<int>(v));
+  }
 };
 
 /// Intrinsics of an image whose principal point is in its middle.

@@ -22,12 +22,10 @@ DepthFrame frame_from_points(const C& points, const Intrinsics& intrinsics) {
   frame.depth.assign(intrinsics.size(), 0.0f);
   for (std::size_t i = 0; i < agrisee::size(points); ++i) {
     const Eigen::Vector3d p = point(points, i).template cast<double>();
-    if (!is_finite(p) || !(p.z() > 0.0)) continue;
-    const Eigen::Vector2d uv = intrinsics.project(p);
-    const double u = std::floor(uv.x() + 0.5), v = std::floor(uv.y() + 0.5);
-    if (!(u >= 0 && v >= 0 && u < intrinsics.width && v < intrinsics.height)) continue;
-    float& z = frame.depth[static_cast<std::size_t>(v) * static_cast<std::size_t>(intrinsics.width) +
-                           static_cast<std::size_t>(u)];
+    if (!is_finite(p)) continue;
+    const auto pixel = intrinsics.pixel_of(p);
+    if (!pixel) continue;
+    float& z = frame.depth[*pixel];
     if (z == 0.0f || static_cast<float>(p.z()) < z) z = static_cast<float>(p.z());
   }
   return frame;

@@ -47,19 +47,19 @@ struct SurfaceImage {
   std::vector<float> sigma;                 ///< standard deviations of the points along the ray (m), positive
   std::size_t points_in = 0;                ///< number of pixels that returned a point inside the scan volume
   double noise = 0.0;                       ///< standard deviation of the cells' raw depths (m)
-  double fill = 0.0;                        ///< median share of valid pixels in the cells that have any
+  /// Share of the pixels on a surface that return something: the median in the cells that have any and, once the view
+  /// is compared with others (fuse::returned), no more than the share of their surface that it measures.
+  double fill = 0.0;
 
   /// Index of the cell in which a point is seen, or -1 if it is outside the image or behind the sensor.
   /// @param p_world the point (m)
   /// @param z if given, receives the depth of the point (m), unless it is behind the sensor or outside the image
   std::ptrdiff_t cell(const Eigen::Vector3d& p_world, double* z = nullptr) const {
     const Eigen::Vector3d p = world_T_optical.linear().transpose() * (p_world - world_T_optical.translation());
-    if (!(p.z() > 0.0)) return -1;
-    const Eigen::Vector2d uv = intrinsics.project(p);
-    const double u = std::floor(uv.x() + 0.5), v = std::floor(uv.y() + 0.5);
-    if (!(u >= 0 && v >= 0 && u < intrinsics.width && v < intrinsics.height)) return -1;
+    const auto seen = intrinsics.pixel_of(p);
+    if (!seen) return -1;
     if (z) *z = p.z();
-    return static_cast<std::ptrdiff_t>(v) * intrinsics.width + static_cast<std::ptrdiff_t>(u);
+    return static_cast<std::ptrdiff_t>(*seen);
   }
 };
 

@@ -1,15 +1,19 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// @file
-/// A simulated depth camera: it casts rays into a scene (raycast.hpp) and applies a noise model (depth_noise.hpp).
+/// A simulated depth camera: it casts rays into a scene (raycast.hpp) and applies a noise model (depth_noise.hpp). A
+/// colour camera (color_camera.hpp) and a detector (detector.hpp) may look along the same rays.
 #pragma once
 
 #include <agrisee/core/pose.hpp>
 #include <agrisee/sensor/depth_camera.hpp>
 #include <agrisee/sensor/depth_frame.hpp>
+#include <agrisee/study/color_camera.hpp>
 #include <agrisee/study/depth_noise.hpp>
+#include <agrisee/study/detector.hpp>
 #include <agrisee/study/traced_scene.hpp>
 
 #include <cstdint>
+#include <optional>
 
 namespace agrisee::study {
 
@@ -31,5 +35,29 @@ struct Capture {
 /// @throws ParameterError for unusable limits or noise, InputError for unusable intrinsics or a pose that is not rigid
 Capture capture(const TracedScene& scene, const sensor::DepthCamera& sensor, const Pose& world_T_optical,
                 const NoiseModel& noise, std::uint64_t seed, std::uint64_t view, int threads = 1);
+
+/// What looks at a view beside the depth camera.
+struct ImageOptions {
+  bool color = false;                               ///< a colour camera
+  std::optional<DetectorParameters> detector = {};  ///< a detector
+  ColorParameters light = {};                       ///< of the colour camera
+
+  /// Whether anything does.
+  bool any() const { return color || detector; }
+};
+
+/// Add to a frame the colours of a view and what a detector finds in it. Its depths stay as they are. What is added
+/// depends only on the scene, the pose, the seed and the number of the view.
+/// @param frame its intrinsics are read
+/// @param scene what the camera sees
+/// @param sensor its largest range is how far the camera sees
+/// @param world_T_optical true pose of the camera
+/// @param options what is added
+/// @param seed, view select the random numbers
+/// @param threads number of threads; the result does not depend on it
+/// @throws ParameterError, InputError as capture
+void add_images(sensor::DepthFrame& frame, const TracedScene& scene, const sensor::DepthCamera& sensor,
+                const Pose& world_T_optical, const ImageOptions& options, std::uint64_t seed, std::uint64_t view,
+                int threads = 1);
 
 }  // namespace agrisee::study

@@ -22,6 +22,7 @@ struct TrueFruit {
   std::optional<Eigen::Vector3d> growth_axis;          ///< unit vector from the centre to the calyx
   std::optional<bool> hidden;                          ///< placed behind the others, as seen from the robot
   std::optional<double> visible_share;                 ///< share of its surface that is visible from frontal_eye()
+  std::optional<double> ripeness = {};                 ///< share (0..1) of its surface that has turned; of the scene
 };
 
 /// The ground truth of a scene.

@@ -50,10 +50,13 @@ struct FruitMetrics {
   std::optional<double> centroid_error;       ///< centroid, from the mean of its observable surface (m)
   std::optional<double> centroid_error_seen;  ///< the same, from the mean of the surface that the views saw (m)
   std::optional<double> center_error;         ///< centre of the fitted body, from the volume centroid (m)
-  std::optional<double> radius_error;         ///< cube root of the product of the semi-axes, fitted minus true (m)
-  std::optional<double> semi_axis_error;      ///< largest difference between semi-axes ordered by size (m)
-  std::optional<double> axis_error;           ///< angle between the pose's z axis and the true growth axis (rad)
-  std::optional<double> completeness_error;   ///< completeness of the fitted body minus `scanned`
+  /// The same error in standard deviations: (e^T C^-1 e / 3)^1/2 with the body's covariance C; 1 in the root mean
+  /// square over many fruit if the covariances are honest. None where the body states no covariance.
+  std::optional<double> center_error_normalised;
+  std::optional<double> radius_error;        ///< cube root of the product of the semi-axes, fitted minus true (m)
+  std::optional<double> semi_axis_error;     ///< largest difference between semi-axes ordered by size (m)
+  std::optional<double> axis_error;          ///< angle between the pose's z axis and the true growth axis (rad)
+  std::optional<double> completeness_error;  ///< completeness of the fitted body minus `scanned`
 
   /// f(name, field) for every field.
   template <typename P, typename F>
@@ -70,6 +73,7 @@ struct FruitMetrics {
     f("centroid_error", p.centroid_error);
     f("centroid_error_seen", p.centroid_error_seen);
     f("center_error", p.center_error);
+    f("center_error_normalised", p.center_error_normalised);
     f("radius_error", p.radius_error);
     f("semi_axis_error", p.semi_axis_error);
     f("axis_error", p.axis_error);

@@ -3,8 +3,10 @@
 /// A simulated scene: meshes in world coordinates, each with its class and, if it is a fruit, its identity.
 #pragma once
 
+#include <agrisee/core/color.hpp>
 #include <agrisee/geometry/mesh.hpp>
 
+#include <optional>
 #include <vector>
 
 namespace agrisee::study {
@@ -17,6 +19,10 @@ struct Object {
   int id = 0;                            ///< positive and unique for a fruit, 0 for everything else
   ObjectClass cls = ObjectClass::other;  ///< what it is
   Mesh mesh;                             ///< its surface (m, world)
+  /// What it is made of, if that is not what it is: light enters a leaf, a fruit may mirror it.
+  std::optional<ObjectClass> material = std::nullopt;
+  std::optional<double> ripeness = std::nullopt;  ///< of a fruit: the share (0..1) of its surface that has turned
+  std::optional<Rgb> color = std::nullopt;        ///< of its surface; empty: by class, and that of a fruit by ripeness
 };
 
 /// All objects that a sensor can see or that can occlude others.

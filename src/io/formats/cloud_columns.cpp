@@ -4,6 +4,7 @@
 #include <agrisee/io/files.hpp>
 
 #include <algorithm>
+#include <cmath>
 
 namespace agrisee::io {
 namespace {
@@ -25,6 +26,11 @@ Sink vector_sink(std::vector<Vector3<T>>& values, int axis) {
 }
 
 Sink int_sink(std::vector<int>& values) { return {nullptr, values.empty() ? nullptr : values.data(), 1}; }
+
+/// A channel of a colour, from a number in 0..255.
+std::uint8_t channel_of(float value) {
+  return static_cast<std::uint8_t>(std::lround(std::clamp(std::isfinite(value) ? value : 0.0f, 0.0f, 255.0f)));
+}
 
 /// Scale a normal to unit length; set it to zero if it has no direction.
 void tidy(Eigen::Vector3f& normal) {
@@ -51,9 +57,38 @@ CloudColumns::CloudColumns(const std::filesystem::path& path, std::size_t points
   if (has("view")) file_.cloud.views.resize(points);
   instance_ = has("instance") ? "instance" : has("label") ? "label" : "";
   if (!instance_.empty()) file_.instance.resize(points);
+  if (has("detection")) file_.cloud.instances.resize(points);
+  find_colors(points, names);
 }
 
-Sink CloudColumns::sink(const std::string& name) {
+/// Find the columns of the measured colours: `measured_red` and so on; else `red green blue` or `r g b`, unless there
+/// is an `instance` that they paint; else `rgb` or `rgba`, packed as PCL does.
+void CloudColumns::find_colors(std::size_t points, const std::vector<std::string>& names) {
+  const auto has = [&](const std::string& name) { return std::find(names.begin(), names.end(), name) != names.end(); };
+  const char* const sets[][3] = {
+      {"measured_red", "measured_green", "measured_blue"}, {"red", "green", "blue"}, {"r", "g", "b"}};
+  for (const auto& set : sets) {
+    if (!(has(set[0]) && has(set[1]) && has(set[2]))) continue;
+    if (&set != &sets[0] && has("instance")) continue;
+    std::copy(set, set + 3, channels_);
+    channel_values_.resize(3 * points);
+    return;
+  }
+  if (has("instance")) return;
+  packed_ = has("rgb") ? "rgb" : has("rgba") ? "rgba" : "";
+  if (!packed_.empty()) packs_.resize(points);
+}
+
+Sink CloudColumns::sink(const std::string& name, Scalar type) {
+  const bool is_float = type == Scalar::f32 || type == Scalar::f64;
+  for (std::size_t c = 0; c < 3; ++c)
+    if (!name.empty() && name == channels_[c]) {
+      whole_channels_ = whole_channels_ && !is_float;
+      return {channel_values_.empty() ? nullptr : channel_values_.data() + c, nullptr, 3};
+    }
+  if (!name.empty() && name == packed_)
+    return {nullptr, nullptr, 1, packs_.empty() ? nullptr : packs_.data(), is_float};
+  if (name == "detection") return int_sink(file_.cloud.instances);
   if (const int axis = axis_of(name, ""); axis >= 0) return vector_sink(file_.cloud.points, axis);
   if (const int axis = normal_axis(name); axis >= 0) return vector_sink(file_.cloud.normals, axis);
   if (name == "view") return int_sink(file_.cloud.views);
@@ -61,30 +96,38 @@ Sink CloudColumns::sink(const std::string& name) {
   return {};
 }
 
+/// Turn what was read into colours. Floats of which none is above 1 reach from 0 to 1, else from 0 to 255.
+void CloudColumns::finish_colors() {
+  std::vector<Rgb>& colors = file_.cloud.colors;
+  if (!channel_values_.empty()) {
+    const bool unit = !whole_channels_ &&
+                      std::all_of(channel_values_.begin(), channel_values_.end(), [](float v) { return !(v > 1.0f); });
+    const float scale = unit ? 255.0f : 1.0f;
+    for (std::size_t i = 0; i < channel_values_.size(); i += 3)
+      colors.push_back({channel_of(scale * channel_values_[i]), channel_of(scale * channel_values_[i + 1]),
+                        channel_of(scale * channel_values_[i + 2])});
+  }
+  for (const std::uint32_t bits : packs_)
+    colors.push_back({static_cast<std::uint8_t>(bits >> 16 & 255u), static_cast<std::uint8_t>(bits >> 8 & 255u),
+                      static_cast<std::uint8_t>(bits & 255u)});
+}
+
 CloudFile CloudColumns::finish(NonFinite non_finite, std::size_t width, std::size_t height) {
   Cloud& cloud = file_.cloud;
   for (Eigen::Vector3f& normal : cloud.normals) tidy(normal);
+  finish_colors();
   file_.width = width;
   file_.height = height;
   if (non_finite == NonFinite::keep) return std::move(file_);
-  std::size_t kept = 0;
-  for (std::size_t i = 0; i < cloud.points.size(); ++i) {
-    if (!is_finite(cloud.points[i])) continue;
-    if (kept != i) {
-      cloud.points[kept] = cloud.points[i];
-      if (!cloud.normals.empty()) cloud.normals[kept] = cloud.normals[i];
-      if (!cloud.views.empty()) cloud.views[kept] = cloud.views[i];
-      if (!file_.instance.empty()) file_.instance[kept] = file_.instance[i];
-    }
-    ++kept;
-  }
-  file_.dropped = cloud.points.size() - kept;
+  const Indices finite = finite_indices(cloud);
+  file_.dropped = cloud.points.size() - finite.size();
   if (file_.dropped > 0) {
-    cloud.points.resize(kept);
-    if (!cloud.normals.empty()) cloud.normals.resize(kept);
-    if (!cloud.views.empty()) cloud.views.resize(kept);
-    if (!file_.instance.empty()) file_.instance.resize(kept);
-    file_.width = kept;
+    cloud = select(cloud, finite);
+    Labels kept;
+    for (const Index i : finite)
+      if (!file_.instance.empty()) kept.push_back(file_.instance[static_cast<std::size_t>(i)]);
+    file_.instance = std::move(kept);
+    file_.width = finite.size();
     file_.height = 1;
   }
   return std::move(file_);

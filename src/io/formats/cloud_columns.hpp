@@ -20,14 +20,22 @@ class CloudColumns {
   /// @throws FileError when x, y or z is missing
   CloudColumns(const std::filesystem::path& path, std::size_t points, const std::vector<std::string>& names);
 
-  /// Where the column `name` is stored; an empty Sink for a column that is not used.
-  Sink sink(const std::string& name);
+  /// Where the column `name`, of numbers of that type, is stored; an empty Sink for a column that is not used.
+  Sink sink(const std::string& name, Scalar type = Scalar::f32);
   /// The cloud that was read. Points that are not finite are dropped or kept; normals have unit length or are zero.
   CloudFile finish(NonFinite non_finite, std::size_t width, std::size_t height);
 
  private:
+  void find_colors(std::size_t points, const std::vector<std::string>& names);
+  void finish_colors();
+
   CloudFile file_;
-  std::string instance_;  // name of the column that holds the instance; empty if there is none
+  std::string channels_[3];            // names of the columns of red, green and blue; empty if there are none
+  std::vector<float> channel_values_;  // three a point
+  bool whole_channels_ = true;         // they are integers, 0..255
+  std::string packed_;                 // name of the column of packed colours; empty if there is none
+  std::vector<std::uint32_t> packs_;   // one a point: 0x00rrggbb
+  std::string instance_;               // name of the column that holds the instance; empty if there is none
 };
 
 }  // namespace agrisee::io

@@ -68,6 +68,19 @@ decltype(auto) with_type(Scalar type, F&& f) {
   return f(double{});
 }
 
+/// The 32 bits of a number: of a float as they are, of an integer its lowest. PCL packs colours so.
+template <typename T>
+std::uint32_t bits_of(T value) {
+  if constexpr (std::is_floating_point_v<T>) {
+    const auto single = static_cast<float>(value);
+    std::uint32_t bits;
+    std::memcpy(&bits, &single, sizeof bits);
+    return bits;
+  } else {
+    return static_cast<std::uint32_t>(value);
+  }
+}
+
 /// Decode the rows [begin, end) of a column. @return the first row whose number is not an int but must be, or end
 template <typename T, bool Swapped>
 std::size_t decode_rows(const Column& c, std::size_t begin, std::size_t end) {
@@ -80,6 +93,10 @@ std::size_t decode_rows(const Column& c, std::size_t begin, std::size_t end) {
     int* out = c.sink.ints + begin * c.sink.step;
     for (std::size_t r = begin; r < end; ++r, data += c.stride, out += c.sink.step)
       if (!to_int(load<T, Swapped>(data), *out)) return r;
+  } else if (c.sink.bits) {
+    std::uint32_t* out = c.sink.bits + begin * c.sink.step;
+    for (std::size_t r = begin; r < end; ++r, data += c.stride, out += c.sink.step)
+      *out = bits_of(load<T, Swapped>(data));
   }
   return end;
 }
@@ -88,6 +105,10 @@ std::size_t decode_rows(const Column& c, std::size_t begin, std::size_t end) {
 
 bool Sink::store(std::size_t row, double value) const {
   if (floats) floats[row * step] = static_cast<float>(value);
+  if (bits) {
+    if (!from_float && !(value >= -2147483648.0 && value <= 4294967295.0)) return false;
+    bits[row * step] = from_float ? bits_of(value) : bits_of(static_cast<std::int64_t>(value));
+  }
   if (!ints) return true;
   if (value >= 2147483648.0 && value <= 4294967295.0) value -= 4294967296.0;  // low 32 bits, as in to_int
   return to_int(value, ints[row * step]);

@@ -24,18 +24,22 @@ constexpr std::size_t size_of(Scalar type) {
   return sizes[static_cast<std::size_t>(type)];
 }
 
-/// Where the numbers of a column are stored: in at most one of the two arrays, row r at index r * step. A column with
-/// neither array is skipped.
+/// Where the numbers of a column are stored: in at most one of the arrays, row r at index r * step. A column with no
+/// array is skipped.
 struct Sink {
   float* floats = nullptr;
   int* ints = nullptr;
   std::size_t step = 1;
+  std::uint32_t* bits =
+      nullptr;              ///< receives the 32 bits of a number: of a float as they are, of an integer its lowest
+  bool from_float = false;  ///< whether numbers for `bits` that were read as text are floats
 
   /// Whether the column is stored at all.
-  explicit operator bool() const { return floats || ints; }
+  explicit operator bool() const { return floats || ints || bits; }
   /// The sink of the rows from `first` on.
   Sink from(std::size_t first) const {
-    return {floats ? floats + first * step : nullptr, ints ? ints + first * step : nullptr, step};
+    return {floats ? floats + first * step : nullptr, ints ? ints + first * step : nullptr, step,
+            bits ? bits + first * step : nullptr, from_float};
   }
   /// Store a number. @return false if the array is of int and the number is not an integer of 32 bits
   bool store(std::size_t row, double value) const;

@@ -7,10 +7,13 @@
 #include <cstdio>
 #include <cstring>
 #include <fcntl.h>
+#include <iterator>
 #include <regex>
 #include <sys/stat.h>
 #include <system_error>
 #include <unistd.h>
+
+#include "io/formats/text.hpp"
 
 namespace agrisee::io {
 
@@ -28,6 +31,42 @@ bool sync(const fs::path& path) {
   return done;
 }
 
+/// Whether two names are alike but for their digits: those of numbered files, of which none stands for another.
+bool differ_in_digits_only(const std::string& a, const std::string& b) {
+  const auto without = [](std::string name) {
+    name.erase(std::remove_if(name.begin(), name.end(), [](char c) { return c >= '0' && c <= '9'; }), name.end());
+    return name;
+  };
+  return without(a) == without(b);
+}
+
+/// "; did you mean 'season/scene.yaml'?" for a path that does not exist: the first of its names that is missing,
+/// replaced by the nearest name in its folder. Empty if no name is near.
+std::string nearest_path(const fs::path& path) {
+  fs::path known;
+  std::error_code error;
+  for (auto at = path.begin(); at != path.end(); ++at) {
+    const fs::path& part = *at;
+    if (fs::exists(known / part, error)) {
+      known /= part;
+      continue;
+    }
+    std::vector<std::string> names;
+    for (fs::directory_iterator i(known.empty() ? "." : known, error), end; !error && i != end; i.increment(error)) {
+      const std::string name = i->path().filename().string();
+      if (name[0] != '.' && !differ_in_digits_only(name, part.string())) names.push_back(name);
+    }
+    std::sort(names.begin(), names.end());
+    const auto nearest = nearest_word(part.string(), names);
+    if (!nearest) return "";
+    known /= *nearest;
+    fs::path whole = known;
+    for (auto rest = std::next(at); rest != path.end(); ++rest) whole /= *rest;
+    return "; did you mean '" + (fs::exists(whole, error) ? whole : known).string() + "'?";
+  }
+  return "";
+}
+
 }  // namespace
 
 void fail(const fs::path& path, const std::string& message) { throw FileError(path.string() + ": " + message); }
@@ -39,7 +78,7 @@ void fail(const fs::path& path, std::size_t line, const std::string& message) {
 InputFile::InputFile(const fs::path& path) : path_(path) {
   std::error_code error;
   const fs::file_status status = fs::status(path, error);
-  if (!fs::exists(status)) fail(path, "no such file");
+  if (!fs::exists(status)) fail(path, "no such file" + nearest_path(path));
   if (fs::is_directory(status)) fail(path, "is a directory, not a file");
   if (!fs::is_regular_file(status) && !fs::is_fifo(status)) fail(path, "is not a regular file");
   file_.reset(std::fopen(path.c_str(), "rb"));

@@ -6,6 +6,7 @@
 
 #include "io/formats/cloud_columns.hpp"
 #include "io/formats/lzf.hpp"
+#include "io/formats/records.hpp"
 #include "io/formats/text.hpp"
 
 namespace agrisee::io {
@@ -233,12 +234,47 @@ CloudFile read_pcd(const std::filesystem::path& path, NonFinite non_finite) {
     if (f.count == 1) names.push_back(f.name);
   CloudColumns columns(path, header.points, names);
   std::vector<Sink> sinks;
-  for (const Field& f : header.fields) sinks.push_back(f.count == 1 ? columns.sink(f.name) : Sink{});
+  for (const Field& f : header.fields) sinks.push_back(f.count == 1 ? columns.sink(f.name, f.type) : Sink{});
   if (header.data == "ascii")
     read_ascii(path, header, body, sinks);
   else if (header.points > 0)
     read_binary(path, header, compressed ? plain.data.get() : body.data(), compressed, sinks);
   return columns.finish(non_finite, header.width, header.height);
+}
+
+void write_pcd(const std::filesystem::path& path, const Cloud& cloud, const Labels& instance) {
+  check_input(instance.empty() || instance.size() == cloud.size(), "write_pcd: not one label per point");
+  check_input(cloud.normals.empty() || cloud.normals.size() == cloud.size(), "write_pcd: not one normal per point");
+  check_channels(cloud);
+  std::string names = "x y z", sizes = "4 4 4", types = "F F F", counts = "1 1 1";
+  const auto field = [&](const char* name, const char* type) {
+    names += std::string(" ") + name;
+    sizes += " 4";
+    types += std::string(" ") + type;
+    counts += " 1";
+  };
+  if (!cloud.normals.empty())
+    for (const char* name : {"normal_x", "normal_y", "normal_z"}) field(name, "F");
+  if (!cloud.colors.empty()) field("rgb", "F");
+  if (!instance.empty()) field("label", "U");
+  if (!cloud.instances.empty()) field("detection", "I");
+  const std::string count = std::to_string(cloud.size());
+  AtomicFile file(path);
+  file.write("# .PCD v0.7 - AgriSEE, metres\nVERSION 0.7\nFIELDS " + names + "\nSIZE " + sizes + "\nTYPE " + types +
+             "\nCOUNT " + counts + "\nWIDTH " + count + "\nHEIGHT 1\nVIEWPOINT 0 0 0 1 0 0 0\nPOINTS " + count +
+             "\nDATA binary\n");
+  const std::size_t size = 2 * sizes.size() + 2;  // four bytes for each digit, which blanks part
+  write_records(file, cloud.size(), size, [&](char*& at, std::size_t i) {
+    put_vector(at, cloud.points[i]);
+    if (!cloud.normals.empty()) put_vector(at, cloud.normals[i]);
+    if (!cloud.colors.empty()) {
+      const Rgb& c = cloud.colors[i];
+      put(at, std::uint32_t{c[0]} << 16 | std::uint32_t{c[1]} << 8 | std::uint32_t{c[2]});
+    }
+    if (!instance.empty()) put(at, std::int32_t{instance[i]});
+    if (!cloud.instances.empty()) put(at, std::int32_t{cloud.instances[i]});
+  });
+  file.commit();
 }
 
 }  // namespace agrisee::io

@@ -4,28 +4,10 @@
 
 #include "io/formats/cloud_columns.hpp"
 #include "io/formats/ply_document.hpp"
+#include "io/formats/records.hpp"
 
 namespace agrisee::io {
 namespace {
-
-/// Write records block by block. pack(at, i) writes record i to `at` and moves `at` behind it.
-template <typename Pack>
-void write_records(AtomicFile& file, std::size_t records, std::size_t record_size, Pack&& pack) {
-  constexpr std::size_t kBlock = 4096;
-  std::vector<char> block(kBlock * record_size);
-  for (std::size_t begin = 0; begin < records; begin += kBlock) {
-    const std::size_t end = std::min(records, begin + kBlock);
-    char* at = block.data();
-    for (std::size_t i = begin; i < end; ++i) pack(at, i);
-    file.write(block.data(), (end - begin) * record_size);
-  }
-}
-
-void put_vector(char*& at, const Eigen::Vector3f& v) {
-  put(at, v.x());
-  put(at, v.y());
-  put(at, v.z());
-}
 
 std::string header(std::size_t points, const char* properties) {
   return "ply\nformat binary_little_endian 1.0\ncomment AgriSEE, metres, world frame\nelement vertex " +
@@ -44,7 +26,8 @@ CloudFile read_ply(const std::filesystem::path& path, NonFinite non_finite) {
     if (!p.is_list) names.push_back(p.name);
   CloudColumns columns(path, vertex->count, names);
   PlyDocument::Wanted wanted;
-  for (const PlyProperty& p : vertex->properties) wanted.sinks.push_back(p.is_list ? Sink{} : columns.sink(p.name));
+  for (const PlyProperty& p : vertex->properties)
+    wanted.sinks.push_back(p.is_list ? Sink{} : columns.sink(p.name, p.type));
   document.read({{vertex, wanted}});
   return columns.finish(non_finite, vertex->count, 1);
 }
@@ -52,16 +35,26 @@ CloudFile read_ply(const std::filesystem::path& path, NonFinite non_finite) {
 void write_ply(const std::filesystem::path& path, const Cloud& cloud, const Labels& instance) {
   check_input(instance.empty() || instance.size() == cloud.size(), "write_ply: not one label per point");
   check_input(cloud.normals.empty() || cloud.normals.size() == cloud.size(), "write_ply: not one normal per point");
+  check_channels(cloud);
+  std::string properties =
+      "property float nx\nproperty float ny\nproperty float nz\n"
+      "property uchar red\nproperty uchar green\nproperty uchar blue\nproperty int instance\n";
+  const bool colored = !cloud.colors.empty(), detected = !cloud.instances.empty();
+  if (colored)
+    properties += "property uchar measured_red\nproperty uchar measured_green\nproperty uchar measured_blue\n";
+  if (detected) properties += "property int detection\n";
   AtomicFile file(path);
-  file.write(header(cloud.size(),
-                    "property float nx\nproperty float ny\nproperty float nz\n"
-                    "property uchar red\nproperty uchar green\nproperty uchar blue\nproperty int instance\n"));
-  write_records(file, cloud.size(), 31, [&](char*& at, std::size_t i) {
+  file.write(header(cloud.size(), properties.c_str()));
+  const std::size_t size = 31 + (colored ? 3 : 0) + (detected ? 4 : 0);
+  write_records(file, cloud.size(), size, [&](char*& at, std::size_t i) {
     const std::int32_t label = instance.empty() ? 0 : instance[i];
     put_vector(at, cloud.points[i]);
     put_vector(at, cloud.normals.empty() ? Eigen::Vector3f(0, 0, 0) : cloud.normals[i]);
     for (std::uint8_t c : fruit_color(label)) put(at, c);
     put(at, label);
+    if (colored)
+      for (const std::uint8_t c : cloud.colors[i]) put(at, c);
+    if (detected) put(at, std::int32_t{cloud.instances[i]});
   });
   file.commit();
 }

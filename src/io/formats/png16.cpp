@@ -4,6 +4,7 @@
 #include <agrisee/io/files.hpp>
 
 #include <limits>
+#include <type_traits>
 
 #define STB_IMAGE_IMPLEMENTATION
 #define STB_IMAGE_STATIC
@@ -43,18 +44,46 @@ void check_chunks(const std::filesystem::path& path, std::string_view bytes) {
   }
 }
 
-/// Test that an image has one channel of 16 bits, and not more pixels than its bytes can encode.
-void check_kind(const std::filesystem::path& path, std::string_view bytes) {
-  const std::size_t header = kPngSignature.size() + 8;
-  const std::uint64_t width = big_endian(bytes, header), height = big_endian(bytes, header + 4);
-  const int bits = bytes[header + 8], kind = bytes[header + 9];
-  if (kind != 0) fail(path, "is a colour image; depth has one grey channel");
-  if (bits != 16) fail(path, "has " + std::to_string(bits) + " bits a pixel; depth needs 16");
-  constexpr std::uint64_t kMost = 16384, kBestRatio = 1032;  // of deflate
-  if (width < 1 || height < 1 || width > kMost || height > kMost)
-    fail(path, "has " + std::to_string(width) + " x " + std::to_string(height) + " pixels; at most " +
+/// What the header of an image says.
+struct PngHeader {
+  std::uint64_t width, height;
+  int bits;  // of a channel
+  int kind;  // 0 grey, 2 colour, 3 palette, 4 grey with opacity, 6 colour with opacity
+};
+
+/// Test that a file is whole and small enough, and not of more pixels than its bytes can encode.
+PngHeader checked_header(const std::filesystem::path& path, std::string_view bytes) {
+  check_chunks(path, bytes);
+  const std::size_t at = kPngSignature.size() + 8;
+  const PngHeader header{big_endian(bytes, at), big_endian(bytes, at + 4), bytes[at + 8], bytes[at + 9]};
+  constexpr std::uint64_t kMost = 16384;
+  if (header.width < 1 || header.height < 1 || header.width > kMost || header.height > kMost)
+    fail(path, "has " + std::to_string(header.width) + " x " + std::to_string(header.height) + " pixels; at most " +
                    std::to_string(kMost) + " each way are read");
-  if (2 * width * height / kBestRatio > bytes.size()) fail(path, "is damaged: too short for its size");
+  if (bytes.size() > static_cast<std::size_t>(std::numeric_limits<int>::max())) fail(path, "is larger than 2 GB");
+  return header;
+}
+
+/// Test that an image is not of more pixels than its bytes can encode. @param bits a pixel
+void check_size(const std::filesystem::path& path, const PngHeader& header, int bits, std::string_view bytes) {
+  constexpr std::uint64_t kBestRatio = 1032;  // of deflate
+  if (static_cast<std::uint64_t>(bits) * header.width * header.height / 8 / kBestRatio > bytes.size())
+    fail(path, "is damaged: too short for its size");
+}
+
+/// Decode by stb_image. @param channels how many to make  @param load its function for 8 or for 16 bits
+template <typename Load>
+auto decoded(const std::filesystem::path& path, std::string_view bytes, int channels, Load&& load, int& width,
+             int& height) {
+  int in_file = 0;
+  auto* pixels = load(reinterpret_cast<const stbi_uc*>(bytes.data()), static_cast<int>(bytes.size()), &width, &height,
+                      &in_file, channels);
+  if (!pixels) fail(path, std::string("cannot be decoded: ") + stbi_failure_reason());
+  const std::size_t size =
+      static_cast<std::size_t>(width) * static_cast<std::size_t>(height) * static_cast<std::size_t>(channels);
+  std::vector<std::remove_pointer_t<decltype(pixels)>> out(pixels, pixels + size);
+  stbi_image_free(pixels);
+  return out;
 }
 
 }  // namespace
@@ -62,16 +91,43 @@ void check_kind(const std::filesystem::path& path, std::string_view bytes) {
 bool is_png(std::string_view bytes) { return bytes.substr(0, kPngSignature.size()) == kPngSignature; }
 
 GreyImage decode_png16(const std::filesystem::path& path, std::string_view bytes) {
-  check_chunks(path, bytes);
-  check_kind(path, bytes);
-  if (bytes.size() > static_cast<std::size_t>(std::numeric_limits<int>::max())) fail(path, "is larger than 2 GB");
+  const PngHeader header = checked_header(path, bytes);
+  if (header.kind != 0) fail(path, "is a colour image; depth has one grey channel");
+  if (header.bits != 16) fail(path, "has " + std::to_string(header.bits) + " bits a pixel; depth needs 16");
+  check_size(path, header, 16, bytes);
   GreyImage image;
-  int channels = 0;
-  stbi_us* pixels = stbi_load_16_from_memory(reinterpret_cast<const stbi_uc*>(bytes.data()),
-                                             static_cast<int>(bytes.size()), &image.width, &image.height, &channels, 1);
-  if (!pixels) fail(path, std::string("cannot be decoded: ") + stbi_failure_reason());
-  image.pixels.assign(pixels, pixels + static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height));
-  stbi_image_free(pixels);
+  image.pixels = decoded(path, bytes, 1, stbi_load_16_from_memory, image.width, image.height);
+  return image;
+}
+
+ColorImage decode_png_colors(const std::filesystem::path& path, std::string_view bytes) {
+  const PngHeader header = checked_header(path, bytes);
+  if (header.kind == 0 || header.kind == 4)
+    fail(path, "is a grey image of " + std::to_string(header.bits) + " bits; a colour image has three channels");
+  if (header.bits == 16) fail(path, "has 16 bits a channel; colours need 8");
+  check_size(path, header, header.kind == 3 ? header.bits : 24, bytes);
+  ColorImage image;
+  const auto values = decoded(path, bytes, 3, stbi_load_from_memory, image.width, image.height);
+  image.pixels.resize(values.size() / 3);
+  for (std::size_t i = 0; i < image.pixels.size(); ++i)
+    image.pixels[i] = {values[3 * i], values[3 * i + 1], values[3 * i + 2]};
+  return image;
+}
+
+LabelImage decode_png_labels(const std::filesystem::path& path, std::string_view bytes) {
+  const PngHeader header = checked_header(path, bytes);
+  if (header.kind != 0)
+    fail(path, "has colours or opacity; a label image has one grey channel, whose values are numbers of instances");
+  if (header.bits != 8 && header.bits != 16)
+    fail(path, "has " + std::to_string(header.bits) + " bits a pixel; a label image needs 8 or 16");
+  check_size(path, header, header.bits, bytes);
+  LabelImage image;
+  if (header.bits == 16) {
+    image.labels = decoded(path, bytes, 1, stbi_load_16_from_memory, image.width, image.height);
+  } else {
+    const auto values = decoded(path, bytes, 1, stbi_load_from_memory, image.width, image.height);
+    image.labels.assign(values.begin(), values.end());
+  }
   return image;
 }
 

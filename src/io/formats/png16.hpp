@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// @file
-/// PNG images with one channel of 16 bits, as depth cameras store them.
+/// PNG images: with one channel of 16 bits, as depth cameras store them, with colours, and with labels.
 #pragma once
+
+#include <agrisee/io/color_image.hpp>
 
 #include <cstdint>
 #include <filesystem>
@@ -23,6 +25,14 @@ bool is_png(std::string_view bytes);
 /// Decode a PNG image (by stb_image). The checksum of every chunk is tested. @param path for messages
 /// @throws FileError for bytes that are no PNG or damaged, a colour image, and one of fewer than 16 bits
 GreyImage decode_png16(const std::filesystem::path& path, std::string_view bytes);
+
+/// Decode a PNG image with colours of 8 bits, or with a palette. @param path for messages
+/// @throws FileError for bytes that are no PNG or damaged, a grey image, and one of 16 bits a channel
+ColorImage decode_png_colors(const std::filesystem::path& path, std::string_view bytes);
+
+/// Decode a PNG image with one grey channel of 8 or 16 bits. @param path for messages
+/// @throws FileError for bytes that are no PNG or damaged, and a colour image
+LabelImage decode_png_labels(const std::filesystem::path& path, std::string_view bytes);
 
 /// The bytes of a PNG image.
 std::string encode_png16(const GreyImage& image);

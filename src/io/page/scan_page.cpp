@@ -107,6 +107,7 @@ std::string cloud_text(const Cloud& cloud, const Labels& labels, std::size_t max
   std::vector<std::int8_t> normals;
   std::vector<std::uint16_t> label;
   std::vector<std::int16_t> view;
+  std::vector<std::uint8_t> color;
   for (const Index i : index) {
     points.push_back(at(cloud.points, i));
     if (!cloud.normals.empty()) {
@@ -118,6 +119,7 @@ std::string cloud_text(const Cloud& cloud, const Labels& labels, std::size_t max
     if (!labels.empty()) label.push_back(static_cast<std::uint16_t>(std::clamp(at(labels, i), 0, 65535)));
     if (cloud.views.size() == cloud.size())
       view.push_back(static_cast<std::int16_t>(std::clamp(at(cloud.views, i), -1, 32767)));
+    if (!cloud.colors.empty()) color.insert(color.end(), at(cloud.colors, i).begin(), at(cloud.colors, i).end());
   }
   Json j;
   j["count"] = points.size();
@@ -131,6 +133,7 @@ std::string cloud_text(const Cloud& cloud, const Labels& labels, std::size_t max
     append(out, "normals", base64(normals));
     append(out, "labels", base64(label));
     append(out, "views", base64(view));
+    if (!color.empty()) append(out, "colors", base64(color));
   });
 }
 

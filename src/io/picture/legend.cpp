@@ -9,12 +9,16 @@
 namespace agrisee::io {
 namespace {
 
-/// The position of a fruit as the legend lists it.
+/// The position of a fruit as the legend lists it, and its ripeness where that is known.
 std::string legend_text(const Fruit& fruit) {
   if (!fruit.position().allFinite()) return "";
   std::string place;
   for (int a = 0; a < 3; ++a) place += (a ? ", " : "") + std::to_string(std::lround(1000.0 * fruit.position()[a]));
-  return place + " mm";
+  place += " mm";
+  if (!fruit.ripeness) return place;
+  std::string grade = to_string(fruit.ripeness->grade);
+  std::replace(grade.begin(), grade.end(), '_', ' ');
+  return place + ", " + grade;
 }
 
 /// How the legend lists the fruit: in as many columns as have room, at most six, and in three rows.

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <agrisee/io/results.hpp>
 
+#include <algorithm>
 #include <set>
 
 #include "io/formats/csv.hpp"
@@ -39,6 +40,21 @@ void add_picking(Json& j, const Picking& picking) {
   if (picking.joints) j["pre_grasp_joints"] = json_list(*picking.joints, "fruit: pre_grasp_joints is not finite");
 }
 
+/// Add the nine cells of its ripeness to the row of a fruit.
+void add_ripeness(CsvWriter& csv, const std::optional<Ripeness>& ripeness) {
+  if (!ripeness) return csv.empty_cells(9);
+  csv.cell(to_string(ripeness->grade));
+  for (const double value : {ripeness->probability, ripeness->ripe_share, ripeness->ripe_share_error}) csv.cell(value);
+  csv.cells(ripeness->lab);
+  csv.cell(ripeness->hue);
+  csv.cell(ripeness->hue_error);
+}
+
+/// Whether any fruit has a ripeness: else the table has no columns for it.
+bool any_ripeness(const std::vector<Fruit>& fruits) {
+  return std::any_of(fruits.begin(), fruits.end(), [](const Fruit& f) { return f.ripeness.has_value(); });
+}
+
 /// Add the 20 cells of a picking plan to the row of its fruit.
 void add_picking(CsvWriter& csv, const Picking& picking) {
   csv.cell(static_cast<std::size_t>(picking.order));
@@ -57,7 +73,8 @@ void add_picking(CsvWriter& csv, const Picking& picking) {
     csv.empty_cells(6);
 }
 
-void add_head(CsvWriter& csv) {
+/// @param ripeness whether there are columns for it
+void add_head(CsvWriter& csv, bool ripeness) {
   for (const char* name : {"id", "points", "found_by"}) csv.cell(name);
   for (const char* name : {"centroid_cluster", "centroid_world", "sigma_world", "orientation_world", "center_world",
                            "radii", "body_orientation_world"}) {
@@ -78,6 +95,10 @@ void add_head(CsvWriter& csv) {
   for (const char* name : {"position_world", "position_cluster"})
     for (const char* axis : {"_x", "_y", "_z"}) csv.cell(std::string(name) + axis);
   csv.cell("truss");
+  if (ripeness)
+    for (const char* name : {"ripeness_class", "ripeness_probability", "ripe_share", "ripe_share_error", "lab_l",
+                             "lab_a", "lab_b", "hue", "hue_error"})
+      csv.cell(name);
   csv.end_row();
 }
 
@@ -122,6 +143,7 @@ Json to_json(const Fruit& fruit) {
     j["mass_error"] = finite(body.mass_error, "fruit: mass_error is not finite");
   }
   if (fruit.picking) add_picking(j, *fruit.picking);
+  if (fruit.ripeness) j["ripeness"] = ripeness_json(*fruit.ripeness);
   return j;
 }
 
@@ -184,7 +206,38 @@ Picking picking_of(const JsonValue& value) {
   return picking;
 }
 
+/// @throws FileError for a class that is not known
+Ripeness ripeness_of(const JsonValue& value) {
+  Ripeness out;
+  const std::string grade = value.at("class").text();
+  std::size_t c = 0;
+  while (c < kRipenessClasses && grade != to_string(static_cast<RipenessClass>(c))) ++c;
+  if (c == kRipenessClasses) value.at("class").fail("unknown class of ripeness '" + grade + "'");
+  out.grade = static_cast<RipenessClass>(c);
+  out.probability = value.at("probability").number();
+  out.ripe_share = value.at("ripe_share").number();
+  out.ripe_share_error = value.at("ripe_share_error").number();
+  out.lab = value.at("lab").numbers<3>();
+  out.hue = value.at("hue").number();
+  out.hue_error = value.at("hue_error").number();
+  out.points = static_cast<std::size_t>(value.at("points").count());
+  return out;
+}
+
 }  // namespace
+
+Json ripeness_json(const Ripeness& ripeness) {
+  Json r;
+  r["class"] = to_string(ripeness.grade);
+  r["probability"] = finite(ripeness.probability, "ripeness: probability is not finite");
+  r["ripe_share"] = finite(ripeness.ripe_share, "ripeness: ripe_share is not finite");
+  r["ripe_share_error"] = finite(ripeness.ripe_share_error, "ripeness: ripe_share_error is not finite");
+  r["lab"] = json_list(ripeness.lab, "ripeness: lab is not finite");
+  r["hue"] = finite(ripeness.hue, "ripeness: hue is not finite");
+  r["hue_error"] = finite(ripeness.hue_error, "ripeness: hue_error is not finite");
+  r["points"] = ripeness.points;
+  return r;
+}
 
 std::string fruits_text(const std::vector<Fruit>& fruits) {
   Json list = Json::array();
@@ -194,7 +247,8 @@ std::string fruits_text(const std::vector<Fruit>& fruits) {
 
 std::string fruits_csv_text(const std::vector<Fruit>& fruits) {
   CsvWriter csv;
-  add_head(csv);
+  const bool ripeness = any_ripeness(fruits);
+  add_head(csv, ripeness);
   for (const Fruit& fruit : fruits) {
     csv.cell(std::to_string(fruit.id));
     csv.cell(fruit.points);
@@ -214,6 +268,7 @@ std::string fruits_csv_text(const std::vector<Fruit>& fruits) {
     csv.cells(fruit.position());
     csv.cells(fruit.position_cluster());
     csv.cell(static_cast<std::size_t>(fruit.truss));
+    if (ripeness) add_ripeness(csv, fruit.ripeness);
     csv.end_row();
   }
   return csv.text();
@@ -248,6 +303,7 @@ std::vector<Fruit> read_fruits(const std::filesystem::path& path) {
     fruit.orientation = rotation(value.at("orientation_world"));
     if (value.has("center_world") && value.has("radii")) fruit.body = body_of(value);
     if (value.has("picking_order")) fruit.picking = picking_of(value);
+    if (value.has("ripeness")) fruit.ripeness = ripeness_of(value.at("ripeness"));
     fruits.push_back(fruit);
   }
   return fruits;

@@ -33,6 +33,7 @@ void write_ground_truth(const std::filesystem::path& path, const study::GroundTr
     if (f.growth_axis) fruit["growth_axis"] = array(*f.growth_axis);
     if (f.hidden) fruit["hidden"] = *f.hidden;
     if (f.visible_share) fruit["visible_share_frontal"] = *f.visible_share;
+    if (f.ripeness) fruit["ripeness"] = *f.ripeness;
     out["fruits"].push_back(std::move(fruit));
   }
   write_file(path, out.dump(2) + "\n");
@@ -58,6 +59,7 @@ std::optional<study::GroundTruth> read_ground_truth(const std::filesystem::path&
       if (j.contains("growth_axis")) f.growth_axis = vector(j.at("growth_axis"));
       if (j.contains("hidden")) f.hidden = j.at("hidden").get<bool>();
       if (j.contains("visible_share_frontal")) f.visible_share = j.at("visible_share_frontal").get<double>();
+      if (j.contains("ripeness")) f.ripeness = j.at("ripeness").get<double>();
       truth.fruits.push_back(f);
     }
     return truth;

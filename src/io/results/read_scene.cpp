@@ -3,7 +3,9 @@
 #include <agrisee/io/files.hpp>
 #include <agrisee/io/mesh_file.hpp>
 #include <agrisee/io/scene.hpp>
+#include <agrisee/study/true_ripeness.hpp>
 
+#include <cctype>
 #include <map>
 #include <set>
 
@@ -150,16 +152,46 @@ class MeshCache {
   std::map<std::string, Mesh> meshes_;
 };
 
+/// How ripe a fruit is: a share, or the name of a class.
+double read_ripeness(const YamlValue& value) {
+  const std::string text = value.text();
+  if (const auto named = study::ripeness_named(text)) return study::middle_share(*named);
+  const char* const classes = "green, breakers, turning, pink, light_red or red";
+  if (text.empty() || std::isalpha(static_cast<unsigned char>(text.front())))
+    value.fail(std::string("must be a share from 0 to 1, or ") + classes + ", got " + excerpt(text));
+  const double share = value.number();
+  if (!(share >= 0.0 && share <= 1.0)) value.fail(std::string("must be from 0 to 1, or ") + classes + ", got " + text);
+  return share;
+}
+
+/// A colour: red, green, blue as whole numbers from 0 to 255.
+Rgb read_color(const YamlValue& value) {
+  if (value.list_size() != 3) value.fail("expected red, green and blue");
+  Rgb out{};
+  for (std::size_t c = 0; c < 3; ++c) {
+    const long long channel = value.at(c).integer();
+    if (channel < 0 || channel > 255) value.at(c).fail("must be from 0 to 255, got " + std::to_string(channel));
+    out[c] = static_cast<std::uint8_t>(channel);
+  }
+  return out;
+}
+
 study::Object read_object(const YamlValue& value, MeshCache& meshes, std::set<int>& ids) {
-  value.check_keys({"id", "class", "mesh", "xyz", "rpy", "scale"});
+  value.check_keys({"id", "class", "material", "ripeness", "color", "mesh", "xyz", "rpy", "scale"});
   study::Object object;
   object.cls = read_class(value.at("class"));
+  if (value.has("material")) object.material = read_class(value.at("material"));
   const long long id = value.at("id").integer();
   const bool fruit = object.cls == study::ObjectClass::fruit;
   if (fruit && (id < 1 || id > 1000000))
     value.at("id").fail("the id of a fruit must be from 1 to 1000000, got " + std::to_string(id));
   if (!fruit && id != 0) value.at("id").fail("must be 0 for objects other than fruit, got " + std::to_string(id));
   object.id = static_cast<int>(id);
+  if (value.has("ripeness")) {
+    if (!fruit) value.at("ripeness").fail("only fruit have one");
+    object.ripeness = read_ripeness(value.at("ripeness"));
+  }
+  if (value.has("color")) object.color = read_color(value.at("color"));
   if (fruit && !ids.insert(object.id).second) value.at("id").fail("two fruits have the id " + std::to_string(id));
   const Eigen::Vector3d zero = Eigen::Vector3d::Zero();
   const bool moved = value.has("xyz") || value.has("rpy") || value.has("scale");
@@ -171,10 +203,9 @@ study::Object read_object(const YamlValue& value, MeshCache& meshes, std::set<in
   return object;
 }
 
-}  // namespace
-
-SceneFile read_scene(const fs::path& path) {
-  const YamlValue top(path, load_yaml(path), "");
+/// The scene that a YAML document describes. @throws FileError as read_scene
+SceneFile scene_of(const YAML::Node& document, const fs::path& path) {
+  const YamlValue top(path, document, "");
   top.check_keys({"name", "robot", "sensor", "scan_volume", "keep_out", "objects"});
   SceneFile file;
   file.workcell.name = top.at("name").text();
@@ -198,6 +229,14 @@ SceneFile read_scene(const fs::path& path) {
     if (size > kMost) objects.at(i).fail("more than " + std::to_string(kMost) + " vertices and triangles in total");
   }
   return file;
+}
+
+}  // namespace
+
+SceneFile read_scene(const fs::path& path) { return scene_of(load_yaml(path), path); }
+
+SceneFile scene_from_yaml(const std::string& text, const fs::path& path) {
+  return scene_of(parse_yaml(path, text), path);
 }
 
 }  // namespace agrisee::io

@@ -16,8 +16,20 @@ namespace {
 
 namespace fs = std::filesystem;
 
+sensor::Distortion read_distortion(const YamlValue& value, const sensor::Intrinsics& k) {
+  std::vector<double> coefficients;
+  for (std::size_t i = 0; i < value.list_size(); ++i) coefficients.push_back(value.at(i).number());
+  try {
+    const sensor::Distortion lens = sensor::distortion_from(coefficients);
+    sensor::check(lens, k);
+    return lens;
+  } catch (const InputError& e) {
+    value.fail(e.what());
+  }
+}
+
 void read_camera(const YamlValue& value, RecordedViews& recorded) {
-  value.check_keys({"width", "height", "fx", "fy", "cx", "cy", "depth_scale", "range"});
+  value.check_keys({"width", "height", "fx", "fy", "cx", "cy", "depth_scale", "range", "distortion"});
   sensor::DepthCamera& camera = recorded.workcell.sensor;
   camera = sensor::DepthCamera();
   sensor::Intrinsics& k = camera.intrinsics;
@@ -31,6 +43,7 @@ void read_camera(const YamlValue& value, RecordedViews& recorded) {
   if (!inside(k.cx, k.width)) value.at("cx").fail("is outside of the image, got " + format(k.cx));
   if (!inside(k.cy, k.height)) value.at("cy").fail("is outside of the image, got " + format(k.cy));
   if (value.has("depth_scale")) recorded.depth_scale = positive(value.at("depth_scale"));
+  if (value.has("distortion")) recorded.distortion = read_distortion(value.at("distortion"), k);
   camera.range_max = 1e6;  // no limit
   if (!value.has("range")) return;
   const Eigen::Vector2d range = read_range(value.at("range"));
@@ -38,15 +51,23 @@ void read_camera(const YamlValue& value, RecordedViews& recorded) {
   camera.range_max = range[1];
 }
 
+/// The path that a value names, relative to the folder of views.yaml. @throws FileError if there is no such file
+fs::path existing(const YamlValue& value, const RecordedViews& recorded) {
+  const fs::path path = value.text();
+  std::error_code error;
+  if (!fs::exists(recorded.folder / path, error)) value.fail("no such file: " + (recorded.folder / path).string());
+  return path;
+}
+
 RecordedView read_view(const YamlValue& value, RecordedViews& recorded) {
-  value.check_keys({"depth", "pose"});
+  value.check_keys({"depth", "pose", "color", "masks", "boxes"});
   RecordedView view;
   const YamlValue depth = value.at("depth");
-  view.depth = depth.text();
+  view.depth = existing(depth, recorded);
   view.place = depth.place();
-  std::error_code error;
-  if (!fs::exists(recorded.folder / view.depth, error))
-    depth.fail("no such file: " + (recorded.folder / view.depth).string());
+  ChannelFiles& files = view.channels;
+  for (const auto& [key, path] : {std::pair{"color", &files.color}, {"masks", &files.masks}, {"boxes", &files.boxes}})
+    if (value.has(key)) *path = existing(value.at(key), recorded);
   view.world_T_optical = read_pose(value.at("pose"), recorded.warnings);
   return view;
 }
@@ -97,7 +118,10 @@ sensor::DepthFrame read_frame(const RecordedViews& recorded, std::size_t number)
     check_scale((recorded.folder / view.depth).string(), frame, scale);
     for (float& z : frame.depth)
       if (!(double(z) >= camera.range_min && double(z) <= camera.range_max)) z = 0.0f;
-    return frame;
+    const auto whole = [&](const fs::path& path) { return path.empty() ? path : recorded.folder / path; };
+    const ChannelFiles& files = view.channels;
+    add_channels(frame, {whole(files.color), whole(files.masks), whole(files.boxes)});
+    return sensor::rectified(frame, recorded.distortion);
   } catch (const FileError& e) {
     throw FileError(view.place + ": " + e.what());
   }
@@ -122,6 +146,8 @@ void write_recorded_views(const fs::path& path, const RecordedViews& recorded) {
     out += std::string("  ") + key + ": " + format(value) + "\n";
   }
   if (recorded.depth_scale) out += "  depth_scale: " + format(*recorded.depth_scale) + "\n";
+  if (recorded.distortion.any())
+    out += "  distortion: " + yaml_list(Eigen::Map<const Eigen::VectorXd>(recorded.distortion.k.data(), 8)) + "\n";
   if (cell.sensor.range_max < 1e6)
     out += "  range: " + yaml_list(Eigen::Vector2d(cell.sensor.range_min, cell.sensor.range_max)) + "\n";
   out += "base: " + rows_of(cell.world_T_base) + "\n";
@@ -129,8 +155,12 @@ void write_recorded_views(const fs::path& path, const RecordedViews& recorded) {
     out +=
         "scan_volume: {min: " + yaml_list(cell.scan_volume.min) + ", max: " + yaml_list(cell.scan_volume.max) + "}\n";
   out += "views:\n";
-  for (const RecordedView& view : recorded.views)
+  for (const RecordedView& view : recorded.views) {
     out += "  - depth: " + yaml_quoted(view.depth.string()) + "\n    pose: " + rows_of(view.world_T_optical) + "\n";
+    const ChannelFiles& files = view.channels;
+    for (const auto& [key, file] : {std::pair{"color", &files.color}, {"masks", &files.masks}, {"boxes", &files.boxes}})
+      if (!file->empty()) out += std::string("    ") + key + ": " + yaml_quoted(file->string()) + "\n";
+  }
   write_file(path, out);
 }
 

@@ -33,6 +33,7 @@ std::string run_text(const ScanResult& result, const RunInfo& info) {
   j["seed"] = info.seed;
   j["threads"] = info.threads;
   j["noise"] = info.noise;
+  if (!info.detector.empty()) j["detector"] = info.detector;
   j["preset"] = info.preset;
   j["planner"] = info.planner;
   j["parameters"] = parameters_of(info);
@@ -57,6 +58,7 @@ std::string run_text(const ScanResult& result, const RunInfo& info) {
                             {"position_world", json_list(pose.translation(), "truss: position_world is not finite")},
                             {"orientation_world",
                              json_list(quaternion(pose.linear()).coeffs(), "truss: orientation_world is not finite")}});
+    if (truss.ripeness) j["trusses"].back()["ripeness"] = ripeness_json(*truss.ripeness);
   }
   Json& bodies = j["bodies"];
   BodyCounts::fields(result.bodies, [&](const char* name, std::size_t count) { bodies[name] = count; });
@@ -118,6 +120,7 @@ RunFile read_run(const std::filesystem::path& path) {
   run.info.seed = top.at("seed").count();
   run.info.threads = static_cast<int>(std::min<std::uint64_t>(top.at("threads").count(), 1 << 20));
   run.info.noise = top.at("noise").text();
+  if (top.has("detector")) run.info.detector = top.at("detector").text();
   run.info.preset = top.at("preset").text();
   run.info.planner = top.at("planner").text();
   run.info.parameters_json = top.at("parameters").json().dump();

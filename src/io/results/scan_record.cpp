@@ -122,6 +122,8 @@ std::string ScanTask::fingerprint() const {
     print.add(part);
     print.add("\n");
   }
+  if (color) print.add("color\n");
+  if (!detector.empty()) print.add("detector " + detector + "\n");
   print.add(parameters_to_json(parameters));
   return print.text();
 }
@@ -136,6 +138,8 @@ void write_scan_task(const fs::path& path, const ScanTask& task) {
   j["threads"] = task.threads;
   j["noise"] = task.noise;
   j["planner"] = task.planner;
+  if (task.color) j["color"] = true;
+  if (!task.detector.empty()) j["detector"] = task.detector;
   j["parameters"] = Json::parse(parameters_to_json(task.parameters));
   write_file(path, dump(j), Durability::now);
 }
@@ -155,6 +159,8 @@ ScanTask read_scan_task(const fs::path& path) {
   task.threads = static_cast<int>(threads);
   task.noise = top.at("noise").text();
   task.planner = top.at("planner").text();
+  if (top.has("color")) task.color = top.at("color").boolean();
+  if (top.has("detector")) task.detector = top.at("detector").text();
   task.parameters = parameters_from_json(top.at("parameters").json().dump(), path.string());
   return task;
 }

@@ -98,6 +98,16 @@ const char* name_of(study::ObjectClass cls) {
   return "other";
 }
 
+/// The keys of an object that say how it looks, each with a comma before it.
+std::string look_of(const study::Object& o) {
+  std::string out;
+  if (o.ripeness) out += ", ripeness: " + format(*o.ripeness);
+  if (o.color)
+    out += ", color: [" + std::to_string((*o.color)[0]) + ", " + std::to_string((*o.color)[1]) + ", " +
+           std::to_string((*o.color)[2]) + "]";
+  return out;
+}
+
 void check_ids(const study::Scene& scene) {
   std::set<int> ids;
   for (const study::Object& o : scene.objects) {
@@ -105,6 +115,8 @@ void check_ids(const study::Scene& scene) {
     check_input(fruit ? o.id > 0 : o.id == 0, "write_scene: ids must be positive for fruit and 0 for other objects");
     check_input(!fruit || ids.insert(o.id).second, "write_scene: two fruits have the same id");
     check_input(!o.mesh.triangles.empty(), "write_scene: an object has no triangles");
+    check_input(!o.ripeness || (fruit && *o.ripeness >= 0.0 && *o.ripeness <= 1.0),
+                "write_scene: a ripeness must be that of a fruit, from 0 to 1");
   }
 }
 
@@ -132,7 +144,9 @@ void write_scene(const fs::path& path, const SceneFile& file) {
         std::string(name_of(o.cls)) + "_" +
         std::to_string(o.cls == study::ObjectClass::fruit ? static_cast<std::size_t>(o.id) : number) + ".stl";
     write_stl(path.parent_path() / mesh, o.mesh);
-    out += "  - {id: " + std::to_string(o.id) + ", class: " + name_of(o.cls) + ", mesh: " + mesh + "}\n";
+    out += "  - {id: " + std::to_string(o.id) + ", class: " + name_of(o.cls) +
+           (o.material ? std::string(", material: ") + name_of(*o.material) : "") + look_of(o) + ", mesh: " + mesh +
+           "}\n";
   }
   write_file(path, out);
 }

@@ -3,7 +3,7 @@
 
 const bytes = (text) => Uint8Array.from(atob(text || ''), (c) => c.charCodeAt(0)).buffer;
 
-/** Text to numbers: [n, 3] positions (m, world), normals or null, labels, views (-1 = not known). */
+/** Text to numbers: [n, 3] positions (m, world), normals or null, labels, views (-1 = not known), [n, 3] measured colours or null. */
 function cloud(raw) {
   const n = raw.count;
   const positions = new Float32Array(3 * n);
@@ -12,7 +12,8 @@ function cloud(raw) {
   const normals = raw.normals ? new Int8Array(bytes(raw.normals)) : null;
   const labels = raw.labels ? new Uint16Array(bytes(raw.labels)) : new Uint16Array(n);
   const views = raw.views ? new Int16Array(bytes(raw.views)) : new Int16Array(n).fill(-1);
-  return { n, total: raw.total, positions, normals, labels, views, radius: raw.radius };
+  const colors = raw.colors ? new Uint8Array(bytes(raw.colors)) : null;
+  return { n, total: raw.total, positions, normals, labels, views, colors, radius: raw.radius };
 }
 
 /** Where a fruit is (m, world): the centre of its body, or the centroid of its points where none was fitted. */

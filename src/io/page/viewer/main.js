@@ -87,7 +87,7 @@ try {
   for (const [key, layer] of Object.entries(stage.layers)) {
     const box = el('input', { type: 'checkbox', 'data-layer': key, onchange: () => stage.setLayer(key, box.checked) });
     box.checked = layer.on;
-    const many = ['fruit', 'rest', 'merged', 'frontier'].includes(key) ? fixed(layer.count) : '';
+    const many = ['fruit', 'rest', 'measured', 'merged', 'frontier'].includes(key) ? fixed(layer.count) : '';
     $('layer-list').append(el('label', {}, box, layer.label, el('small', {}, many)));
   }
   if (!data.cloud.n) Object.assign($('notice'), { hidden: false, textContent: 'No points.' });

@@ -203,9 +203,12 @@ export function makeScene(data, resolution) {
   const frontier = surfels(data.frontier, () => true, () => [230, 90, 20]);
   add('fruit', 'Fruit', fruitPoints, fruitPoints.userData.count);
   add('rest', 'Residual', restPoints, restPoints.userData.count);
+  const measuredColor = (i) => data.cloud.colors.subarray(3 * i, 3 * i + 3);
+  const measured = surfels(data.cloud, (i) => data.cloud.colors && measuredColor(i).some((c) => c > 0), measuredColor);
+  add('measured', 'Measured colours', measured, measured.userData.count, false);
   add('merged', 'Merged cloud, by view', merged, merged.userData.count, false);
   add('frontier', 'Frontier', frontier, frontier.userData.count, false);
-  const clouds = [fruitPoints, restPoints, merged, frontier];
+  const clouds = [fruitPoints, restPoints, measured, merged, frontier];
 
   const bodies = new Group(), frames = new Group(), fitted = data.fruits.filter((f) => f.radii && Math.min(...f.radii) > 0);
   fitted.forEach((f) => bodies.add(body(f, data.colors[f.id])));

@@ -15,9 +15,13 @@ function picking(f) {
   return ['no', words(f.picking_reason)];
 }
 
+/** A ripeness in words: "pink (87 %), 45 +- 3 % has turned". */
+const ripe = (r) => `${words(r.class)} (${percent(r.probability)}), ${fixed(100 * r.ripe_share)} \u00b1 ${fixed(100 * r.ripe_share_error)}\u00a0% has turned`;
+
 export function makeFruitTable(data, nodes, on) {
   const bar = (share) => el('span', { class: 'bar' }, el('i', { style: { width: `${Math.round(100 * Math.min(1, Math.max(0, share)))}%` } }));
   const planned = data.fruits.some((f) => f.picking_order !== undefined);
+  const colored = data.fruits.some((f) => f.ripeness);
   const trusses = new Set(data.fruits.map((f) => f.truss)).size > 1;
   const columns = [
     ['No.', (f) => f.id, (f) => [el('span', { class: 'dot', style: { background: data.colors[f.id] } }), String(f.id)], 'Number, from 1'],
@@ -27,6 +31,7 @@ export function makeFruitTable(data, nodes, on) {
     ['Seen', (f) => f.completeness, (f) => (f.completeness === undefined ? [dash] : [bar(f.completeness), percent(f.completeness)]), 'Completeness: share of the surface that was observed'],
     ['Conf.', (f) => f.confidence, (f) => [percent(f.confidence)], 'Confidence'],
     ['Mass, g', (f) => f.mass, (f) => [fixed(1000 * f.mass)], 'From the volume, with the density of the parameters'],
+    ...(colored ? [['Ripeness', (f) => f.ripeness && f.ripeness.ripe_share, (f) => [f.ripeness ? words(f.ripeness.class) : dash], 'Class by the share of its surface that has turned']] : []),
     ...(planned ? [['Pick', (f) => f.picking_order, (f) => [picking(f)[0]], 'Picking order']] : []),
   ];
   nodes.table.hidden = !data.fruits.length;
@@ -51,12 +56,13 @@ export function makeFruitTable(data, nodes, on) {
   nodes.table.append(el('thead', {}, el('tr', {}, ...heads)), body);
   sort();
 
+  const ripeOfTruss = (id) => { const t = (data.run.trusses || []).find((truss) => truss.id === id); return t && t.ripeness ? ', ' + ripe(t.ripeness) : ''; };
   function detail(f) {
     const entries = [
       ['Position', list(place(f), (v) => mm(v)) + ` mm (${f.center_world ? 'centre of the fitted body' : 'centroid: no body was fitted'})`],
       ['Orientation', list(f.orientation_world, (v) => fixed(v, 4)) + '\u2002(x\u00a0y\u00a0z\u00a0w)'],
       ['Found by', `${words(f.found_by)}, ${plural(f.points, 'point', 'points')}`],
-      ...(f.truss === undefined ? [] : [['Truss', String(f.truss)]]),
+      ...(f.truss === undefined ? [] : [['Truss', String(f.truss) + ripeOfTruss(f.truss)]]),
       ['Centroid, world', list(f.centroid_world, (v) => mm(v)) + ' mm'],
       ['Centroid, cluster', list(f.centroid_cluster, (v) => mm(v)) + ' mm'],
     ];
@@ -67,6 +73,7 @@ export function makeFruitTable(data, nodes, on) {
         ['Fit', `${mm(f.rms, 2)} mm root mean square`], ['Volume', error(fixed(1e6 * f.volume, 1), 1e6 * f.volume_error, 'ml')],
         ['Mass', error(fixed(1000 * f.mass, 1), 1000 * f.mass_error, 'g')], ['Seen, confidence', `${percent(f.completeness)}, ${percent(f.confidence)}`]);
     }
+    if (f.ripeness) entries.push(['Ripeness', ripe(f.ripeness)]);
     if (f.picking_order !== undefined) {
       const after = f.picking_after && f.picking_after.length ? `, after fruit ${f.picking_after.join(', ')}` : '';
       entries.push(['Picking', `number ${f.picking_order}${after}: ${picking(f)[1]}`]);

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// @file
+/// How ripe a fruit is (cloud/ripeness.hpp finds it out). `to_string` is defined in `agrisee::agrisee`.
+#pragma once
+
+#include <agrisee/core/types.hpp>
+
+namespace agrisee {
+
+/// The six classes of tomatoes in the United States Standards for Grades of Fresh Tomatoes, 7 CFR 51.1860.
+enum class RipenessClass {
+  green,      ///< the surface is completely green
+  breakers,   ///< it has begun to turn to tannish-yellow, pink or red, on not more than 10 percent
+  turning,    ///< more than 10 and not more than 30 percent have turned
+  pink,       ///< more than 30 and not more than 60 percent
+  light_red,  ///< more than 60 and not more than 90 percent
+  red         ///< more than 90 percent
+};
+
+/// Number of classes.
+constexpr std::size_t kRipenessClasses = 6;
+
+/// The name of a class, as in fruits.json.
+const char* to_string(RipenessClass ripeness);
+
+/// How ripe a fruit is.
+struct Ripeness {
+  Eigen::Vector3d lab = Eigen::Vector3d::Zero();  ///< mean colour of the points that are used: L*, a*, b*
+  double hue = 0.0;                            ///< its hue angle (rad) from red (a*) towards yellow (b*), -pi/2..3 pi/2
+  double hue_error = 0.0;                      ///< its standard error (rad)
+  double ripe_share = 0.0;                     ///< share (0..1) of the surface that is ripe
+  double ripe_share_error = 0.0;               ///< its standard error
+  RipenessClass grade = RipenessClass::green;  ///< the class of that share
+  double probability = 0.0;                    ///< that this is the class, by the error of the share
+  std::size_t points = 0;                      ///< number of coloured points that are used
+};
+
+}  // namespace agrisee

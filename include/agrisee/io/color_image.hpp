@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// @file
+/// Reads the images that come with a depth image: colours, and the masks of a detector. PNG.
+#pragma once
+
+#include <agrisee/core/color.hpp>
+
+#include <cstdint>
+#include <filesystem>
+#include <vector>
+
+namespace agrisee::io {
+
+/// A colour image, row by row from the top left.
+struct ColorImage {
+  int width = 0;            ///< pixels per row
+  int height = 0;           ///< rows
+  std::vector<Rgb> pixels;  ///< one per pixel
+};
+
+/// A label image, row by row from the top left.
+struct LabelImage {
+  int width = 0;                      ///< pixels per row
+  int height = 0;                     ///< rows
+  std::vector<std::uint16_t> labels;  ///< the instance of each pixel, 0 = none
+};
+
+/// Read a colour image: PNG with three channels, or four, of 8 bits, or with a palette. Opacity is ignored.
+/// @throws FileError when the file cannot be read, is no PNG, is damaged, is grey, or has 16 bits a channel
+ColorImage read_color_image(const std::filesystem::path& path);
+
+/// Read a label image: PNG with one grey channel of 8 or 16 bits whose values are the numbers of instances.
+/// @throws FileError when the file cannot be read, is no PNG, is damaged, or has colours
+LabelImage read_label_image(const std::filesystem::path& path);
+
+}  // namespace agrisee::io

@@ -1,0 +1,344 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <agrisee/core/error.hpp>
+#include <agrisee/core/median.hpp>
+#include <agrisee/core/rigid_pose.hpp>
+#include <agrisee/fuse/masks.hpp>
+#include <agrisee/geometry/direction_bins.hpp>
+
+#include <Eigen/Cholesky>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <memory>
+#include <utility>
+
+#include "fuse/mask_outline.hpp"
+
+namespace agrisee::fuse {
+
+/// A mask that proposes a body.
+struct OwnMask {
+  std::size_t image;  // its number
+  std::uint16_t instance;
+};
+
+/// A body that masks propose, of one view or of several.
+struct Proposal {
+  std::vector<OwnMask> masks;
+  std::vector<Silhouette> outlines;
+  EllipsoidFit fit;
+
+  /// The share of the outline that is seen, in the view that sees most of it.
+  double seen() const {
+    double most = 0.0;
+    for (const Silhouette& s : outlines) most = std::max(most, s.seen);
+    return most;
+  }
+};
+
+struct ViewMasks {
+  MaskImage image;
+  BodyParameters bodies;
+  MaskParameters parameters;
+  mutable std::map<std::uint16_t, std::vector<Proposal>> proposals = {};  // of the masks that were asked for
+
+  /// What a mask of this view proposes.
+  const std::vector<Proposal>& proposals_of(std::uint16_t instance) const;
+};
+
+namespace {
+
+using Images = std::vector<std::shared_ptr<const ViewMasks>>;
+
+/// Join proposals of a mask to those of other views at the same place, and add the others.
+/// @param known those of other views, and of the same one from `before` on
+/// @param number of the mask's image
+void join(std::vector<Proposal>& known, std::size_t before, std::vector<Proposal> more, std::size_t number) {
+  constexpr double kApart = 0.6;  // of the smaller radius
+  for (Proposal& p : more) {
+    p.masks.front().image = number;
+    const Ellipsoid& body = p.fit.body;
+    Proposal* nearest = nullptr;
+    double least = 0.0;
+    for (std::size_t i = 0; i < before; ++i) {
+      const Ellipsoid& other = known[i].fit.body;
+      const double apart = (other.center - body.center).norm() / std::min(other.mean_radius(), body.mean_radius());
+      if (apart < kApart && (!nearest || apart < least)) nearest = &known[i], least = apart;
+    }
+    if (!nearest) {
+      known.push_back(std::move(p));
+      continue;
+    }
+    nearest->masks.push_back(p.masks.front());
+    nearest->outlines.push_back(std::move(p.outlines.front()));
+    if (const auto fit = fit_silhouettes(nearest->outlines, nearest->fit.body, std::nullopt)) nearest->fit = *fit;
+  }
+}
+
+/// The radius of the bodies whose outlines are seen, and how far they differ; empty where they are few.
+std::optional<ExpectedRadius> usual_radius(const std::vector<Proposal>& proposals) {
+  constexpr double kSeen = 0.6, kLeastSpread = 0.08;
+  constexpr std::size_t kFew = 5;
+  std::vector<double> radii;
+  for (const Proposal& p : proposals)
+    if (p.seen() > kSeen) radii.push_back(p.fit.body.mean_radius());
+  if (radii.size() < kFew) return std::nullopt;
+  const double middle = median(radii);
+  for (double& r : radii) r = std::abs(std::log(r / middle));
+  return ExpectedRadius{middle, std::max(kLeastSpread, 1.4826 * median(radii))};
+}
+
+/// How far an instance speaks for a fruit: +-trust ln(p / (1 - p)) of its score, limited by `max_score`.
+double score_odds(const MaskImage& image, std::uint16_t instance, const MaskParameters& parameters) {
+  const auto found = image.found.find(instance);
+  const double score = found == image.found.end() ? 1.0 : found->second.score;
+  const double p = std::clamp(score, 1.0 - parameters.max_score, parameters.max_score);
+  const double odds = parameters.trust * std::log(p / (1.0 - p));
+  return found == image.found.end() || found->second.fruit ? odds : -odds;
+}
+
+/// What one view's masks say of a body; empty if the view does not show it.
+/// @param step one of so many directions is looked at
+std::optional<double> log_odds_in(const MaskImage& image, const Ellipsoid& body, const MaskParameters& parameters,
+                                  std::size_t step) {
+  constexpr double kDeep = 0.3;       // of the radius: a depth nearer to the surface shows it
+  constexpr std::size_t kFewest = 5;  // directions
+  const sensor::DepthFrame& frame = *image.frame;
+  const Pose optical_T_world = image.world_T_optical.inverse();
+  const Eigen::Vector3d sensor = image.world_T_optical.translation();
+  const double deep = kDeep * body.mean_radius();
+  std::size_t shown = 0;
+  double sum = 0.0;
+  const auto& directions = DirectionBins::directions();
+  for (std::size_t i = 0; i < directions.size(); i += step) {
+    const Eigen::Vector3d& d = directions[i];
+    if (d.dot(sensor - body.center) <= 0.0) continue;
+    const Eigen::Vector3d p = optical_T_world * body.surface(d);
+    const auto pixel = frame.intrinsics.pixel_of(p);
+    if (!pixel) continue;
+    const float z = frame.depth[*pixel];
+    if (!sensor::DepthFrame::valid(z) || std::abs(double(z) - p.z()) > deep) continue;
+    ++shown;
+    const std::uint16_t instance = image.instances[*pixel];
+    sum += instance == 0 ? std::log(1.0 - parameters.recall) : score_odds(image, instance, parameters);
+  }
+  if (shown < kFewest) return std::nullopt;
+  return sum / static_cast<double>(shown);
+}
+
+/// What the masks of all views say of a body. @param own the masks that proposed it, which are believed to be its
+double log_odds_of(const Images& images, const Ellipsoid& body, const MaskParameters& parameters,
+                   const std::vector<OwnMask>& own = {}) {
+  constexpr std::size_t kMany = 4, kCoarse = 3;  // many views are looked at coarsely: together they show enough
+  const std::size_t step = images.size() < kMany ? 1 : kCoarse;
+  double sum = 0.0, views = 0.0;
+  for (std::size_t i = 0; i < images.size(); ++i) {
+    const auto mine = std::find_if(own.begin(), own.end(), [&](const OwnMask& m) { return m.image == i; });
+    const auto odds = mine != own.end() ? std::optional(score_odds(images[i]->image, mine->instance, parameters))
+                                        : log_odds_in(images[i]->image, body, parameters, step);
+    if (odds) sum += *odds, views += 1.0;
+  }
+  if (!(views > 0.0)) return 0.0;
+  return std::clamp(sum / std::sqrt(views), -parameters.max_log_odds, parameters.max_log_odds);
+}
+
+/// A pixel of a mask: where it is beside the middle of the body (m), how deep the body's front is there, and how far
+/// behind that the depth is (m).
+struct Depth {
+  double x, y, front, behind;
+};
+
+/// What the depths under a mask say of a body; see mask_evidence.
+struct DepthsUnder {
+  double agreement = 0.0;  // g
+  double bulge = 0.0;      // b
+  double flatness = 0.0;   // f
+  double boxed = 0.0;      // 1 for an instance that has a box and no mask
+};
+
+/// The pixels of a mask that have a depth, those at the rim left out, by how far they are behind the body's front.
+/// @param missing receives the number of those without depth
+std::vector<Depth> depths_under(const MaskImage& image, std::uint16_t instance, const Ellipsoid& body,
+                                std::size_t& missing) {
+  constexpr double kRim = 0.87;  // of the radius
+  const auto width = static_cast<std::size_t>(image.frame->intrinsics.width);
+  const Eigen::Vector3d sensor = image.world_T_optical.translation(), to_center = body.center - sensor;
+  const Eigen::Vector3d ex = to_center.unitOrthogonal(), ey = to_center.cross(ex).normalized();
+  const Eigen::Vector3d a = body.times(-to_center);
+  std::vector<Depth> out;
+  for (const std::uint32_t p : image.pixels.at(instance)) {
+    const Eigen::Vector3d ray = image.direction(double(p % width), double(p / width)), b = body.times(ray);
+    const double middle = -a.dot(b) / b.squaredNorm();  // nearest to the center in the body's metric
+    const double inside = 1.0 - (a + middle * b).squaredNorm();
+    if (!(inside > 1.0 - kRim * kRim)) continue;
+    const double d = image.distance(p), front = middle - std::sqrt(inside / b.squaredNorm());
+    if (d > 0.0)
+      out.push_back({middle * ray.dot(ex), middle * ray.dot(ey), front - middle, d - front});
+    else
+      ++missing;
+  }
+  std::sort(out.begin(), out.end(), [](const Depth& l, const Depth& r) { return l.behind < r.behind; });
+  return out;
+}
+
+/// A number and its standard error.
+struct Slope {
+  double value = 0.0, error = 1.0;
+};
+
+/// How much the depths bulge as the body does, by least squares beside a common offset and tilt: 1 for its own front, 0
+/// for a plane. Errors of neighbors are alike, so the depths count as 20 independent ones.
+/// @param from, to the depths that count by how far they are behind the front (m)
+Slope bulge_of(const std::vector<Depth>& depths, double from, double to) {
+  constexpr double kIndependent = 20.0;
+  Eigen::Matrix4d normal = 1e-12 * Eigen::Matrix4d::Identity();
+  Eigen::Vector4d rhs = Eigen::Vector4d::Zero();
+  double mean = 0.0, count = 0.0, squares = 0.0;
+  const auto counts = [&](const Depth& d) { return d.behind >= from && d.behind <= to; };
+  for (const Depth& d : depths)
+    if (counts(d)) mean += d.front, count += 1.0;
+  mean /= std::max(1.0, count);
+  for (const Depth& d : depths) {
+    if (!counts(d)) continue;
+    const Eigen::Vector4d row(1.0, d.x, d.y, d.front - mean);
+    const double depth = d.front - mean + d.behind;
+    normal += row * row.transpose();
+    rhs += row * depth;
+    squares += depth * depth;
+  }
+  const Eigen::LDLT<Eigen::Matrix4d> solver(normal);
+  const Eigen::Vector4d fit = solver.solve(rhs);
+  if (!fit.allFinite() || count < 5.0) return {};
+  const double variance = std::max(0.0, squares - fit.dot(rhs)) / count;
+  const double spread = solver.solve(Eigen::Vector4d::Unit(3))[3] * count / std::min(count, kIndependent);
+  return {fit[3], std::sqrt(variance * std::max(0.0, spread))};
+}
+
+DepthsUnder judge_depths(const MaskImage& image, std::uint16_t instance, const Ellipsoid& body) {
+  constexpr double kNear = 0.2, kAlike = 0.45;  // of the radius
+  constexpr double kLeastBulge = -1.0, kMostBulge = 3.0, kFlat = 0.4;
+  const auto found = image.found.find(instance);
+  const bool boxed = image.frame->instances.empty() && found != image.found.end() && found->second.box;
+  const double near = kNear * body.mean_radius(), alike = kAlike * body.mean_radius();
+  std::size_t missing = 0;
+  std::vector<Depth> depths = depths_under(image, instance, body, missing);
+  if (boxed)  // a box holds what hides the fruit, too
+    depths.erase(depths.begin(),
+                 std::find_if(depths.begin(), depths.end(), [&](const Depth& d) { return d.behind > -2.0 * near; }));
+  const auto [best, end] = densest(depths, 2.0 * near, [](const Depth& d) { return d.behind; });
+  const std::size_t most = end - best;
+  DepthsUnder out;
+  out.boxed = boxed ? 1.0 : 0.0;
+  if (most == 0) return out;
+  out.agreement = static_cast<double>(most) / (static_cast<double>(depths.size()) + 0.5 * static_cast<double>(missing));
+  const double middle = depths[best].behind + near;
+  const Slope bulge = bulge_of(depths, middle - alike, middle + alike);
+  out.bulge = std::clamp(bulge.value, kLeastBulge, kMostBulge);
+  out.flatness = std::max(0.0, kFlat - (bulge.value + 2.0 * bulge.error));
+  return out;
+}
+
+/// The log-odds of a proposal: what masks say of it, and the depths under its own.
+double log_odds_of(const Images& images, const Proposal& proposal, const MaskParameters& parameters) {
+  constexpr double kAgreement = 12.7, kBulge = 1.75, kFlatness = -20.0, kBoxed = 1.0, kOffset = -8.0;
+  DepthsUnder mean;
+  for (const OwnMask& m : proposal.masks) {
+    const DepthsUnder one = judge_depths(images[m.image]->image, m.instance, proposal.fit.body);
+    mean.agreement += one.agreement / static_cast<double>(proposal.masks.size());
+    mean.bulge += one.bulge / static_cast<double>(proposal.masks.size());
+    mean.boxed += one.boxed / static_cast<double>(proposal.masks.size());
+    mean.flatness += one.flatness / static_cast<double>(proposal.masks.size());
+  }
+  return log_odds_of(images, proposal.fit.body, parameters, proposal.masks) + kAgreement * mean.agreement +
+         kBulge * mean.bulge + kFlatness * mean.flatness + kBoxed * mean.boxed + kOffset;
+}
+
+/// Whether most of a mask's pixels show one of some bodies.
+bool explained(const MaskImage& image, std::uint16_t instance, const std::vector<Ellipsoid>& bodies) {
+  constexpr std::size_t kMost = 60;  // pixels that are looked at
+  constexpr double kNear = 0.25;     // of the radius: a point nearer to the surface lies on it
+  const std::vector<std::uint32_t>& pixels = image.pixels.at(instance);
+  const auto width = static_cast<std::size_t>(image.frame->intrinsics.width);
+  const Eigen::Vector3d sensor = image.world_T_optical.translation();
+  std::size_t on = 0, off = 0;
+  for (std::size_t i = 0; i < pixels.size(); i += pixels.size() / kMost + 1) {
+    const std::uint32_t pixel = pixels[i];
+    const double d = image.distance(pixel);
+    if (!(d > 0.0)) continue;
+    const Eigen::Vector3d p = sensor + d * image.direction(double(pixel % width), double(pixel / width));
+    const bool shows = std::any_of(bodies.begin(), bodies.end(), [&](const Ellipsoid& body) {
+      const double r = body.mean_radius();
+      return (p - body.center).squaredNorm() < 2.0 * r * r && std::abs(body.distance(p)) < kNear * r;
+    });
+    ++(shows ? on : off);
+  }
+  return on >= off;
+}
+
+/// The bodies that the masks propose which no known body explains.
+std::vector<MaskBody> proposed_bodies(const Images& images, const std::vector<Ellipsoid>& known,
+                                      const BodyParameters& bodies, const MaskParameters& parameters) {
+  std::vector<Proposal> proposals;
+  for (std::size_t i = 0; i < images.size(); ++i) {
+    const MaskImage& image = images[i]->image;
+    const std::size_t before = proposals.size();
+    for (const auto& [instance, pixels] : image.pixels) {
+      const auto found = image.found.find(instance);
+      if (found != image.found.end() && !found->second.fruit) continue;
+      if (!known.empty() && explained(image, instance, known)) continue;
+      join(proposals, before, images[i]->proposals_of(instance), i);
+    }
+  }
+  const auto usual = parameters.alike ? usual_radius(proposals) : std::nullopt;
+  std::vector<MaskBody> out;
+  for (Proposal& p : proposals) {
+    if (usual)
+      if (const auto fit = fit_silhouettes(p.outlines, p.fit.body, usual)) p.fit = *fit;
+    if (p.fit.inliers > 0 && bodies.plausible(p.fit.body.mean_radius()))
+      out.push_back({p.fit, log_odds_of(images, p, parameters)});
+  }
+  return out;
+}
+
+}  // namespace
+
+const std::vector<Proposal>& ViewMasks::proposals_of(std::uint16_t instance) const {
+  const auto [entry, added] = proposals.try_emplace(instance);
+  if (!added) return entry->second;
+  for (const MaskGuess& guess : guess_bodies(image, instance, bodies, parameters)) {
+    EllipsoidFit first;
+    first.body = Ellipsoid(guess.sphere);
+    const auto fit = fit_silhouettes({guess.outline}, first.body, std::nullopt);
+    entry->second.push_back({{{0, instance}}, {guess.outline}, fit ? *fit : first});
+  }
+  return entry->second;
+}
+
+std::shared_ptr<const ViewMasks> read_masks(const DetectedView& view, const BodyParameters& bodies,
+                                            const MaskParameters& parameters) {
+  check_input(is_rigid(view.world_T_optical), "mask_evidence: the pose of a camera is not a rigid transform");
+  return std::make_shared<const ViewMasks>(ViewMasks{mask_image(view), bodies, parameters});
+}
+
+MaskEvidence mask_evidence(const std::vector<DetectedView>& views, const BodyParameters& bodies,
+                           const MaskParameters& parameters, MaskOrder order) {
+  bodies.check();
+  parameters.check();
+  MaskEvidence out;
+  Images images;
+  for (const DetectedView& view : views)
+    if (view.frame->detected) images.push_back(view.masks ? view.masks : read_masks(view, bodies, parameters));
+  if (images.empty()) return out;
+  out.log_odds = [images, parameters](const Ellipsoid& body) { return log_odds_of(images, body, parameters); };
+  out.most = parameters.max_log_odds;
+  if (order == MaskOrder::masks_first)
+    out.bodies = proposed_bodies(images, {}, bodies, parameters);
+  else
+    out.remaining = [images, bodies, parameters](const std::vector<Ellipsoid>& known) {
+      return proposed_bodies(images, known, bodies, parameters);
+    };
+  return out;
+}
+
+}  // namespace agrisee::fuse

@@ -1,0 +1,197 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <agrisee/io/color_image.hpp>
+#include <agrisee/io/detections.hpp>
+#include <agrisee/io/files.hpp>
+
+#include <algorithm>
+#include <functional>
+#include <map>
+#include <optional>
+#include <set>
+#include <string>
+
+#include "io/formats/csv.hpp"
+#include "io/formats/json_value.hpp"
+#include "io/formats/png16.hpp"
+
+namespace agrisee::io {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// What a detection may be called in a file; the first name is the one of messages.
+const std::vector<std::vector<const char*>> kNames = {{"instance", "label", "id"}, {"class"},
+                                                      {"score", "confidence"},     {"u", "box_u", "x"},
+                                                      {"v", "box_v", "y"},         {"width", "box_w", "w"},
+                                                      {"height", "box_h", "h"}};
+constexpr std::size_t kInstance = 0, kClass = 1, kScore = 2, kBoxFirst = 3;
+
+bool is_fruit(const std::string& name) {
+  static const std::set<std::string> kOthers{"leaf", "stem", "branch", "other", "background"};
+  return kOthers.count(lower(name)) == 0;
+}
+
+/// Collects detections and tests them.
+class Collector {
+ public:
+  /// One of the values of a detection; empty where the file has none.
+  using Number = std::function<std::optional<double>(std::size_t)>;
+  using Complain = std::function<void(const std::string&)>;
+
+  /// @param number(k)   the value with the names kNames[k]
+  /// @param complain(m) throws FileError with the message m
+  void add(const Number& number, const std::string& name, const std::optional<sensor::PixelBox>& given_box,
+           const Complain& complain) {
+    sensor::Detection d;
+    const double instance = number(kInstance).value_or(static_cast<double>(found_.size() + 1));
+    if (!(instance >= 1.0 && instance <= 65535.0) || instance != std::floor(instance))
+      complain("instance: must be a whole number from 1 to 65535, got " + format(instance));
+    d.instance = static_cast<int>(instance);
+    if (!known_.insert(d.instance).second) complain("instance: " + std::to_string(d.instance) + " is listed twice");
+    d.score = number(kScore).value_or(1.0);
+    if (!(d.score >= 0.0 && d.score <= 1.0)) complain("score: must be from 0 to 1, got " + format(d.score));
+    d.name = name;
+    d.fruit = is_fruit(name);
+    d.box = given_box ? given_box : box_of(number, complain);
+    if (d.box && !(d.box->width > 0.0 && d.box->height > 0.0 && std::isfinite(d.box->u + d.box->width) &&
+                   std::isfinite(d.box->v + d.box->height)))
+      complain("box: must have a width and a height above 0");
+    found_.push_back(d);
+  }
+
+  std::vector<sensor::Detection> take() { return std::move(found_); }
+
+ private:
+  static std::optional<sensor::PixelBox> box_of(const Number& number, const Complain& complain) {
+    const auto u = number(kBoxFirst), v = number(kBoxFirst + 1), width = number(kBoxFirst + 2),
+               height = number(kBoxFirst + 3);
+    if (!u && !v && !width && !height) return std::nullopt;
+    if (!u || !v || !width || !height) complain("box: needs all of u, v, width and height");
+    return sensor::PixelBox{*u, *v, *width, *height};
+  }
+
+  std::vector<sensor::Detection> found_;
+  std::set<int> known_;
+};
+
+std::vector<sensor::Detection> from_json(const fs::path& path) {
+  const Json json = load_json(path);
+  const JsonValue list(path, json, "");
+  Collector out;
+  for (std::size_t i = 0; i < list.list_size(); ++i) {
+    const JsonValue value = list.at(i);
+    if (!value.json().is_object()) value.fail("expected an object");
+    const auto number = [&](std::size_t k) -> std::optional<double> {
+      for (const char* name : kNames[k])
+        if (value.has(name)) return value.at(name).number();
+      return std::nullopt;
+    };
+    std::optional<sensor::PixelBox> box;
+    if (value.has("box")) {
+      const Eigen::Vector4d b = value.at("box").numbers<4>();
+      box = sensor::PixelBox{b[0], b[1], b[2], b[3]};
+    }
+    out.add(number, value.has("class") ? value.at("class").text() : "", box,
+            [&](const std::string& message) { value.fail(message); });
+  }
+  return out.take();
+}
+
+std::vector<sensor::Detection> from_csv(const fs::path& path, std::string_view bytes) {
+  Lines lines(bytes);
+  std::string_view line;
+  if (!lines.next_filled(line)) fail(path, "is empty");
+  std::vector<std::string> names, cells;
+  split_csv(line, names);
+  std::map<std::size_t, std::size_t> columns;  // of each value
+  for (std::size_t k = 0; k < kNames.size(); ++k)
+    for (const char* name : kNames[k])
+      for (std::size_t c = 0; c < names.size(); ++c)
+        if (!columns.count(k) && lower(trimmed(names[c])) == name) columns[k] = c;
+  if (!columns.count(kInstance) && !columns.count(kBoxFirst))
+    fail(path, "holds no detections: its first line names neither 'instance' nor a box (u, v, width, height)");
+  Collector out;
+  while (lines.next_filled(line)) {
+    const auto complain = [&](const std::string& message) { fail(path, lines.number(), message); };
+    if (!split_csv(line, cells) || cells.size() != names.size())
+      complain("expected " + std::to_string(names.size()) + " cells, got " + std::to_string(cells.size()));
+    const auto number = [&](std::size_t k) -> std::optional<double> {
+      if (!columns.count(k) || trimmed(cells[columns[k]]).empty()) return std::nullopt;
+      const auto value = to_number(trimmed(cells[columns[k]]));
+      if (!value) complain(std::string(kNames[k].front()) + ": " + excerpt(cells[columns[k]]) + " is not a number");
+      return value;
+    };
+    const std::string name = columns.count(kClass) ? std::string(trimmed(cells[columns[kClass]])) : "";
+    out.add(number, name, std::nullopt, complain);
+  }
+  return out.take();
+}
+
+/// @throws FileError if an image is not as large as the depth image
+void check_size(const fs::path& path, int width, int height, const sensor::Intrinsics& k) {
+  if (width == k.width && height == k.height) return;
+  fail(path, "has " + std::to_string(width) + " x " + std::to_string(height) + " pixels, but the depth image " +
+                 std::to_string(k.width) + " x " + std::to_string(k.height) +
+                 "; channels have to be registered to the depth image");
+}
+
+/// The file with classes and scores beside a label image; empty if there is none.
+fs::path table_beside(const fs::path& masks) {
+  for (const char* extension : {".json", ".csv"}) {
+    fs::path path = masks;
+    path.replace_extension(extension);
+    std::error_code error;
+    if (fs::exists(path, error)) return path;
+  }
+  return {};
+}
+
+/// Add detections. One that is known already, by its instance, gains the box.
+void add_detections(sensor::DepthFrame& frame, std::vector<sensor::Detection> more) {
+  for (sensor::Detection& d : more) {
+    const auto known = std::find_if(frame.detections.begin(), frame.detections.end(),
+                                    [&](const sensor::Detection& k) { return k.instance == d.instance; });
+    if (known == frame.detections.end())
+      frame.detections.push_back(std::move(d));
+    else
+      known->box = d.box;
+  }
+}
+
+}  // namespace
+
+ColorImage read_color_image(const fs::path& path) { return decode_png_colors(path, read_bytes(path).view()); }
+
+LabelImage read_label_image(const fs::path& path) { return decode_png_labels(path, read_bytes(path).view()); }
+
+std::vector<sensor::Detection> read_detections(const fs::path& path) {
+  const Bytes bytes = read_bytes(path);
+  if (bytes.size == 0) fail(path, "is empty");
+  const std::string_view text = trimmed(bytes.view());
+  return !text.empty() && (text.front() == '[' || text.front() == '{') ? from_json(path) : from_csv(path, bytes.view());
+}
+
+void add_channels(sensor::DepthFrame& frame, const ChannelFiles& files) {
+  const sensor::Intrinsics& k = frame.intrinsics;
+  if (!files.color.empty()) {
+    ColorImage image = read_color_image(files.color);
+    check_size(files.color, image.width, image.height, k);
+    frame.color = std::move(image.pixels);
+  }
+  if (!files.masks.empty()) {
+    LabelImage image = read_label_image(files.masks);
+    check_size(files.masks, image.width, image.height, k);
+    frame.instances = std::move(image.labels);
+    frame.detected = true;
+    if (const fs::path table = table_beside(files.masks); !table.empty()) add_detections(frame, read_detections(table));
+  }
+  if (!files.boxes.empty()) {
+    frame.detected = true;
+    std::vector<sensor::Detection> boxes = read_detections(files.boxes);
+    for (const sensor::Detection& d : boxes)
+      if (!d.box) fail(files.boxes, "detection " + std::to_string(d.instance) + " has no box (u, v, width, height)");
+    add_detections(frame, std::move(boxes));
+  }
+}
+
+}  // namespace agrisee::io

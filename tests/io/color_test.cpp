@@ -1,0 +1,159 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <agrisee/io/color_image.hpp>
+#include <agrisee/io/detections.hpp>
+#include <agrisee/io/pcd.hpp>
+#include <agrisee/io/ply.hpp>
+
+#include "io/formats/png_file.hpp"
+#include "io/io_support.hpp"
+
+using namespace agrisee;
+using namespace agrisee::test;
+
+namespace {
+
+Cloud colored_cloud() {
+  Cloud cloud;
+  cloud.points = {{0.1f, 0.2f, 0.3f}, {1.0f, 2.0f, 3.0f}, {-1.0f, 0.5f, 0.25f}};
+  cloud.normals.assign(3, {0.0f, 0.0f, 1.0f});
+  cloud.colors = {{255, 0, 1}, {12, 200, 34}, {0, 0, 0}};
+  cloud.instances = {0, 7, 3};
+  return cloud;
+}
+
+void check_same(const Cloud& a, const Cloud& b) {
+  CHECK(a.points == b.points);
+  CHECK(a.colors == b.colors);
+  CHECK(a.instances == b.instances);
+}
+
+/// A PNG of 2 x 1 pixels.
+std::string png(int bits, io::PngKind kind, const std::string& row) {
+  return io::png_file(2, 1, bits, kind, std::string(1, '\0') + row);
+}
+
+/// A frame of 2 x 1 pixels.
+sensor::DepthFrame tiny_frame() {
+  sensor::DepthFrame frame;
+  frame.intrinsics = {2, 1, 10.0, 10.0, 0.5, 0.0};
+  frame.depth = {1.0f, 1.0f};
+  return frame;
+}
+
+}  // namespace
+
+TEST_CASE("PLY and PCD keep measured colours and detections") {
+  const TempFolder folder;
+  const Cloud cloud = colored_cloud();
+  io::write_ply(folder / "a.ply", cloud, {1, 0, 2});
+  const io::CloudFile ply = io::read_ply(folder / "a.ply");
+  check_same(ply.cloud, cloud);
+  CHECK(ply.instance == Labels{1, 0, 2});
+  io::write_pcd(folder / "a.pcd", cloud, {1, 0, 2});
+  const io::CloudFile pcd = io::read_pcd(folder / "a.pcd");
+  check_same(pcd.cloud, cloud);
+  CHECK(pcd.instance == Labels{1, 0, 2});
+  CHECK(pcd.cloud.normals == cloud.normals);
+}
+
+TEST_CASE("a cloud without colours is written as before, and the colours of fruit are not measured ones") {
+  const TempFolder folder;
+  Cloud cloud = colored_cloud();
+  cloud.colors.clear();
+  cloud.instances.clear();
+  io::write_ply(folder / "a.ply", cloud, {1, 0, 2});
+  CHECK(slurp(folder / "a.ply").find("measured") == std::string::npos);
+  CHECK(slurp(folder / "a.ply").find("detection") == std::string::npos);
+  CHECK(io::read_ply(folder / "a.ply").cloud.colors.empty());
+}
+
+TEST_CASE("colours of other programs are read, packed or by channel") {
+  const TempFolder folder;
+  const std::vector<Rgb> expected{{255, 128, 1}, {0, 51, 102}};
+  const std::string ply =
+      "ply\nformat ascii 1.0\nelement vertex 2\nproperty float x\nproperty float y\nproperty float z\n";
+  CHECK(io::read_ply(folder.file("a.ply", ply + "property uchar red\nproperty uchar green\nproperty uchar blue\n"
+                                                "end_header\n0 0 0 255 128 1\n0 0 1 0 51 102\n"))
+            .cloud.colors == expected);
+  CHECK(io::read_ply(folder.file("b.ply", ply + "property float r\nproperty float g\nproperty float b\n"
+                                                "end_header\n0 0 0 1 0.502 0.004\n0 0 1 0 0.2 0.4\n"))
+            .cloud.colors == expected);
+  const std::string pcd = "VERSION 0.7\nFIELDS x y z rgb\nSIZE 4 4 4 4\nCOUNT 1 1 1 1\nWIDTH 2\nHEIGHT 1\nPOINTS 2\n";
+  CHECK(io::read_pcd(folder.file("c.pcd", pcd + "TYPE F F F U\nDATA ascii\n0 0 0 16744449\n0 0 1 13158\n"))
+            .cloud.colors == expected);
+  std::string body;
+  for (const auto& [z, bits] : {std::pair{0.0f, 0xFFFF8001u}, {1.0f, 0xFF003366u}})  // opaque: the float is a NaN
+    body += bytes_of(0.0f) + bytes_of(0.0f) + bytes_of(z) + bytes_of(bits);
+  CHECK(io::read_pcd(folder.file("d.pcd", pcd + "TYPE F F F F\nDATA binary\n" + body)).cloud.colors == expected);
+}
+
+TEST_CASE("a point that is dropped takes its colour with it") {
+  const TempFolder folder;
+  const auto read = io::read_ply(folder.file(
+      "a.ply",
+      "ply\nformat ascii 1.0\nelement vertex 2\nproperty float x\nproperty float y\nproperty float z\nproperty "
+      "uchar red\nproperty uchar green\nproperty uchar blue\nend_header\nnan 0 0 1 2 3\n0 0 1 4 5 6\n"));
+  CHECK(read.dropped == 1);
+  CHECK(read.cloud.colors == std::vector<Rgb>{{4, 5, 6}});
+}
+
+TEST_CASE("colour and label images say what is wrong with them") {
+  const TempFolder folder;
+  const std::string rgb("\x01\x02\x03\x04\x05\x06"), grey8("\x01\x02"), grey16("\x01\x00\x00\x02", 4);
+  const auto color = [](const std::filesystem::path& path) { return io::read_color_image(path); };
+  const auto label = [](const std::filesystem::path& path) { return io::read_label_image(path); };
+  CHECK(color(folder.file("c.png", png(8, io::PngKind::rgb, rgb))).pixels == std::vector<Rgb>{{1, 2, 3}, {4, 5, 6}});
+  CHECK(label(folder.file("8.png", png(8, io::PngKind::gray, grey8))).labels == std::vector<std::uint16_t>{1, 2});
+  CHECK(label(folder.file("16.png", png(16, io::PngKind::gray, grey16))).labels == std::vector<std::uint16_t>{256, 2});
+  require_file_error(folder / "8.png", "is a grey image", color);
+  require_file_error(folder.file("c16.png", png(16, io::PngKind::rgb, rgb + rgb)), "16 bits a channel", color);
+  require_file_error(folder / "c.png", "one grey channel", label);
+  require_file_error(folder.file("x.png", "JFIF"), "is not a PNG", color);
+  require_file_error(folder / "none.png", "", label);
+}
+
+TEST_CASE("detections are read from CSV and JSON") {
+  const TempFolder folder;
+  const auto csv = io::read_detections(
+      folder.file("a.csv", "label,class,score,box_u,box_v,box_w,box_h\n4,apple,0.9,1,2,3,4\n2,leaf,,5,6,7,8\n"));
+  REQUIRE(csv.size() == 2);
+  CHECK(csv[0].instance == 4);
+  CHECK(csv[0].fruit);
+  CHECK(csv[0].score == 0.9);
+  CHECK(csv[0].box->height == 4.0);
+  CHECK_FALSE(csv[1].fruit);
+  CHECK(csv[1].score == 1.0);
+  const auto json = io::read_detections(
+      folder.file("a.json", R"([{"instance": 3, "class": "tomato", "score": 0.5}, {"box": [1,2,3,4]}])"));
+  REQUIRE(json.size() == 2);
+  CHECK_FALSE(json[0].box);
+  CHECK(json[1].instance == 2);
+  CHECK(json[1].box->width == 3.0);
+  const auto read = [](const std::filesystem::path& path) { return io::read_detections(path); };
+  require_file_error(folder.file("b.csv", "instance,score\n1,1.5\n"), "score: must be from 0 to 1", read);
+  require_file_error(folder.file("c.csv", "instance\n1\n1\n"), "is listed twice", read);
+  require_file_error(folder.file("d.csv", "instance\n0\n"), "1 to 65535", read);
+  require_file_error(folder.file("e.csv", "name\nx\n"), "holds no detections", read);
+  require_file_error(folder.file("f.csv", "u,v,width,height\n1,1,0,4\n"), "box: must have a width", read);
+  require_file_error(folder.file("g.csv", "instance,u,v\n1,1,2\n"), "needs all of", read);
+  require_file_error(folder.file("h.json", R"([{"instance": "one"}])"), "expected a number", read);
+}
+
+TEST_CASE("channels are added to a frame, with what is known of their instances") {
+  const TempFolder folder;
+  sensor::DepthFrame frame = tiny_frame();
+  io::ChannelFiles files;
+  files.color = folder.file("c.png", png(8, io::PngKind::rgb, "\x01\x02\x03\x04\x05\x06"));
+  files.masks = folder.file("m.png", png(8, io::PngKind::gray, "\x01\x02"));
+  folder.file("m.csv", "instance,score\n2,0.25\n");
+  io::add_channels(frame, files);
+  CHECK(frame.color[1] == Rgb{4, 5, 6});
+  CHECK(frame.instances == std::vector<std::uint16_t>{1, 2});
+  CHECK(frame.detected);
+  REQUIRE(frame.detections.size() == 1);
+  CHECK(frame.detections[0].score == 0.25);
+  sensor::DepthFrame other = tiny_frame();
+  other.intrinsics.width = 1;
+  other.depth.pop_back();
+  CHECK_THROWS_WITH(io::add_channels(other, files), Catch::Contains("has 2 x 1 pixels, but the depth image 1 x 1"));
+}
