@@ -8,7 +8,7 @@ FEW_LARGE_UNITS := -DCMAKE_UNITY_BUILD=ON -DCMAKE_UNITY_BUILD_BATCH_SIZE=10 -DAG
 CONFIGURE := cmake -S . -B build/release -G Ninja -DCMAKE_BUILD_TYPE=Release $(FEW_LARGE_UNITS) $(CMAKE_ARGS)
 AGRISEE := build/release/agrisee
 
-.PHONY: help build demo test experiment bench fuzz survive long mutate format format-check clean
+.PHONY: help build demo test packages python experiment bench fuzz survive long mutate format format-check clean
 SECONDS_IN_ALL ?= 14400
 KILLS ?= 100
 RUNS ?= 1000
@@ -17,6 +17,8 @@ MUTANTS ?= 60
 help:
 	@echo "make demo    install what is missing, build, scan a 7-fruit truss, evaluate it, draw it"
 	@echo "make test    install what is missing, build and run all tests"
+	@echo "make python  install what is missing, build the Python module, run its tests"
+	@echo "make packages  Debian packages of command, library and Python module, a source tarball and checksums: build/packages"
 	@echo "make experiment  rerun what is missing of the paper's experiment, and write docs/experiment.md, docs/planners.md"
 	@echo "make bench   build and run the benchmarks, against other libraries where they are installed; docs/benchmarks.md"
 	@echo "make fuzz    fuzz the readers with clang's libFuzzer, for hours (SECONDS_IN_ALL=60: for a minute)"
@@ -43,6 +45,25 @@ test:
 	@$(CONFIGURE) -DAGRISEE_BUILD_TESTS=ON -DAGRISEE_BUILD_EXAMPLES=ON
 	@cmake --build build/release -j $(JOBS)
 	@cd build/release && ctest --output-on-failure -j $(JOBS)
+
+python:
+	@cmake/packages.sh build test python
+	@$(CONFIGURE) -DAGRISEE_BUILD_PYTHON=ON -DAGRISEE_BUILD_TESTS=ON
+	@cmake --build build/release --target agrisee_python -j $(JOBS)
+	@cd build/release && ctest -R '^python\.' --output-on-failure
+	@echo "To use it: export PYTHONPATH=$$PWD/build/release/python"
+
+# The source tarball holds what is committed; SOURCE_DATE_EPOCH makes the packages the same bytes each time.
+packages:
+	@cmake/packages.sh build python
+	@$(CONFIGURE) -DAGRISEE_BUILD_PYTHON=ON -DAGRISEE_BUILD_TESTS=OFF -DAGRISEE_BUILD_EXAMPLES=OFF
+	@cmake --build build/release -j $(JOBS)
+	@rm -rf build/packages && mkdir -p build/packages
+	@export SOURCE_DATE_EPOCH=$$(git log -1 --format=%ct) && cd build/release && cpack -G DEB -B ../packages >/dev/null
+	@rm -rf build/packages/_CPack_Packages
+	@v=$$(ls build/packages/libagrisee-dev_*.deb | cut -d_ -f2) && \
+	  git archive --format=tar --prefix=agrisee-$$v/ HEAD | gzip -n >build/packages/agrisee-$$v.tar.gz
+	@cd build/packages && sha256sum *.deb *.tar.gz >SHA256SUMS && cat SHA256SUMS
 
 experiment: build
 	@$(AGRISEE) experiment -o build/experiment --report docs/experiment.md --presets paper,default \

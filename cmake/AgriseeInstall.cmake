@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-# Install rules, the exported package, pkg-config files, and Debian packages (`cpack -G DEB` in the build tree): two
-# components, the library with headers and the command.
+# Install rules, the exported package, pkg-config files, and Debian packages (`cpack -G DEB` in the build tree): the
+# library with headers, the command, and the Python module.
 include(CMakePackageConfigHelpers)
 set(AGRISEE_CMAKE_DIR ${CMAKE_INSTALL_LIBDIR}/cmake/agrisee)
 set(AGRISEE_PC_DIR ${CMAKE_INSTALL_LIBDIR}/pkgconfig)
@@ -19,6 +19,17 @@ install(TARGETS ${AGRISEE_TARGETS} EXPORT agrisee-targets
   RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT dev)
 if(AGRISEE_BUILD_CLI)
   install(TARGETS agrisee_cli RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT tool)
+  if(NOT CMAKE_CROSSCOMPILING)
+    install(FILES ${PROJECT_BINARY_DIR}/completions/agrisee.1 DESTINATION ${CMAKE_INSTALL_MANDIR}/man1 COMPONENT tool)
+    install(FILES ${PROJECT_BINARY_DIR}/completions/agrisee
+      DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions COMPONENT tool)
+    foreach(folder site-functions vendor-completions)  # zsh's own, and that of Debian's packages
+      install(FILES ${PROJECT_BINARY_DIR}/completions/_agrisee DESTINATION ${CMAKE_INSTALL_DATADIR}/zsh/${folder}
+        COMPONENT tool)
+    endforeach()
+    install(FILES ${PROJECT_BINARY_DIR}/completions/agrisee.fish
+      DESTINATION ${CMAKE_INSTALL_DATADIR}/fish/vendor_completions.d COMPONENT tool)
+  endif()
 endif()
 install(DIRECTORY include/agrisee DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} COMPONENT dev)
 install(EXPORT agrisee-targets NAMESPACE agrisee:: DESTINATION ${AGRISEE_CMAKE_DIR} COMPONENT dev)
@@ -71,6 +82,9 @@ install(FILES package.xml DESTINATION ${CMAKE_INSTALL_DATADIR}/agrisee COMPONENT
 if(AGRISEE_BUILD_CLI)
   agrisee_install_licences(agrisee tool)
 endif()
+if(AGRISEE_BUILD_PYTHON AND NOT DEFINED SKBUILD)
+  agrisee_install_licences(python3-agrisee python)
+endif()
 
 if(AGRISEE_TOP_LEVEL)
   set(CPACK_PACKAGE_NAME agrisee)
@@ -83,6 +97,9 @@ if(AGRISEE_TOP_LEVEL)
   if(AGRISEE_BUILD_CLI)
     list(APPEND CPACK_COMPONENTS_ALL tool)
   endif()
+  if(AGRISEE_BUILD_PYTHON)
+    list(APPEND CPACK_COMPONENTS_ALL python)
+  endif()
   set(CPACK_DEB_COMPONENT_INSTALL ON)
   set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
   set(CPACK_DEBIAN_DEV_PACKAGE_NAME libagrisee-dev)
@@ -94,8 +111,13 @@ if(AGRISEE_TOP_LEVEL)
   set(CPACK_DEBIAN_TOOL_PACKAGE_NAME agrisee)
   set(CPACK_DEBIAN_TOOL_PACKAGE_SECTION science)
   set(CPACK_DEBIAN_TOOL_PACKAGE_SHLIBDEPS ON)
+  set(CPACK_DEBIAN_PYTHON_PACKAGE_NAME python3-agrisee)
+  set(CPACK_DEBIAN_PYTHON_PACKAGE_SECTION python)
+  set(CPACK_DEBIAN_PYTHON_PACKAGE_DEPENDS "python3, python3-numpy")
+  set(CPACK_DEBIAN_PYTHON_PACKAGE_SHLIBDEPS ON)
   set(CPACK_COMPONENT_DEV_DESCRIPTION "Active perception for harvesting robots, headers and library")
   set(CPACK_COMPONENT_TOOL_DESCRIPTION "Active perception for harvesting robots, the command agrisee")
+  set(CPACK_COMPONENT_PYTHON_DESCRIPTION "Active perception for harvesting robots, Python module")
   set(CPACK_STRIP_FILES ON)
   include(CPack)
 endif()

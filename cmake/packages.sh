@@ -5,7 +5,7 @@
 set -euo pipefail
 
 declare -A groups=(
-  [build]="g++ cmake ninja-build libeigen3-dev libnanoflann-dev libyaml-cpp-dev zlib1g-dev nlohmann-json3-dev libcli11-dev libstb-dev"
+  [build]="g++ cmake ninja-build libeigen3-dev libnanoflann-dev libyaml-cpp-dev zlib1g-dev nlohmann-json3-dev libcli11-dev libstb-dev libsqlite3-dev"
   [test]="catch2 pkg-config python3"
   [oracles]="libpcl-dev libopen3d-dev liborocos-kdl-dev libembree-dev"
   [viewers]="cloudcompare meshlab xvfb xauth"
@@ -14,6 +14,9 @@ declare -A groups=(
   [ros]="libroscpp-dev libtf2-ros-dev libtf2-msgs-dev libgeometry-msgs-dev libsensor-msgs-dev libstd-msgs-dev libstd-srvs-dev \
 libtrajectory-msgs-dev libvisualization-msgs-dev python3-roslaunch python3-rosmaster rosout python3-rosservice \
 ros-robot-state-publisher rviz"
+  [cluster]="slurm-wlm munge parallel"
+  [shells]="zsh fish"
+  [python]="pybind11-dev python3-numpy python3-pytest mypy"
   [fuzz]="clang"
   [format]="clang-format-14"
 )
