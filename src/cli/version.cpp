@@ -3,10 +3,7 @@
 
 #include <agrisee/version.hpp>
 
-#include <Eigen/Core>
-
-#include <CLI/CLI.hpp>
-#include <nlohmann/json.hpp>
+#include <string>
 #include <string_view>
 #ifdef AGRISEE_HAS_SQLITE
 #include <sqlite3.h>
@@ -42,11 +39,6 @@ std::string processor() {
   return out;
 }
 
-/// "3.4.0"
-std::string dotted(int major, int minor, int patch) {
-  return std::to_string(major) + "." + std::to_string(minor) + "." + std::to_string(patch);
-}
-
 }  // namespace
 
 std::string sqlite_version() {
@@ -61,11 +53,9 @@ std::string version_text() {
   const std::string type = AGRISEE_BUILD_TYPE, commit(kCommit), sqlite = sqlite_version();
   return std::string("agrisee ") + AGRISEE_VERSION + "\nbuilt:     " + compiler() + ", " +
          (type.empty() ? "without a build type: slow" : type) + ", for " + processor() +
-         "\nsources:   " + (commit.empty() ? "of the release" : "commit " + commit) + "\nlibraries: Eigen " +
-         dotted(EIGEN_WORLD_VERSION, EIGEN_MAJOR_VERSION, EIGEN_MINOR_VERSION) + ", nanoflann " AGRISEE_NANOFLANN +
-         ", yaml-cpp " AGRISEE_YAML_CPP_VERSION ", zlib " AGRISEE_ZLIB_VERSION ", nlohmann_json " +
-         dotted(NLOHMANN_JSON_VERSION_MAJOR, NLOHMANN_JSON_VERSION_MINOR, NLOHMANN_JSON_VERSION_PATCH) + ", CLI11 " +
-         CLI11_VERSION +
+         "\nsources:   " + (commit.empty() ? "of the release" : "commit " + commit) +
+         "\nlibraries: Eigen " AGRISEE_EIGEN ", nanoflann " AGRISEE_NANOFLANN ", yaml-cpp " AGRISEE_YAML_CPP_VERSION
+         ", zlib " AGRISEE_ZLIB_VERSION ", nlohmann_json " AGRISEE_NLOHMANN_JSON ", CLI11 " AGRISEE_CLI11 +
          "\noptional:  " + (sqlite.empty() ? "no SQLite (merge --db and season are left out)" : "SQLite " + sqlite);
 }
 
