@@ -2,6 +2,7 @@
 #include <agrisee/pipeline.hpp>
 #include <agrisee/sensor/rectify.hpp>
 
+#include <cstring>
 #include <mutex>
 #include <pybind11/stl.h>
 #include <vector>
@@ -68,12 +69,15 @@ std::unique_ptr<Scan> make_scan(const py::object& workcell, const py::object& pa
 /// z (m) of each pixel: the items of an image times a scale.
 template <typename T>
 std::vector<float> scaled(const py::array& image, double scale) {
-  const auto pixels = py::reinterpret_borrow<py::array_t<T>>(image).template unchecked<2>();
   std::vector<float> depth;
   depth.reserve(static_cast<std::size_t>(image.size()));
   const auto factor = static_cast<float>(scale);
-  for (py::ssize_t v = 0; v < pixels.shape(0); ++v)
-    for (py::ssize_t u = 0; u < pixels.shape(1); ++u) depth.push_back(factor * static_cast<float>(pixels(v, u)));
+  for (py::ssize_t v = 0; v < image.shape(0); ++v)
+    for (py::ssize_t u = 0; u < image.shape(1); ++u) {
+      T item;  // fields of packed records need not be aligned
+      std::memcpy(&item, image.data(v, u), sizeof item);
+      depth.push_back(factor * static_cast<float>(item));
+    }
   return depth;
 }
 
@@ -106,20 +110,24 @@ View observe(Scan& scan, const py::object& depth, const py::object& pose, const 
   const sensor::Intrinsics intrinsics = scan.read([](const Pipeline& p) { return p.workcell().sensor.intrinsics; });
   const sensor::DepthFrame frame =
       sensor::rectified(frame_of(depth, intrinsics, depth_scale), sensor::distortion_from(distortion));
-  const View view = scan.run([&](Pipeline& p) { return p.observe(frame, world_T_optical, at); });
-  scan.moved(at);
-  return view;
+  return scan.run([&](Pipeline& p) {
+    const View view = p.observe(frame, world_T_optical, at);
+    scan.moved(at);
+    return view;
+  });
 }
 
 View observe_points(Scan& scan, const py::object& points, const py::object& pose, const py::object& joints) {
   const py::array rows = array_of_rows(points, "points");
   const Pose world_T_optical = pose_of(pose, "pose");
   const std::optional<Joints> at = vector_of<6>(joints, "joints");
-  const View view = scan.run([&](Pipeline& p) {
-    return with_points(rows, [&](const auto& cloud) { return View(p.observe_points(cloud, world_T_optical, at)); });
+  return with_points(rows, [&](const auto& cloud) {
+    return scan.run([&](Pipeline& p) {
+      const View view = p.observe_points(cloud, world_T_optical, at);
+      scan.moved(at);
+      return view;
+    });
   });
-  scan.moved(at);
-  return view;
 }
 
 std::optional<plan::ReachableView> next_view(Scan& scan, const py::object& joints) {
@@ -201,7 +209,9 @@ void bind_pipeline(py::module_& m) {
   py::class_<Scan> scan(
       m, "Pipeline",
       "One scan of one truss: observe each frame, ask next_view, move, repeat; then take the result.\n\n"
-      "Calls raise KeyboardInterrupt within 50 ms of Ctrl-C and leave the scan as it was.");
+      "Calls raise KeyboardInterrupt within 50 ms of Ctrl-C and leave the scan as it was. Only observe may have taken "
+      "the\n"
+      "view in already; len(views) tells.");
   scan.def(py::init(&make_scan), py::arg("workcell"), py::arg("parameters") = py::none(),
            py::arg("planner") = py::none(), py::arg("reach") = py::none(), py::arg("seed") = 0, py::arg("threads") = 0,
            R"(workcell: Workcell, a dict as of Workcell.from_dict, or the path of a scene file.

@@ -58,13 +58,12 @@ Cloud cloud_with_views(const ArrayPoints<S>& rows, const Input& input) {
   return cloud;
 }
 
-ScanResult run(const Input& in) {
-  return with_points(in.points, [&](const auto& rows) {
-    using S = scalar_t<std::decay_t<decltype(rows)>>;
-    if (!in.views.empty()) return process(cloud_with_views(rows, in), in.parameters, in.origin, {}, in.threads);
-    if (!in.normals) return process(rows, in.parameters, in.origin, {}, in.threads);
-    return process(ArrayCloud<S>{rows, view_of<S>(*in.normals)}, in.parameters, in.origin, {}, in.threads);
-  });
+/// Runs without Python's lock, so it may look at arrays but not at their types, which Python counts.
+template <typename S>
+ScanResult run(const Input& in, const ArrayPoints<S>& rows) {
+  if (!in.views.empty()) return process(cloud_with_views(rows, in), in.parameters, in.origin, {}, in.threads);
+  if (!in.normals) return process(rows, in.parameters, in.origin, {}, in.threads);
+  return process(ArrayCloud<S>{rows, view_of<S>(*in.normals)}, in.parameters, in.origin, {}, in.threads);
 }
 
 SharedResult process_arrays(const py::object& points, const py::object& normals, const py::object& viewpoint,
@@ -85,7 +84,7 @@ SharedResult process_arrays(const py::object& points, const py::object& normals,
     });
   in.views = views_of(views, in.points, in.origin.sensors.size());
   in.threads = threads_of(threads);
-  return shared(interruptible([&] { return run(in); }));
+  return with_points(in.points, [&](const auto& rows) { return shared(interruptible([&] { return run(in, rows); })); });
 }
 
 }  // namespace
