@@ -17,9 +17,9 @@ constexpr double kUneven = 0.0002;
 /// Variance of the errors that a view's points on a body share, over the one that shows as disagreement of views.
 constexpr double kUnseen = 2.0;
 /// A view with fewer points on a body tells nothing of it.
-constexpr std::size_t kFewest = 10;
+constexpr std::size_t kLeastPoints = 10;
 /// With fewer views of a body their disagreement tells nothing.
-constexpr std::size_t kFewestViews = 3;
+constexpr std::size_t kLeastViews = 3;
 
 /// What a view's points say of a body.
 struct Share {
@@ -54,7 +54,7 @@ std::optional<Share> share_of(const Ellipsoid& body, const RegisteredView& view,
     out.residual += row.weight * row.residual;
     out.shift += row.weight * shift;
   }
-  if (points < kFewest) return std::nullopt;
+  if (points < kLeastPoints) return std::nullopt;
   out.normal /= out.weights;
   out.residual /= out.weights;
   out.shift /= out.weights;
@@ -124,7 +124,7 @@ std::vector<Eigen::Matrix3d> center_errors(const std::vector<Ellipsoid>& bodies,
       if (const auto share = share_of(bodies[b], view, parameters)) shares[b].push_back(*share);
     }
   for (auto& of_body : shares)
-    if (of_body.size() < kFewestViews) of_body.clear();
+    if (of_body.size() < kLeastViews) of_body.clear();
   const double variance = shared_variance(shares), shifted = shift_variance(shares);
   std::vector<Eigen::Matrix3d> out(bodies.size(), Eigen::Matrix3d::Zero());
   for (std::size_t b = 0; b < bodies.size(); ++b) {

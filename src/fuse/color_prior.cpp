@@ -22,8 +22,7 @@ std::vector<char> fruit_colored(const sensor::DepthFrame& frame, const ColorPrio
     const auto [entry, added] = known.try_emplace(key);
     if (added) {
       const Eigen::Vector3d lab = to_lab(c);
-      double hue = std::atan2(lab.z(), lab.y());
-      if (hue < -0.5 * kPi) hue += kTwoPi;
+      const double hue = hue_of(lab);
       entry->second = std::hypot(lab.y(), lab.z()) >= p.min_chroma && hue >= p.hue_from && hue <= p.hue_to;
     }
     out.push_back(entry->second);

@@ -15,10 +15,10 @@ namespace {
 void fill_ellipse(const sensor::PixelBox& box, const sensor::Intrinsics& k, std::uint16_t instance,
                   std::vector<std::uint16_t>& instances) {
   const double a = 0.5 * box.width, b = 0.5 * box.height, cu = box.u + a - 0.5, cv = box.v + b - 0.5;
-  const auto first = [](double x) { return std::max(0, static_cast<int>(std::ceil(std::max(x, 0.0)))); };
-  const auto last = [](double x, int size) { return static_cast<int>(std::floor(std::min(x, size - 1.0))); };
-  for (int v = first(cv - b); v <= last(cv + b, k.height); ++v)
-    for (int u = first(cu - a); u <= last(cu + a, k.width); ++u) {
+  const auto first = [](double x, int size) { return static_cast<int>(std::ceil(std::clamp(x, 0.0, double(size)))); };
+  const auto last = [](double x, int size) { return static_cast<int>(std::floor(std::clamp(x, -1.0, size - 1.0))); };
+  for (int v = first(cv - b, k.height); v <= last(cv + b, k.height); ++v)
+    for (int u = first(cu - a, k.width); u <= last(cu + a, k.width); ++u) {
       const double x = (u - cu) / a, y = (v - cv) / b;
       std::uint16_t& pixel = instances[k.index(u, v)];
       if (pixel == 0 && x * x + y * y <= 1.0) pixel = instance;
@@ -42,6 +42,23 @@ void check_detections(const std::vector<sensor::Detection>& detections) {
   }
 }
 
+/// The detections that have a box and no mask, those with the highest score first.
+std::vector<const sensor::Detection*> boxes_without_mask(const sensor::DepthFrame& frame) {
+  std::vector<const sensor::Detection*> boxes;
+  for (const sensor::Detection& d : frame.detections)
+    if (d.box) boxes.push_back(&d);
+  if (boxes.empty()) return boxes;
+  std::vector<char> has_pixels(65536, 0);
+  for (const std::uint16_t i : frame.instances) has_pixels[i] = 1;
+  const auto has_mask = [&](const sensor::Detection* d) {
+    return has_pixels[static_cast<std::size_t>(d->instance)] != 0;
+  };
+  boxes.erase(std::remove_if(boxes.begin(), boxes.end(), has_mask), boxes.end());
+  std::stable_sort(boxes.begin(), boxes.end(),
+                   [](const sensor::Detection* a, const sensor::Detection* b) { return a->score > b->score; });
+  return boxes;
+}
+
 }  // namespace
 
 double MaskImage::distance(std::size_t pixel) const {
@@ -61,19 +78,7 @@ std::vector<std::uint16_t> instances_of(const sensor::DepthFrame& frame) {
   check_detections(frame.detections);
   std::vector<std::uint16_t> instances = frame.instances;
   if (instances.empty()) instances.assign(frame.intrinsics.size(), 0);
-  std::vector<const sensor::Detection*> boxes;
-  for (const sensor::Detection& d : frame.detections)
-    if (d.box) boxes.push_back(&d);
-  if (boxes.empty()) return instances;
-  std::vector<char> has_pixels(65536, 0);
-  for (const std::uint16_t i : instances) has_pixels[i] = 1;
-  const auto has_mask = [&](const sensor::Detection* d) {
-    return has_pixels[static_cast<std::size_t>(d->instance)] != 0;
-  };
-  boxes.erase(std::remove_if(boxes.begin(), boxes.end(), has_mask), boxes.end());
-  std::stable_sort(boxes.begin(), boxes.end(),
-                   [](const sensor::Detection* a, const sensor::Detection* b) { return a->score > b->score; });
-  for (const sensor::Detection* d : boxes)
+  for (const sensor::Detection* d : boxes_without_mask(frame))
     fill_ellipse(*d->box, frame.intrinsics, static_cast<std::uint16_t>(d->instance), instances);
   return instances;
 }
@@ -83,6 +88,8 @@ MaskImage mask_image(const DetectedView& view) {
   image.frame = view.frame;
   image.world_T_optical = view.world_T_optical;
   image.instances = instances_of(*view.frame);
+  for (const sensor::Detection* d : boxes_without_mask(*view.frame))
+    image.boxed.insert(static_cast<std::uint16_t>(d->instance));
   for (const sensor::Detection& d : view.frame->detections) image.found[static_cast<std::uint16_t>(d.instance)] = d;
   std::vector<std::uint32_t>* own = nullptr;  // the pixels of the last instance: neighbors mostly have the same
   std::uint16_t last = 0;

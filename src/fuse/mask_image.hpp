@@ -7,6 +7,7 @@
 
 #include <cstdint>
 #include <map>
+#include <set>
 #include <vector>
 
 namespace agrisee::fuse {
@@ -18,6 +19,7 @@ struct MaskImage {
   std::vector<std::uint16_t> instances;              ///< one per pixel, see instances_of
   std::map<std::uint16_t, sensor::Detection> found;  ///< by instance; one that is not listed is a fruit with score 1
   std::map<std::uint16_t, std::vector<std::uint32_t>> pixels;  ///< of each instance, ascending
+  std::set<std::uint16_t> boxed;                               ///< instances that have a box and no mask
 
   /// The distance (m) from the sensor to what a pixel shows; 0 without a return.
   double distance(std::size_t pixel) const;

@@ -218,8 +218,7 @@ Slope bulge_of(const std::vector<Depth>& depths, double from, double to) {
 DepthsUnder judge_depths(const MaskImage& image, std::uint16_t instance, const Ellipsoid& body) {
   constexpr double kNear = 0.2, kAlike = 0.45;  // of the radius
   constexpr double kLeastBulge = -1.0, kMostBulge = 3.0, kFlat = 0.4;
-  const auto found = image.found.find(instance);
-  const bool boxed = image.frame->instances.empty() && found != image.found.end() && found->second.box;
+  const bool boxed = image.boxed.count(instance) > 0;
   const double near = kNear * body.mean_radius(), alike = kAlike * body.mean_radius();
   std::size_t missing = 0;
   std::vector<Depth> depths = depths_under(image, instance, body, missing);
@@ -304,15 +303,15 @@ std::vector<MaskBody> proposed_bodies(const Images& images, const std::vector<El
 }  // namespace
 
 const std::vector<Proposal>& ViewMasks::proposals_of(std::uint16_t instance) const {
-  const auto [entry, added] = proposals.try_emplace(instance);
-  if (!added) return entry->second;
+  if (const auto known = proposals.find(instance); known != proposals.end()) return known->second;
+  std::vector<Proposal> own;  // remembered when it is complete: the work below may be cancelled
   for (const MaskGuess& guess : guess_bodies(image, instance, bodies, parameters)) {
     EllipsoidFit first;
     first.body = Ellipsoid(guess.sphere);
     const auto fit = fit_silhouettes({guess.outline}, first.body, std::nullopt);
-    entry->second.push_back({{{0, instance}}, {guess.outline}, fit ? *fit : first});
+    own.push_back({{{0, instance}}, {guess.outline}, fit ? *fit : first});
   }
-  return entry->second;
+  return proposals.emplace(instance, std::move(own)).first->second;
 }
 
 std::shared_ptr<const ViewMasks> read_masks(const DetectedView& view, const BodyParameters& bodies,

@@ -30,6 +30,7 @@ std::vector<Rgb> colors_of(const Cloud& cloud, const std::vector<DetectedView>& 
   std::vector<double> weights(cloud.size(), 0.0);
   for (const DetectedView& view : views) {
     if (!colored(view)) continue;
+    check(*view.frame);
     const Pose optical_T_world = view.world_T_optical.inverse();
     const Eigen::Vector3d sensor = view.world_T_optical.translation();
     for (std::size_t i = 0; i < cloud.size(); ++i) {

@@ -207,6 +207,8 @@ TEST_CASE("a cloud takes the colours that views saw, and only those") {
                   {0.0f, 0.0f, -1.0f}};
   const std::vector<Rgb> colors = fuse::colors_of(cloud, {{frame, Pose::Identity()}});
   CHECK(colors == std::vector<Rgb>{{200, 10, 20}, {10, 200, 20}, {0, 0, 0}, {0, 0, 0}});
+  frame.color.pop_back();
+  CHECK_THROWS_AS(fuse::colors_of(cloud, {{frame, Pose::Identity()}}), InputError);
   frame.color.clear();
   CHECK(fuse::colors_of(cloud, {{frame, Pose::Identity()}}).empty());
 }

@@ -139,6 +139,18 @@ TEST_CASE("detections are read from CSV and JSON") {
   require_file_error(folder.file("h.json", R"([{"instance": "one"}])"), "expected a number", read);
 }
 
+TEST_CASE("boxes that name no instance belong to none of the masks") {
+  const TempFolder folder;
+  sensor::DepthFrame frame = tiny_frame();
+  io::ChannelFiles files;
+  files.masks = folder.file("m.png", png(8, io::PngKind::gray, "\x01\x02"));
+  files.boxes = folder.file("b.csv", "class,u,v,width,height\nleaf,0,0,1,1\napple,1,0,1,1\n");
+  io::add_channels(frame, files);
+  REQUIRE(frame.detections.size() == 2);
+  CHECK(frame.detections[0].instance == 3);
+  CHECK(frame.detections[1].instance == 4);
+}
+
 TEST_CASE("channels are added to a frame, with what is known of their instances") {
   const TempFolder folder;
   sensor::DepthFrame frame = tiny_frame();

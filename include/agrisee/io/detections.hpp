@@ -24,13 +24,13 @@ struct ChannelFiles {
 /// `class` (default: a fruit without a name), `score` (or `confidence`; default 1), and a box as `u v width height` in
 /// pixels (or `x y w h`, or `box_u box_v box_w box_h`; in JSON also `box: [u, v, width, height]`). Others are skipped.
 /// The classes leaf, stem, branch, other and background are no fruit, all others are.
+/// @param first the instance of the first detection if the file names none; those of the others follow
 /// @throws FileError, which names the line or key, for a file that cannot be read, an instance outside 1..65535 or
-/// listed
-///   twice, a score outside 0..1, or a box that is empty
-std::vector<sensor::Detection> read_detections(const std::filesystem::path& path);
+/// listed twice, a score outside 0..1, or a box that is empty
+std::vector<sensor::Detection> read_detections(const std::filesystem::path& path, std::size_t first = 1);
 
 /// Add the channels of some files to a depth frame. Boxes whose instance has no mask count beside the masks; a box and
-/// a mask of one instance are the same detection.
+/// a mask of one instance are the same detection. Boxes that name no instance belong to none of the masks.
 /// @throws FileError as the readers, and for an image of another size than the depth image
 void add_channels(sensor::DepthFrame& frame, const ChannelFiles& files);
 

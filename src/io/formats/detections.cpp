@@ -38,12 +38,15 @@ class Collector {
   using Number = std::function<std::optional<double>(std::size_t)>;
   using Complain = std::function<void(const std::string&)>;
 
+  /// @param first the instance of the first detection that has none
+  explicit Collector(std::size_t first) : next_(first) {}
+
   /// @param number(k)   the value with the names kNames[k]
   /// @param complain(m) throws FileError with the message m
   void add(const Number& number, const std::string& name, const std::optional<sensor::PixelBox>& given_box,
            const Complain& complain) {
     sensor::Detection d;
-    const double instance = number(kInstance).value_or(static_cast<double>(found_.size() + 1));
+    const double instance = number(kInstance).value_or(static_cast<double>(next_ + found_.size()));
     if (!(instance >= 1.0 && instance <= 65535.0) || instance != std::floor(instance))
       complain("instance: must be a whole number from 1 to 65535, got " + format(instance));
     d.instance = static_cast<int>(instance);
@@ -70,14 +73,15 @@ class Collector {
     return sensor::PixelBox{*u, *v, *width, *height};
   }
 
+  std::size_t next_;
   std::vector<sensor::Detection> found_;
   std::set<int> known_;
 };
 
-std::vector<sensor::Detection> from_json(const fs::path& path) {
-  const Json json = load_json(path);
+std::vector<sensor::Detection> from_json(const fs::path& path, const Bytes& bytes, std::size_t first) {
+  const Json json = load_json(path, bytes);
   const JsonValue list(path, json, "");
-  Collector out;
+  Collector out(first);
   for (std::size_t i = 0; i < list.list_size(); ++i) {
     const JsonValue value = list.at(i);
     if (!value.json().is_object()) value.fail("expected an object");
@@ -97,7 +101,7 @@ std::vector<sensor::Detection> from_json(const fs::path& path) {
   return out.take();
 }
 
-std::vector<sensor::Detection> from_csv(const fs::path& path, std::string_view bytes) {
+std::vector<sensor::Detection> from_csv(const fs::path& path, std::string_view bytes, std::size_t first) {
   Lines lines(bytes);
   std::string_view line;
   if (!lines.next_filled(line)) fail(path, "is empty");
@@ -110,7 +114,7 @@ std::vector<sensor::Detection> from_csv(const fs::path& path, std::string_view b
         if (!columns.count(k) && lower(trimmed(names[c])) == name) columns[k] = c;
   if (!columns.count(kInstance) && !columns.count(kBoxFirst))
     fail(path, "holds no detections: its first line names neither 'instance' nor a box (u, v, width, height)");
-  Collector out;
+  Collector out(first);
   while (lines.next_filled(line)) {
     const auto complain = [&](const std::string& message) { fail(path, lines.number(), message); };
     if (!split_csv(line, cells) || cells.size() != names.size())
@@ -164,11 +168,12 @@ ColorImage read_color_image(const fs::path& path) { return decode_png_colors(pat
 
 LabelImage read_label_image(const fs::path& path) { return decode_png_labels(path, read_bytes(path).view()); }
 
-std::vector<sensor::Detection> read_detections(const fs::path& path) {
+std::vector<sensor::Detection> read_detections(const fs::path& path, std::size_t first) {
   const Bytes bytes = read_bytes(path);
   if (bytes.size == 0) fail(path, "is empty");
   const std::string_view text = trimmed(bytes.view());
-  return !text.empty() && (text.front() == '[' || text.front() == '{') ? from_json(path) : from_csv(path, bytes.view());
+  return !text.empty() && (text.front() == '[' || text.front() == '{') ? from_json(path, bytes, first)
+                                                                       : from_csv(path, bytes.view(), first);
 }
 
 void add_channels(sensor::DepthFrame& frame, const ChannelFiles& files) {
@@ -187,7 +192,11 @@ void add_channels(sensor::DepthFrame& frame, const ChannelFiles& files) {
   }
   if (!files.boxes.empty()) {
     frame.detected = true;
-    std::vector<sensor::Detection> boxes = read_detections(files.boxes);
+    // Boxes that name no instance have nothing to do with the masks: they are numbered behind these.
+    std::size_t last = 0;
+    for (const std::uint16_t i : frame.instances) last = std::max<std::size_t>(last, i);
+    for (const sensor::Detection& d : frame.detections) last = std::max(last, static_cast<std::size_t>(d.instance));
+    std::vector<sensor::Detection> boxes = read_detections(files.boxes, last + 1);
     for (const sensor::Detection& d : boxes)
       if (!d.box) fail(files.boxes, "detection " + std::to_string(d.instance) + " has no box (u, v, width, height)");
     add_detections(frame, std::move(boxes));

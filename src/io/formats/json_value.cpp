@@ -43,8 +43,9 @@ Json parse_json(std::string_view text) {
   });
 }
 
-Json load_json(const std::filesystem::path& path) {
-  const Bytes bytes = read_bytes(path);
+Json load_json(const std::filesystem::path& path) { return load_json(path, read_bytes(path)); }
+
+Json load_json(const std::filesystem::path& path, const Bytes& bytes) {
   if (bytes.size == 0) fail(path, "is empty");
   try {
     return parse_json(bytes.view());

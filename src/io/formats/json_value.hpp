@@ -24,6 +24,8 @@ Json parse_json(std::string_view text);
 
 /// Read and parse a JSON file. @throws FileError when it cannot be read or is not JSON
 Json load_json(const std::filesystem::path& path);
+/// The same for the bytes of a file that was read already. @param path for messages
+Json load_json(const std::filesystem::path& path, const Bytes& bytes);
 
 /// The JSON text, indented, with lists of numbers on one line. Bytes that are not UTF-8 are replaced.
 std::string dump(const Json& json);
