@@ -114,8 +114,10 @@ Shard parse_shard(const std::string& text) {
   char slash = 0;
   std::istringstream in(text);
   in >> shard.index >> slash >> shard.count;
-  if (in.fail() || !in.eof() || slash != '/' || text[0] == '-' || shard.index < 1 || shard.index > shard.count)
-    throw UsageError("--shard: expected I/N with 1 <= I <= N, got '" + text + "'");
+  if (in.fail() || !in.eof() || slash != '/' || text.find('-') != std::string::npos || shard.index < 1 ||
+      shard.index > shard.count || shard.count > kMostShards)
+    throw UsageError("--shard: expected I/N with 1 <= I <= N <= " + std::to_string(kMostShards) + ", got '" + text +
+                     "'");
   return shard;
 }
 

@@ -37,9 +37,10 @@ int join_summaries(const fs::path& folder, bool must) {
   if (shards.count == 0 && !must) return kSuccess;
   if (shards.count == 0) throw FileError(folder.string() + ": holds no summary of a shard (summary-I-of-N.csv)");
   if (!shards.missing.empty()) {
-    const std::string message =
-        (folder / summary_name({shards.missing.front(), shards.count})).string() + ": is missing" +
-        (shards.missing.size() > 1 ? ", as are those of all of shards " + comma_list(shards.missing) : "");
+    const bool several = shards.missing.size() > 1;
+    const std::string message = (folder / summary_name({shards.missing.front(), shards.count})).string() +
+                                ": is missing" +
+                                (several ? "; shards " + comma_list(shards.missing) + " have no summary" : "");
     if (must) throw FileError(message);
     std::cerr << "agrisee: " << message << "\n";
     return kBadInput;

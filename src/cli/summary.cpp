@@ -85,6 +85,9 @@ ShardSummaries read_shards(const std::filesystem::path& folder) {
   if (found.size() > 1) io::fail(folder, "holds summaries of different numbers of shards");
   ShardSummaries out;
   if (found.empty()) return out;
+  if (found.begin()->first > kMostShards)
+    io::fail(folder, "holds the summary of one of " + std::to_string(found.begin()->first) + " shards, at most " +
+                         std::to_string(kMostShards) + " are possible");
   out.count = found.begin()->first;
   for (std::size_t i = 1; i <= out.count; ++i) {
     const bool is_there = found.begin()->second.count(i) > 0;

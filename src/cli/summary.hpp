@@ -12,6 +12,7 @@ namespace agrisee::cli {
 struct Shard {
   std::size_t index = 1, count = 1;
 };
+constexpr std::size_t kMostShards = 1000000;  ///< more are a slip of the pen
 
 /// One input of a list. `fruits` to `seconds` are those of its result, as texts; empty unless it is done.
 struct SummaryRow {

@@ -2,10 +2,12 @@
 #include "season/database.hpp"
 
 #include <agrisee/core/parallel.hpp>
+#include <agrisee/io/fingerprint.hpp>
 
 #include <filesystem>
 #include <limits>
 #include <map>
+#include <set>
 
 #include "season/schema.hpp"
 #include "season/sqlite.hpp"
@@ -34,6 +36,14 @@ void prepare(const Connection& connection) {
                   "; PRAGMA user_version = " + std::to_string(kSchemaVersion))
                      .c_str());
 }
+
+/// A scan as the database knows it.
+struct Entry {
+  const Scan* scan;
+  std::string folder;   ///< relative to the database
+  Place place;          ///< by the rules
+  std::string content;  ///< fingerprint of what is stored
+};
 
 /// Ids of texts that are stored once.
 class Texts {
@@ -92,9 +102,11 @@ class Writer {
   void forget(long long id) { forget_.bind(id).run(); }
 
   /// @param files null for a scan without a result
-  void add(const std::string& folder, const Scan& scan, Place place, const ResultFiles* files) {
+  void add(const Entry& entry, const ResultFiles* files) {
+    const Scan& scan = *entry.scan;
+    Place place = entry.place;
     if (place.date.empty() && files) place.date = files->run.info.time.substr(0, 10);
-    scan_.bind(folder).bind(scan.content).bind(scan.status).bind(scan.message).bind(scan.input);
+    scan_.bind(entry.folder).bind(entry.content).bind(scan.status).bind(scan.message).bind(scan.input);
     scan_.bind(place.row).bind(place.date);
     if (files) {
       const io::RunFile& run = files->run;
@@ -160,18 +172,30 @@ Added add_scans(const std::string& database, const std::vector<Scan>& scans, con
   std::error_code error;
   const fs::path home = fs::absolute(fs::path(database), error).parent_path();
   const auto name_of_folder = [&](const Scan& scan) {
-    return fs::absolute(scan.folder, error).lexically_normal().lexically_relative(home.lexically_normal()).string();
+    fs::path folder = fs::absolute(scan.folder, error).lexically_normal();
+    if (!folder.has_filename()) folder = folder.parent_path();  // "scans/1/" is "scans/1"
+    return folder.lexically_relative(home.lexically_normal()).string();
   };
-  std::vector<std::size_t> open;  // scans that are new or changed
-  for (std::size_t i = 0; i < scans.size(); ++i) {
-    const auto [id, content] = writer.find(name_of_folder(scans[i]));
-    if (id > 0 && content == scans[i].content) {
+  std::vector<Entry> entries;
+  for (const Scan& scan : scans) {
+    const std::string folder = name_of_folder(scan);
+    const Place place = rules.of(scan.input.empty() ? folder : scan.input);
+    io::Fingerprint print;  // other rules for rows and dates change the scan, too
+    print.add(scan.content + "\n" + place.row + "\n" + place.date);
+    entries.push_back({&scan, folder, place, print.text()});
+  }
+  std::set<std::string> listed;    // folders, which may be named twice
+  std::vector<const Entry*> open;  // scans that are new or changed
+  for (const Entry& e : entries) {
+    if (!listed.insert(e.folder).second) continue;
+    const auto [id, content] = writer.find(e.folder);
+    if (id > 0 && content == e.content) {
       ++out.unchanged;
       continue;
     }
     if (id > 0) writer.forget(id);
     ++(id > 0 ? out.changed : out.added);
-    open.push_back(i);
+    open.push_back(&e);
   }
   constexpr std::size_t kBatch = 1024;  // so many results are in memory at a time
   for (std::size_t from = 0; from < open.size(); from += kBatch) {
@@ -179,16 +203,11 @@ Added add_scans(const std::string& database, const std::vector<Scan>& scans, con
     parallel_for(
         files.size(), threads,
         [&](std::size_t k) {
-          const Scan& scan = scans[open[from + k]];
+          const Scan& scan = *open[from + k]->scan;
           if (scan.status == "ok") files[k] = read_result(scan.folder);
         },
         4);
-    for (std::size_t k = 0; k < files.size(); ++k) {
-      const Scan& scan = scans[open[from + k]];
-      const std::string folder = name_of_folder(scan);
-      const Place place = rules.of(scan.input.empty() ? folder : scan.input);
-      writer.add(folder, scan, place, files[k] ? &*files[k] : nullptr);
-    }
+    for (std::size_t k = 0; k < files.size(); ++k) writer.add(*open[from + k], files[k] ? &*files[k] : nullptr);
   }
   connection.run("COMMIT");
   return out;

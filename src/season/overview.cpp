@@ -7,7 +7,6 @@
 #include <cmath>
 #include <filesystem>
 #include <set>
-#include <string_view>
 #include <unordered_map>
 
 #include "season/schema.hpp"
@@ -15,13 +14,6 @@
 
 namespace agrisee::season {
 namespace {
-
-/// The class of ripeness with this name; none for another text.
-std::optional<std::size_t> class_of(std::string_view name) {
-  for (std::size_t i = 0; i < kRipenessClasses; ++i)
-    if (name == to_string(static_cast<RipenessClass>(i))) return i;
-  return std::nullopt;
-}
 
 /// Whether a row comes before another: "2" before "10", numbers before words.
 bool row_before(const std::string& a, const std::string& b) {
@@ -138,9 +130,10 @@ Overview read_overview(const std::string& database) {
       ++tally->diameters[static_cast<std::size_t>(mm)];
     }
     if (!fruit.is_null(3))
-      if (const auto grade = class_of(fruit.text(3))) ++tally->ripe[*grade];
+      if (const auto grade = ripeness_named(fruit.text(3))) ++tally->ripe[static_cast<std::size_t>(*grade)];
   }
-  Statement versions(connection, "SELECT DISTINCT version FROM versions ORDER BY version");
+  Statement versions(connection,
+                     "SELECT version FROM versions WHERE id IN (SELECT version FROM scans) ORDER BY version");
   while (versions.step()) out.versions.push_back(versions.text(0));
   Statement parameters(connection, "SELECT count(DISTINCT parameters) FROM scans");
   parameters.step();

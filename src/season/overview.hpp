@@ -15,9 +15,6 @@
 
 namespace agrisee::season {
 
-/// Number of classes of ripeness.
-constexpr std::size_t kRipenessClasses = 6;
-
 /// Sums over some scans.
 struct Tally {
   static constexpr std::size_t kBins = 300;             ///< of diameters, a millimetre each; the last holds all above

@@ -22,8 +22,9 @@ struct Place {
 /// Reads row and date from the path of a scan's input: the groups in parentheses of a match, joined by "-". Without a
 /// match it is empty.
 struct PlaceRules {
-  std::regex row{"row[ _-]?([0-9]+[a-z]?)", std::regex::icase};        ///< "row_07" -> "07"
-  std::regex date{"(20[0-9][0-9])[-_]?([01][0-9])[-_]?([0-3][0-9])"};  ///< "20260603" -> "2026-06-03"
+  std::regex row{"(?:^|[^a-z])row[ _-]?([0-9]+[a-z]?)", std::regex::icase};  ///< "row_07" -> "07"
+  std::regex date{"(?:^|[^0-9])(20[0-9]{2})[-_]?(0[1-9]|1[0-2])[-_]?(0[1-9]|[12][0-9]|3[01])(?![0-9])"};
+  ///< "20260603" -> "2026-06-03"
 
   /// The place that a path tells.
   Place of(const std::string& path) const;

@@ -98,6 +98,7 @@ PY
     [ -f three/t2_cloud/fruits.json ] && [ -f three/t3_cloud/fruits.json ] || fail "names of clouds: $(ls three)"
     expect 2 'matches no file' process 'no/*.ply' -o four
     expect 1 'I/N' process one/t2/cloud.ply -o four --shard 3/2
+    expect 1 'I <= N <= 1000000' process one/t2/cloud.ply -o four --shard 1/-2
     # As spread by others.
     if command -v parallel >/dev/null 2>&1; then
       parallel -j 2 "$agrisee" scan "'season/*/scene.yaml'" -o five --max-views 2 --shard {}/3 ::: 1 2 3 >/dev/null 2>&1
