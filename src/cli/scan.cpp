@@ -273,6 +273,9 @@ int run_scan(const ScanOptions& options) {
   io::ScanTask task = resuming ? task_to_resume(options, folder / "scan.json") : task_of(options);
   const io::SceneFile file = io::read_scene(task.scene);
   const std::string content = content_of(task.scene, file);
+  if (!options.mcap.empty() && !options.force && fs::exists(options.mcap))
+    throw UsageError("--mcap: " + options.mcap + " exists already; " +
+                     (resuming ? "name another file" : "--force overwrites it"));
   if (resuming && content != task.content)
     throw FileError(task.scene + ": is not the scene with which the scan in " + folder.string() + " started");
   task.content = content;
@@ -282,7 +285,7 @@ int run_scan(const ScanOptions& options) {
   if (!resuming) {
     if (!options.prepared) prepare_output(folder.string(), options.force);
     io::write_scan_task(folder / "scan.json", task);
-  } else if (is_finished(folder.string(), options)) {
+  } else if (options.mcap.empty() && is_finished(folder.string(), options)) {
     std::cerr << folder.string() << ": the scan is finished, there is nothing to do\n";
     return kSuccess;
   } else {

@@ -149,9 +149,10 @@ class Walk {
            "its chunks are compressed (" + excerpt(compression) +
                "), which is not read; convert it with `mcap compress --compression none FILE -o OTHER`");
     const std::uint64_t begin = at + kHead + 4 + 8;
-    if (fields.take(8) != size || size > at + length - begin) fail(source_.path(), "is damaged: the size of a chunk");
+    if (fields.take(8) != size || size > at + length - begin)
+      fail(source_.path(), "is damaged: the sizes of a chunk disagree");
 #ifndef FUZZING_BUILD_MODE_UNSAFE_FOR_PRODUCTION  // a fuzzer would never get past it
-    if (crc != 0 && crc != crc_of(begin, size)) fail(source_.path(), "is damaged: the checksum of a chunk is another");
+    if (crc != 0 && crc != crc_of(begin, size)) fail(source_.path(), "is damaged: the checksum of a chunk is wrong");
 #else
     static_cast<void>(crc);
 #endif

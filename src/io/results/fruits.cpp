@@ -210,10 +210,9 @@ Picking picking_of(const JsonValue& value) {
 Ripeness ripeness_of(const JsonValue& value) {
   Ripeness out;
   const std::string grade = value.at("class").text();
-  std::size_t c = 0;
-  while (c < kRipenessClasses && grade != to_string(static_cast<RipenessClass>(c))) ++c;
-  if (c == kRipenessClasses) value.at("class").fail("unknown class of ripeness '" + grade + "'");
-  out.grade = static_cast<RipenessClass>(c);
+  const auto named = ripeness_named(grade);
+  if (!named) value.at("class").fail("unknown class of ripeness '" + grade + "'");
+  out.grade = *named;
   out.probability = value.at("probability").number();
   out.ripe_share = value.at("ripe_share").number();
   out.ripe_share_error = value.at("ripe_share_error").number();

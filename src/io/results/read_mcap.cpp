@@ -37,6 +37,12 @@ auto taken(const fs::path& path, const mcap::Contents& contents, const mcap::Mes
   }
 }
 
+/// The beginning of a message, enough for the time in its header: images are large.
+mcap::Message head_of(mcap::Message message) {
+  message.size = std::min(message.size, ros::kTimeSize);
+  return message;
+}
+
 bool has_type(const mcap::Channel& channel, const ros::Type& type) {
   return channel.schema == type.name && channel.encoding == "cdr";
 }
@@ -157,8 +163,11 @@ McapRecording::McapRecording(const fs::path& path, const McapChoice& choice) : p
   std::vector<mcap::Message> images = depth_images(path, contents, choice.topic);
   std::stable_sort(images.begin(), images.end(), [](const auto& a, const auto& b) { return a.time < b.time; });
   const std::string topic = contents.channels.at(images.front().channel).topic;
-  const std::string first = mcap::read_message(path, images.front());  // an image refers to its bytes
-  const ros::Image image = ros::read_image(first);
+  const ros::Image image = taken(path, contents, images.front(), [](const std::string& bytes) {
+    ros::Image head = ros::read_image(bytes);
+    head.data = {};  // it refers to the bytes
+    return head;
+  });
   const ros::CameraInfo camera = camera_of(path, contents, topic, image);
   const ros::TransformTree tree = tree_of(path, contents);
   const std::string world = world_of(path, tree, image.header.frame, choice.world_frame);
@@ -176,8 +185,7 @@ McapRecording::McapRecording(const fs::path& path, const McapChoice& choice) : p
   std::size_t without_pose = 0, moving = 0;
   const auto rest = static_cast<std::uint64_t>(choice.rest * 1e9);
   for (const mcap::Message& message : images) {
-    const std::uint64_t time =
-        taken(path, contents, message, [](const std::string& bytes) { return ros::read_image(bytes).header.time; });
+    const std::uint64_t time = taken(path, contents, head_of(message), ros::read_time);
     const auto pose = tree.pose(world, image.header.frame, time);
     if (!pose) {
       ++without_pose;

@@ -155,7 +155,7 @@ class MeshCache {
 /// How ripe a fruit is: a share, or the name of a class.
 double read_ripeness(const YamlValue& value) {
   const std::string text = value.text();
-  if (const auto named = study::ripeness_named(text)) return study::middle_share(*named);
+  if (const auto named = ripeness_named(text)) return study::middle_share(*named);
   const char* const classes = "green, breakers, turning, pink, light_red or red";
   if (text.empty() || std::isalpha(static_cast<unsigned char>(text.front())))
     value.fail(std::string("must be a share from 0 to 1, or ") + classes + ", got " + excerpt(text));

@@ -23,12 +23,15 @@ CdrWriter& put_header(CdrWriter& out, const Header& header) {
   return out.text(header.frame);
 }
 
-Header take_header(CdrReader& in) {
-  Header header;
+std::uint64_t take_time(CdrReader& in) {
   const auto seconds = in.take<std::int32_t>();
   check_input(seconds >= 0, "has a time before 1970");
-  header.time = static_cast<std::uint64_t>(seconds) * kSecond;
-  header.time += in.take<std::uint32_t>();
+  return static_cast<std::uint64_t>(seconds) * kSecond + in.take<std::uint32_t>();
+}
+
+Header take_header(CdrReader& in) {
+  Header header;
+  header.time = take_time(in);
   header.frame = in.text();
   if (!header.frame.empty() && header.frame[0] == '/') header.frame.erase(0, 1);  // as old drivers write it
   return header;
@@ -63,6 +66,11 @@ const Type kPointCloud{"sensor_msgs/msg/PointCloud2",
                        "is_dense\n" AGRISEE_ROS_LINE
                        "MSG: sensor_msgs/PointField\nstring name\nuint32 offset\nuint8 datatype\nuint32 "
                        "count\n" AGRISEE_ROS_HEADER};
+
+std::uint64_t read_time(std::string_view message) {
+  CdrReader in(message);
+  return take_time(in);
+}
 
 Image read_image(std::string_view message) {
   CdrReader in(message);

@@ -51,8 +51,13 @@ struct Transform {
   Pose pose = Pose::Identity();
 };
 
+/// The time in the header is within this many bytes of the beginning of a message.
+constexpr std::uint64_t kTimeSize = 12;
+
 // Take messages apart. All throw InputError for a message that is too short or says the impossible.
 Image read_image(std::string_view message);
+/// The time (ns) of a message that begins with a header; kTimeSize bytes are enough.
+std::uint64_t read_time(std::string_view message);
 /// @param rectified whether its images are: they have the intrinsics of its projection matrix, and no distortion
 CameraInfo read_camera_info(std::string_view message, bool rectified);
 std::vector<Transform> read_transforms(std::string_view message);
