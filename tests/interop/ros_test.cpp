@@ -212,6 +212,9 @@ void reads_frames() {
       CHECK((frame.intrinsics.fx == 100.0 && frame.intrinsics.fy == 110.0));
       CHECK((frame.intrinsics.cx == 1.5 && frame.intrinsics.cy == 1.0));
     }
+  auto full = image_4x3<Image>(true, false);
+  full.data[2] = full.data[3] = 0xff;  // the second pixel: no return
+  CHECK(interop::depth_frame(full, info).at(1, 0) == 0.0f);
   const auto image = image_4x3<Image>(true, false);
   const sensor::Intrinsics rectified = interop::depth_frame(image, info, true).intrinsics;
   CHECK((rectified.fx == 90.0 && rectified.fy == 95.0 && rectified.cx == 1.25 && rectified.cy == 0.75));

@@ -19,7 +19,7 @@ DepthFrame plane_seen_through(const Distortion& lens) {
   frame.intrinsics = kCamera;
   for (int v = 0; v < kCamera.height; ++v)
     for (int u = 0; u < kCamera.width; ++u) {
-      const Eigen::Vector2d ray = lens.undistorted(kCamera.ray(u, v).head<2>());
+      const Eigen::Vector2d ray = lens.undistorted(kCamera.ray(u, v).head<2>()).value();
       frame.depth.push_back(static_cast<float>(1.0 / (1.0 - 0.2 * ray.x() + 0.1 * ray.y())));
       frame.color.push_back({static_cast<std::uint8_t>(u), static_cast<std::uint8_t>(v), 7});
       frame.instances.push_back(static_cast<std::uint16_t>(1 + u / 40));
@@ -32,7 +32,7 @@ DepthFrame plane_seen_through(const Distortion& lens) {
 TEST_CASE("a lens's distortion and its inverse undo one another") {
   for (const double x : {-0.6, -0.1, 0.0, 0.3, 0.55})
     for (const double y : {-0.4, 0.05, 0.41})
-      CHECK((kLens.distorted(kLens.undistorted({x, y})) - Eigen::Vector2d(x, y)).norm() < 1e-9);
+      CHECK((kLens.distorted(kLens.undistorted({x, y}).value()) - Eigen::Vector2d(x, y)).norm() < 1e-9);
 }
 
 TEST_CASE("barrel distortion shows a point nearer to the middle") {
@@ -80,6 +80,21 @@ TEST_CASE("boxes are rectified with their image") {
   CHECK(seen(box.u, box.v + 0.5 * box.height).x() + 0.5 == Approx(10.0).margin(0.1));
   CHECK(seen(box.u + box.width, box.v + 0.5 * box.height).x() + 0.5 == Approx(40.0).margin(0.1));
   CHECK(seen(box.u + 0.5 * box.width, box.v).y() + 0.5 == Approx(20.0).margin(0.1));
+}
+
+TEST_CASE("a box that reaches beyond what the lens shows ends at the border") {
+  const Distortion barrel{{-0.3}};
+  DepthFrame frame;
+  frame.intrinsics = {160, 120, 100.0, 100.0, 79.5, 59.5};  // the lens shows no point this far out at the left border
+  frame.depth.assign(frame.intrinsics.size(), 1.0f);
+  Detection d;
+  d.instance = 1;
+  d.box = PixelBox{0.0, 10.0, 60.0, 30.0};
+  frame.detections.push_back(d);
+  REQUIRE_FALSE(barrel.undistorted(frame.intrinsics.ray(-0.5, 24.5).head<2>()));
+  const PixelBox box = *rectified(frame, barrel).detections[0].box;
+  CHECK(box.u == 0.0);
+  CHECK(box.width > 50.0);
 }
 
 TEST_CASE("a distortion that cannot be is refused") {

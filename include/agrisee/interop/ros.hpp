@@ -173,8 +173,8 @@ sensor::Distortion distortion_of(const Info& info) {
     return take(info.d);
 }
 
-/// A depth image, `16UC1` (mm, 0 = no return) or `32FC1` (m; 0, NaN and infinities = no return), as a frame in metres.
-/// The distortion that its CameraInfo states is taken out.
+/// A depth image, `16UC1` (mm; 0 and 65535 = no return) or `32FC1` (m; 0, NaN and infinities = no return), as a frame
+/// in metres. The distortion that its CameraInfo states is taken out.
 /// @param image sensor_msgs/Image  @param info the CameraInfo that came with it
 /// @param rectified whether the image was rectified before, see intrinsics_of
 /// @throws InputError for another encoding, data shorter than the rows, a size that differs from the camera's, or an
@@ -199,9 +199,14 @@ sensor::DepthFrame depth_frame(const Image& image, const Info& info, bool rectif
   for (std::size_t v = 0; v < height; ++v) {
     const std::uint8_t* row = image.data.data() + v * step;
     float* out = frame.depth.data() + v * width;
-    for (std::size_t u = 0; u < width; ++u)
-      out[u] = millimetres ? 0.001f * static_cast<float>(detail::read_number<std::uint16_t>(row + 2 * u, swap))
-                           : detail::read_number<float>(row + 4 * u, swap);
+    for (std::size_t u = 0; u < width; ++u) {
+      if (!millimetres) {
+        out[u] = detail::read_number<float>(row + 4 * u, swap);
+        continue;
+      }
+      const auto z = detail::read_number<std::uint16_t>(row + 2 * u, swap);
+      out[u] = z == 0xFFFF ? 0.0f : 0.001f * static_cast<float>(z);
+    }
   }
   if (!rectified) return sensor::rectified(frame, distortion_of(info));
   return frame;

@@ -10,6 +10,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <optional>
 #include <vector>
 
 namespace agrisee::sensor {
@@ -30,15 +31,17 @@ struct Distortion {
     return {p.x() * radial + k[2] * xy + k[3] * (r2 + 2.0 * p.x() * p.x()),
             p.y() * radial + k[3] * xy + k[2] * (r2 + 2.0 * p.y() * p.y())};
   }
-  /// The point that the lens shows at `p`, both at z = 1: the inverse of distorted(), by fixed-point steps.
-  Eigen::Vector2d undistorted(const Eigen::Vector2d& p) const {
+  /// The point that the lens shows at `p`, both at z = 1: the inverse of distorted(), by fixed-point steps. Empty where
+  /// they find none: the lens shows nothing there, or folds the image.
+  std::optional<Eigen::Vector2d> undistorted(const Eigen::Vector2d& p) const {
     Eigen::Vector2d out = p;
-    for (int i = 0; i < 50; ++i) {
+    for (int i = 0; i < 200; ++i) {
       const Eigen::Vector2d off = p - distorted(out);
       out += off;
-      if (off.squaredNorm() < 1e-20) break;
+      if (!out.allFinite()) return std::nullopt;
+      if (off.squaredNorm() < 1e-20) return out;
     }
-    return out;
+    return std::nullopt;
   }
   /// The radial factor at the squared distance r2 from the optical axis (z = 1).
   double stretch(double r2) const {
@@ -102,16 +105,19 @@ inline DepthFrame rectified(const DepthFrame& frame, const Distortion& lens) {
       if (!frame.color.empty()) out.color[pixel] = frame.color[*source];
       if (!frame.instances.empty()) out.instances[pixel] = frame.instances[*source];
     }
-  const auto pinhole = [&](double u, double v) {
-    return k.project(lens.undistorted(k.ray(u, v).head<2>()).homogeneous());
+  // Where a place of the image goes; what the lens does not show lies beyond the border, where `otherwise` is.
+  const auto pinhole = [&](double u, double v, double otherwise) {
+    const auto p = lens.undistorted(k.ray(u, v).head<2>());
+    return p ? k.project(p->homogeneous()) : Eigen::Vector2d::Constant(otherwise).eval();
   };
   for (Detection& d : out.detections) {
     if (!d.box) continue;
     // The sides in coordinates whose integers are the middles of pixels, in which pixel_of works.
     const double left = d.box->u - 0.5, top = d.box->v - 0.5, right = left + d.box->width, bottom = top + d.box->height;
     const double u = 0.5 * (left + right), v = 0.5 * (top + bottom);
-    const double new_left = pinhole(left, v).x(), new_top = pinhole(u, top).y();
-    d.box = PixelBox{new_left + 0.5, new_top + 0.5, pinhole(right, v).x() - new_left, pinhole(u, bottom).y() - new_top};
+    const double new_left = pinhole(left, v, -0.5).x(), new_right = pinhole(right, v, k.width - 0.5).x();
+    const double new_top = pinhole(u, top, -0.5).y(), new_bottom = pinhole(u, bottom, k.height - 0.5).y();
+    d.box = PixelBox{new_left + 0.5, new_top + 0.5, new_right - new_left, new_bottom - new_top};
   }
   return out;
 }
