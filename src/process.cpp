@@ -23,6 +23,8 @@
 #include <string>
 #include <utility>
 
+#include "fruit_ripeness.hpp"
+
 namespace agrisee {
 namespace {
 
@@ -261,49 +263,6 @@ Cloud without_flying_pixels(Cloud&& cloud, double max_incidence, const CloudOrig
     if (!(normal.dot(sight) < least * normal.norm() * sight.norm())) kept.push_back(static_cast<Index>(i));
   }
   return select(cloud, kept);
-}
-
-/// Without the greenest share of some colours: that of the calyx, which lies on the fruit and is labelled with it.
-std::vector<Rgb> without_calyx(std::vector<Rgb> colors) {
-  constexpr double kCalyx = 0.04;  // of the surface
-  std::vector<std::pair<double, std::size_t>> greens;
-  for (std::size_t i = 0; i < colors.size(); ++i) {
-    const Eigen::Vector3d lab = to_lab(colors[i]);
-    greens.push_back({-std::atan2(lab.z(), lab.y()) * (lab.z() > 0.0), i});  // blue and violet are no green
-  }
-  std::sort(greens.begin(), greens.end());
-  std::vector<Rgb> out;
-  for (std::size_t k = static_cast<std::size_t>(kCalyx * static_cast<double>(colors.size())); k < greens.size(); ++k)
-    out.push_back(colors[greens[k].second]);
-  return out;
-}
-
-/// The measured colours of the skin of a fruit (black: none).
-std::vector<Rgb> skin_colors(const Cloud& cloud, const Labels& labels, int label) {
-  std::vector<Rgb> colors;
-  for (std::size_t i = 0; i < cloud.size(); ++i)
-    if (labels[i] == label && cloud.colors[i] != Rgb{0, 0, 0}) colors.push_back(cloud.colors[i]);
-  return without_calyx(std::move(colors));
-}
-
-/// Share of a fruit's surface that was seen; without a body less than half, as from one side.
-double share_seen(const Fruit& fruit) { return fruit.body ? fruit.body->completeness : 0.3; }
-
-/// How ripe the fruit and trusses of a result are, where its cloud has colours.
-void add_ripeness(ScanResult& result, const RipenessParameters& parameters) {
-  if (result.cloud.colors.empty()) return;
-  for (Fruit& f : result.fruits)
-    f.ripeness = ripeness_of(skin_colors(result.cloud, result.labels, f.id), share_seen(f), parameters);
-  for (FoundTruss& t : result.trusses) {
-    std::vector<Rgb> colors;
-    double seen = 0.0;
-    for (const int id : t.fruits) {
-      const std::vector<Rgb> own = skin_colors(result.cloud, result.labels, id);
-      colors.insert(colors.end(), own.begin(), own.end());
-      seen += share_seen(result.fruits[static_cast<std::size_t>(id - 1)]) / static_cast<double>(t.fruits.size());
-    }
-    t.ripeness = ripeness_of(colors, seen, parameters);
-  }
 }
 
 }  // namespace

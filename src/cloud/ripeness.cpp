@@ -10,17 +10,11 @@
 namespace agrisee {
 namespace {
 
-/// Linear light of a channel (IEC 61966-2-1).
-double linear(std::uint8_t channel) {
-  const double c = channel / 255.0;
-  return c <= 0.04045 ? c / 12.92 : std::pow((c + 0.055) / 1.055, 2.4);
-}
-
-/// The same by table.
+/// linear_light of each value of 8 bits.
 const std::array<double, 256>& linear_table() {
   static const std::array<double, 256> table = [] {
     std::array<double, 256> t{};
-    for (std::size_t i = 0; i < t.size(); ++i) t[i] = linear(static_cast<std::uint8_t>(i));
+    for (std::size_t i = 0; i < t.size(); ++i) t[i] = linear_light(static_cast<double>(i) / 255.0);
     return t;
   }();
   return table;
@@ -30,12 +24,6 @@ const std::array<double, 256>& linear_table() {
 double lightness_of(double ratio) {
   constexpr double kDelta = 6.0 / 29.0;
   return ratio > kDelta * kDelta * kDelta ? std::cbrt(ratio) : ratio / (3.0 * kDelta * kDelta) + 4.0 / 29.0;
-}
-
-/// The hue angle (rad) of a colour in CIELAB, -pi/2..3 pi/2: blue counts as far from red.
-double hue_of(const Eigen::Vector3d& lab) {
-  const double hue = std::atan2(lab.z(), lab.y());
-  return hue < -0.5 * kPi ? hue + kTwoPi : hue;
 }
 
 /// Share of a normal distribution below x standard deviations.
@@ -56,13 +44,17 @@ double share_below(const std::vector<double>& hues, double shift, const Ripeness
   return sum / static_cast<double>(hues.size());
 }
 
+/// Where each class begins, and where the last one ends.
+std::array<double, kRipenessClasses + 1> class_limits(const RipenessParameters& p) {
+  return {-1e9, p.breakers, p.turning, p.pink, p.light_red, p.red, 1e9};
+}
+
 /// Set the class, and how sure it is.
 void grade(Ripeness& out, const RipenessParameters& p) {
-  const std::array<double, kRipenessClasses + 1> from = {-1e9, p.breakers, p.turning, p.pink, p.light_red, p.red, 1e9};
-  std::size_t c = 0;
-  while (c + 1 < kRipenessClasses && out.ripe_share > from[c + 1]) ++c;
+  const auto from = class_limits(p);
   const double error = std::max(out.ripe_share_error, 1e-6);
-  out.grade = static_cast<RipenessClass>(c);
+  out.grade = class_of(out.ripe_share, p);
+  const auto c = static_cast<std::size_t>(out.grade);
   out.probability = below((from[c + 1] - out.ripe_share) / error) - below((from[c] - out.ripe_share) / error);
 }
 
@@ -72,6 +64,28 @@ const char* to_string(RipenessClass ripeness) {
   constexpr std::array<const char*, kRipenessClasses> kNames{"green", "breakers",  "turning",
                                                              "pink",  "light_red", "red"};
   return kNames[static_cast<std::size_t>(ripeness)];
+}
+
+std::optional<RipenessClass> ripeness_named(std::string_view name) {
+  for (std::size_t c = 0; c < kRipenessClasses; ++c)
+    if (name == to_string(static_cast<RipenessClass>(c))) return static_cast<RipenessClass>(c);
+  return std::nullopt;
+}
+
+RipenessClass class_of(double ripe_share, const RipenessParameters& parameters) {
+  const auto from = class_limits(parameters);
+  std::size_t c = 0;
+  while (c + 1 < kRipenessClasses && ripe_share > from[c + 1]) ++c;
+  return static_cast<RipenessClass>(c);
+}
+
+double hue_of(const Eigen::Vector3d& lab) {
+  const double hue = std::atan2(lab.z(), lab.y());
+  return hue < -0.5 * kPi ? hue + kTwoPi : hue;
+}
+
+double linear_light(double channel) {
+  return channel <= 0.04045 ? channel / 12.92 : std::pow((channel + 0.055) / 1.055, 2.4);
 }
 
 Eigen::Vector3d to_lab(const Rgb& color) {

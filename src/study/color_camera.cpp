@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <agrisee/cloud/ripeness.hpp>
 #include <agrisee/core/parallel.hpp>
 #include <agrisee/core/random.hpp>
 #include <agrisee/study/color_camera.hpp>
@@ -33,8 +34,7 @@ Eigen::Vector3d linear_of(const Shade& s) {
   return (rgb_of * xyz).cwiseMax(0.0).cwiseMin(1.0);
 }
 
-/// Linear light of a channel of sRGB, and back (IEC 61966-2-1); both 0..1.
-double decoded(double c) { return c <= 0.04045 ? c / 12.92 : std::pow((c + 0.055) / 1.055, 2.4); }
+/// A channel of sRGB (0..1) with this linear light: the inverse of linear_light.
 double encoded(double c) { return c <= 0.0031308 ? 12.92 * c : 1.055 * std::pow(c, 1.0 / 2.4) - 0.055; }
 
 /// The shade of a fruit's surface that has turned to a degree: 0 green, 0.5 half way, 1 red.
@@ -101,7 +101,7 @@ Eigen::Vector3d shaded(const Eigen::Vector3d& color, Eigen::Vector3d normal, con
 Eigen::Vector3d surface_color(const Look& look, std::uint32_t number, const Eigen::Vector3d& point) {
   if (look.color) {
     Eigen::Vector3d out;
-    for (Eigen::Index c = 0; c < 3; ++c) out[c] = decoded((*look.color)[static_cast<std::size_t>(c)] / 255.0);
+    for (Eigen::Index c = 0; c < 3; ++c) out[c] = linear_light((*look.color)[static_cast<std::size_t>(c)] / 255.0);
     return out;
   }
   if (look.cls == ObjectClass::fruit) return linear_of(turned(degree_at(look, number, point)));

@@ -18,24 +18,11 @@ std::array<double, kRipenessClasses + 1> class_limits() {
 
 }  // namespace
 
-RipenessClass ripeness_class(double share) {
-  const auto limits = class_limits();
-  std::size_t c = 0;
-  while (c + 1 < kRipenessClasses && share > limits[c + 1]) ++c;
-  return static_cast<RipenessClass>(c);
-}
-
 double middle_share(RipenessClass ripeness) {
   if (ripeness == RipenessClass::green) return 0.0;
   const auto limits = class_limits();
   const auto c = static_cast<std::size_t>(ripeness);
   return 0.5 * (limits[c] + limits[c + 1]);
-}
-
-std::optional<RipenessClass> ripeness_named(const std::string& name) {
-  for (std::size_t c = 0; c < kRipenessClasses; ++c)
-    if (name == to_string(static_cast<RipenessClass>(c))) return static_cast<RipenessClass>(c);
-  return std::nullopt;
 }
 
 std::vector<double> draw_ripeness(std::size_t fruits, Rng& rng) {
@@ -75,8 +62,8 @@ std::vector<RipenessMetrics> judge_ripeness(const GroundTruth& truth, const Metr
     if (!real.ripeness || match == metrics.fruits.end()) continue;
     for (const Fruit& f : found)
       if (f.id == match->instance && f.ripeness)
-        out.push_back({real.id, *real.ripeness, ripeness_class(*real.ripeness), f.ripeness->ripe_share,
-                       f.ripeness->grade, f.ripeness->probability});
+        out.push_back({real.id, *real.ripeness, class_of(*real.ripeness), f.ripeness->ripe_share, f.ripeness->grade,
+                       f.ripeness->probability});
   }
   return out;
 }

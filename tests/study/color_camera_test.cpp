@@ -117,7 +117,7 @@ TEST_CASE("classes of ripeness have names and shares") {
     const auto named = ripeness_named(name);
     REQUIRE(named);
     CHECK(to_string(*named) == std::string(name));
-    CHECK(ripeness_class(middle_share(*named)) == *named);
+    CHECK(class_of(middle_share(*named)) == *named);
   }
   CHECK_FALSE(ripeness_named("blue"));
 }
@@ -131,7 +131,7 @@ TEST_CASE("the fruit of a truss ripen from the top") {
     REQUIRE(shares.size() == 7);
     first += shares.front() / 200;
     last += shares.back() / 200;
-    for (const double s : shares) ++classes[static_cast<std::size_t>(ripeness_class(s))];
+    for (const double s : shares) ++classes[static_cast<std::size_t>(class_of(s))];
   }
   CHECK(first > last + 0.2);
   for (const int count : classes) CHECK(count > 70);

@@ -49,6 +49,15 @@ struct RipenessParameters {
 /// A colour in CIELAB: L* from 0 to 100, a* and b*; white point D65.
 Eigen::Vector3d to_lab(const Rgb& color);
 
+/// The hue angle (rad) of a colour in CIELAB, -pi/2..3 pi/2: blue counts as far from red.
+double hue_of(const Eigen::Vector3d& lab);
+
+/// Linear light (0..1) of a channel of sRGB (0..1), IEC 61966-2-1.
+double linear_light(double channel);
+
+/// The class of a fruit of which this share (0..1) of the surface is ripe.
+RipenessClass class_of(double ripe_share, const RipenessParameters& parameters = {});
+
 /// How ripe the surface with these colours is.
 ///
 /// Each point that has a hue is ripe to the degree to which that is surely below `ripe_hue` (a normal distribution of

@@ -1,9 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// @file
-/// How ripe a fruit is (cloud/ripeness.hpp finds it out). `to_string` is defined in `agrisee::agrisee`.
+/// How ripe a fruit is (cloud/ripeness.hpp finds it out). The functions are defined in `agrisee::agrisee`.
 #pragma once
 
 #include <agrisee/core/types.hpp>
+
+#include <cstddef>
+#include <optional>
+#include <string_view>
 
 namespace agrisee {
 
@@ -22,6 +26,9 @@ constexpr std::size_t kRipenessClasses = 6;
 
 /// The name of a class, as in fruits.json.
 const char* to_string(RipenessClass ripeness);
+
+/// The class of that name; empty for any other text.
+std::optional<RipenessClass> ripeness_named(std::string_view name);
 
 /// How ripe a fruit is.
 struct Ripeness {

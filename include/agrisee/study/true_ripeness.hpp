@@ -16,14 +16,8 @@
 
 namespace agrisee::study {
 
-/// The class of a share.
-RipenessClass ripeness_class(double share);
-
 /// The share in the middle of a class: 0 for green.
 double middle_share(RipenessClass ripeness);
-
-/// The class of that name (see to_string); empty for any other text.
-std::optional<RipenessClass> ripeness_named(const std::string& name);
 
 /// Draw how ripe the fruit of a truss are, from the oldest, at the top, to the youngest. A truss is somewhere between
 /// green and red; each fruit is on average half a class behind the one above it. Within its class a share is drawn from
