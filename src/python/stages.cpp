@@ -187,8 +187,7 @@ void bind_stage_functions(py::module_& m) {
         arg("initial") = none, arg("threads") = 0,
         "The small rigid motion that aligns a source cloud with a target, as an IcpResult. Point to plane, so the "
         "target needs normals, unless point_to_point=True.\n\ninitial: 4 x 4 target_T_source. Further keywords: "
-        "max_distance "
-        "(m), kernel and more, as the parameters `icp`.");
+        "max_distance (m), kernel and more, as the parameters `icp`.");
   m.def(
       "fit_ellipsoid", &fit, arg("points"), arg("normals"),
       "The ellipsoid that fits points with outward normals as an EllipsoidFit, or None if there are too few points or "

@@ -82,8 +82,7 @@ enum class MaskOrder {
 /// - g is the share of the masks' pixels, without the rim, whose depth agrees with the body's to within a fifth of its
 ///   radius, apart from a common offset; pixels without depth count half;
 /// - b is how far the depths bulge like the body, after a common offset and tilt (least squares; 1 for the body, 0 for
-/// a
-///   plane, limited to -1 and 3);
+///   a plane, limited to -1 and 3);
 /// - f = max(0, 0.4 - b - 2 standard errors) is positive if they surely do not.
 ///
 /// The weights of g and b come from a logistic regression between the masks of a frame of real apples, also shifted by
