@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// @file
-/// From a segmented cloud to located fruit: centroids, pose frames, bodies ([1], "Localization"). Defined in
+/// Locates the fruit of a segmented cloud: centroids, pose frames, bodies ([1], "Localization"). Defined in
 /// `agrisee::agrisee`.
 #pragma once
 
@@ -23,14 +23,14 @@ struct Split;
 /// @param robot the robot's base (m, world)
 Eigen::Vector3d cluster_origin(const Aabb& volume, const Eigen::Vector3d& robot);
 
-/// The trusses on which some fruit hang: fruit are on one truss if the gap between their bodies is at most
-/// `truss_gap` mean radii, directly or by way of others.
+/// Group fruit into trusses: fruit are on one truss if the gap between their bodies is at most `truss_gap` mean radii,
+/// directly or through other fruit.
 /// @param fruits located; their ids and `truss` are not used
 /// @param truss_gap see Parameters
-/// @return for each fruit the number of its truss, from 0, in the order in which the trusses' first fruit stand
+/// @return for each fruit the number of its truss, from 0, in the order of the trusses' first fruit
 std::vector<int> trusses_of(const std::vector<Fruit>& fruits, double truss_gap);
 
-/// The trusses of located fruit, by their `truss`, with their growth frames.
+/// The trusses named by `truss` of located fruit, with their growth frames.
 std::vector<FoundTruss> found_trusses(const std::vector<Fruit>& fruits);
 
 /// The ellipsoid of a located body.
@@ -39,10 +39,10 @@ Ellipsoid ellipsoid_of(const Body& body);
 /// The fruit of a segmented cloud, numbered truss by truss, each from the top down; the truss with the highest fruit
 /// comes first.
 /// @param cloud points (m, world) with normals
-/// @param split what `split` found in that cloud
+/// @param split the segmentation of that cloud
 /// @param cluster_origin the origin of the cluster frame {R} in world (m)
 /// @param parameters of all stages
-/// @param labels receives one label a point: the fruit's id, or 0
+/// @param labels receives one label per point: the fruit's id, or 0
 std::vector<Fruit> locate(const Cloud& cloud, const Split& split, const Eigen::Vector3d& cluster_origin,
                           const Parameters& parameters, Labels& labels);
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// @file
-/// All parameters of the pipeline in one plain struct: our defaults and the values of [1]. Metres, radians, seconds.
+/// All parameters of the pipeline in one struct, with the defaults and the values of [1]. Metres, radians, seconds.
 #pragma once
 
 #include <agrisee/cloud/parameters.hpp>
@@ -24,34 +24,34 @@ constexpr std::array<const char*, 3> kPresetNames{"default", "paper", "see"};
 /// Names of the planners, see make_planner.
 constexpr std::array<const char*, 4> kPlannerNames{"gain", "see", "fixed", "random"};
 
-/// Parameters of the whole pipeline. `Parameters{}` are our defaults, `Parameters::paper()` the stages and values of
-/// [1], `Parameters::see_alone()` SEE++ alone.
+/// Parameters of the whole pipeline. `Parameters{}` has the defaults, `Parameters::paper()` the stages and values of
+/// [1], `Parameters::see_alone()` those of SEE++ alone.
 struct Parameters {
   std::string preset = "default";  ///< name of the preset from which these values were made
   std::string planner = "gain";    ///< one of kPlannerNames: gain, see (SEE++), fixed (a ring of views) or random
   int max_views = 20;              ///< largest number of views, for every planner
-  bool fuse_surfaces = true;   ///< smooth frames and fuse them as surfels; off: merge raw points, the first one stays
-  bool register_views = true;  ///< register each view to what is fused so far (ICP) before it is fused
+  bool fuse_surfaces = true;  ///< smooth frames and fuse them as surfels; off: merge raw points, keeping the first ones
+  bool register_views = true;      ///< register each view to the map (ICP) before it is fused
   bool filter_each_view = false;   ///< remove outliers after every view, not only at the end; for raw points only
   bool adaptive_normals = true;    ///< derive the radius of the normals from the cloud's spacing
   double normal_reach = 3.0;       ///< adaptive: that radius, in spacings of the cloud
-  double max_incidence = deg(75);  ///< largest angle of incidence (rad) at which points of a cloud from one viewpoint
-                                   ///< were seen; others are dropped. pi/2: none
-  bool growth_axis = true;  ///< z of the pose frames points to the calyx; off: to the cloud's highest point, as [1]
+  double max_incidence = deg(75);  ///< largest angle of incidence (rad) of the points of a cloud from one viewpoint;
+                                   ///< points seen at a larger one are dropped; pi/2: keep all
+  bool growth_axis = true;  ///< z of the pose frames points to the calyx; off: to the cloud's highest point, as in [1]
   double truss_gap = 1.5;   ///< fruit hang on one truss if the gap between them is at most this many of their radii
-  double scan_confidence = 0.3;  ///< a body that several views looked at is taken for a fruit from this probability on,
-                                 ///< one of a single cloud from `split.bodies.min_confidence` on
+  double scan_confidence = 0.3;  ///< least probability of a fruit in a scan, where several views saw each body; for a
+                                 ///< single cloud it is `split.bodies.min_confidence`
   sensor::SurfaceParameters surface;              ///< how a surface is reconstructed from each frame
   fuse::SurfelParameters surfels;                 ///< how views are fused
   IcpParameters icp = IcpParameters::of_views();  ///< how views are registered
   SorParameters sor = SorParameters::wide();      ///< outlier removal, with a std_ratio of 6 instead of the 2 of [1]
-  NormalParameters normals;                       ///< how normals are estimated for clouds without any
+  NormalParameters normals;                       ///< how missing normals are estimated
   SplitParameters split;                          ///< which points belong to which fruit
   GrowthAxisParameters axis;                      ///< how z of the pose frames is found
   MassParameters mass;                            ///< from volume to mass
-  fuse::FreeSpaceParameters free_space;           ///< when a sight line counts as evidence that something is not there
-  fuse::MaskParameters masks;                     ///< what the masks of a detector say
-  fuse::ColorPriorParameters color_prior;         ///< what colors say where no detector has looked
+  fuse::FreeSpaceParameters free_space;           ///< when a sight line is evidence of free space
+  fuse::MaskParameters masks;                     ///< how a detector's masks are weighed
+  fuse::ColorPriorParameters color_prior;         ///< fruit colour as a substitute for a detector
   RipenessParameters ripeness;                    ///< from colours to ripeness
   plan::GainPlannerParameters gain;               ///< planner `gain`
   pick::PickingParameters picking;                ///< how to approach each fruit
@@ -78,8 +78,8 @@ struct Parameters {
     return p;
   }
 
-  /// SEE++ as published chooses the views and merges their raw points; nothing is smoothed, registered or filtered
-  /// between views. When the scan is over, the points are cleaned and split as by default.
+  /// SEE++ as published: it chooses the views and merges their raw points, without smoothing, registration or filtering
+  /// between views. After the scan the points are cleaned and segmented with the default parameters.
   static Parameters see_alone() {
     Parameters p;
     p.preset = "see";
@@ -99,10 +99,9 @@ struct Parameters {
     throw FieldError("preset", "must be " + OneOf(kPresetNames).text() + ", got " + preset);
   }
 
-  /// Expect fruit with radii from `smallest` to `largest` (m), and set what follows from it: the range of radii of the
-  /// bodies and, for fruit smaller than the 20 mm that the defaults are made for, the lengths at which surfaces are
-  /// sampled, fused and fitted, in proportion. Half the length gives four times the points and takes about four times
-  /// as long.
+  /// Expect fruit with radii from `smallest` to `largest` (m). Sets the range of radii of the bodies and, for radii
+  /// below the 20 mm for which the defaults are made, scales the lengths at which surfaces are sampled, fused and
+  /// fitted. Half the length gives four times the points and takes about four times as long.
   /// @throws FieldError if the range is empty or `largest` is more than 20 times `smallest`
   void expect_radii(double smallest, double largest) {
     BodyParameters bodies = split.bodies;
@@ -119,19 +118,19 @@ struct Parameters {
     surfels.agreement = scale * fuse::SurfelParameters().agreement;
   }
 
-  /// Those of the split for a scan: several views have looked at each body, so less has to speak for it.
+  /// The segmentation parameters of a scan: several views saw each body, so a lower probability is accepted.
   SplitParameters scan_split() const {
     SplitParameters out = split;
     out.bodies.min_confidence = std::min(out.bodies.min_confidence, scan_confidence);
     return out;
   }
 
-  /// Those that fuse::FusedViews needs.
+  /// The parameters of fuse::FusedViews.
   fuse::FusionParameters fusion() const { return {surface, surfels, icp, free_space, register_views}; }
 
   /// @throws FieldError for the first field that is out of its range; it names the whole key, e.g. `gain.min_gain`. The
-  /// lengths of surfaces and neighborhoods must be below 20 times the largest expected radius: else nothing can be
-  /// found.
+  /// lengths of surfaces and neighborhoods must be below 20 times the largest expected radius, as otherwise nothing can
+  /// be found.
   void check() const {
     check_fields(*this);
     const Limit most{20.0 * split.bodies.radius_max, "20 times split.bodies.radius_max"};

@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// @file
-/// The whole of AgriSEE behind one facade: look, clean, split, locate, plan the picking.
+/// The scan loop of a robot: choose views, fuse their frames, find and locate the fruit, plan the picking.
 ///
-/// A robot's own loop: `observe` each frame with the pose it was taken from, ask `next_view`, move, and repeat until
-/// there is no next view; then take the `result`. A ready cloud: `process` (process.hpp). A simulated scan:
-/// `study::scan` (study/simulated_scan.hpp), which runs the same loop. World frame, metres, radians. Defined in
-/// `agrisee::agrisee`.
+/// Ask `next_view`, move there, pass the frame and its pose to `observe`, and repeat until there is no next view; then
+/// take the `result`. For a ready cloud see `process` (process.hpp), for a simulated scan `study::scan`
+/// (study/simulated_scan.hpp), which runs the same loop. World frame, metres, radians. Defined in `agrisee::agrisee`.
 #pragma once
 
 #include <agrisee/fuse/masks.hpp>
@@ -25,21 +24,21 @@
 
 namespace agrisee {
 
-/// Who answers for the arm and the planner, and how to run.
+/// Replacements for the arm model and the planner, and how to run.
 struct PipelineOptions {
-  plan::Reach reach;             ///< whether and how the arm can take a view; empty: our model of it answers
-  pick::ReachApproach approach;  ///< whether and how the arm can approach a fruit; empty: our model of the arm answers,
-                                 ///< or nobody if `reach` is your own, since the arm is not known then
+  plan::Reach reach;             ///< whether and how the arm can take a view; empty: the built-in arm model decides
+  pick::ReachApproach approach;  ///< whether and how the arm can approach a fruit; empty: the built-in arm model
+                                 ///< decides, but not if you supply `reach`, because the arm is then unknown
   std::unique_ptr<plan::Planner> planner;  ///< where to look next; empty: the planner that `parameters.planner` names
   std::uint64_t seed = 0;                  ///< of the planner's random draws
   int threads = 1;                         ///< number of threads; the result does not depend on it
 };
 
-/// One scan of one truss. Not to be used by two threads at once; two pipelines in two threads are independent.
+/// One scan of one truss. Use a pipeline in one thread at a time; several pipelines are independent of each other.
 ///
 /// Any call can be cancelled from another thread (core/cancellation.hpp). It then throws Cancelled and leaves the
-/// pipeline as it was before the call. `observe` can be cancelled while it works out what the frame shows and where it
-/// lies; the update of the map that follows takes some tens of milliseconds and is always finished.
+/// pipeline as it was before the call. `observe` can be cancelled while it reconstructs and registers the frame; the
+/// update of the map that follows takes some tens of milliseconds and always finishes.
 class Pipeline {
  public:
   /// The scan ends after this many refused views in a row.
@@ -49,17 +48,15 @@ class Pipeline {
   /// @param parameters of all stages
   /// @param options reach, planner, seed, threads
   /// @throws ParameterError; InputError for poses that are not rigid within kRigidTolerance, a scan volume that is
-  /// empty or longer than 50 m,
-  ///   or, where our model of the arm answers, a start posture outside of its limits
+  ///   empty or longer than 50 m or, with the built-in arm model, a start posture outside its limits
   explicit Pipeline(const Workcell& workcell, const Parameters& parameters = {}, PipelineOptions options = {});
 
-  /// Take in a depth frame that was seen from `world_T_optical` (at `joints`, where an arm is known).
+  /// Add a depth frame that was taken at `world_T_optical` (and `joints`, if an arm is known).
   ///
   /// A frame with colours, or that a detector has looked at, is kept for the result: move it in, or share it, to avoid
-  /// a copy. What a detector says is given to the planner, too. A frame without returns inside the scan volume counts
-  /// as a view that showed nothing. A view is discarded, and marked so, if its frame repeats the last one bit for bit
-  /// (the camera hangs), or if it contradicts what other views saw (fuse/fused_views.hpp), because then its pose is
-  /// wrong.
+  /// a copy. The planner uses the detections too. A frame without returns inside the scan volume counts as a view that
+  /// showed nothing. A view is marked as discarded if its frame repeats the last one bit for bit (the camera is stuck),
+  /// or if it contradicts the other views (fuse/fused_views.hpp), because its pose must then be wrong.
   /// @return the view as recorded
   /// @throws InputError for a frame whose size disagrees with its intrinsics or whose depths cannot be in metres
   ///   (sensor::check_depth_unit), or a pose that is not rigid within kRigidTolerance; Cancelled. The scan so far is
@@ -67,31 +64,30 @@ class Pipeline {
   const View& observe(sensor::DepthFrame frame, const Pose& world_T_optical,
                       const std::optional<Joints>& joints = std::nullopt);
 
-  /// The same for a frame that is shared; it must not be null.
+  /// Like the other observe(), for a shared frame, which must not be null.
   const View& observe(std::shared_ptr<const sensor::DepthFrame> frame, const Pose& world_T_optical,
                       const std::optional<Joints>& joints = std::nullopt);
 
-  /// The same for unorganised points (m, optical frame), any cloud type.
+  /// Like observe(), for unorganised points (m, optical frame) of any cloud type.
   template <typename C>
   const View& observe_points(const C& points, const Pose& world_T_optical,
                              const std::optional<Joints>& joints = std::nullopt) {
     return observe(sensor::frame_from_points(points, workcell_.sensor.intrinsics), world_T_optical, joints);
   }
 
-  /// Where to look next, from where the arm stands now; empty when the scan is over, and `stop_reason` says why.
-  /// @param current joints (rad)
-  /// @throws InputError when `current` is not finite or, where our model of the arm answers, far outside of its limits;
-  ///   Cancelled
+  /// Where to look next; empty when the scan is over, for the reason `stop_reason`.
+  /// @param current joints at which the arm is now (rad)
+  /// @throws InputError when `current` is not finite or, with the built-in arm model, far outside its limits; Cancelled
   std::optional<plan::ReachableView> next_view(const Joints& current);
 
-  /// The arm could not take the view that `next_view` returned last; ask `next_view` for another one.
-  /// The scan is over after kMostRefusals of these in a row: the arm does not move, or the camera is silent.
+  /// Report that the arm could not take the view that `next_view` returned last; then ask `next_view` for another one.
+  /// The scan ends after kMostRefusals of these in a row, because arm or camera must have failed.
   void refused();
 
-  /// Why next_view() returned nothing last.
+  /// Why next_view() last returned nothing.
   StopReason stop_reason() const { return stop_reason_; }
-  /// How much of the fruit's surface has been seen, as the planner estimates at next_view(), and how much the arm can
-  /// see at all; empty for planners that do not estimate surfaces.
+  /// The planner's estimate, at the last next_view(), of how much of the fruit's surface has been seen and how much the
+  /// arm can see at all; empty for planners that do not estimate surfaces.
   std::optional<Completeness> completeness() const { return planner_->completeness(); }
   /// The views that the last next_view() chose from, best first; empty for planners that do not compare views.
   std::vector<plan::ReachableView> candidates() const { return planner_->candidates(); }
@@ -99,20 +95,20 @@ class Pipeline {
   const std::vector<View>& views() const { return views_; }
   /// The cloud merged so far, before the outlier removal at the end.
   const Cloud& merged() const { return cloud_; }
-  /// All points merged so far, removed later or not, each with its view.
+  /// All points merged so far with their views, including those removed later.
   Cloud raw() const { return map_->all(); }
-  /// What was put right and should be looked at, in sentences: poses whose rotation matrices are rounded.
+  /// Sentences about input that was corrected and should be checked: poses with rounded rotation matrices.
   std::vector<std::string> warnings() const;
-  /// What the detector's masks of all views so far say; empty where no detector has looked.
+  /// The evidence from the masks of all views so far; empty if no detector has looked.
   const MaskEvidence& masks() const { return masks_; }
   /// The workcell of this scan; its poses are rigid.
   const Workcell& workcell() const { return workcell_; }
   /// The parameters of this scan.
   const Parameters& parameters() const { return parameters_; }
-  /// The callable that says whether the arm can take a view.
+  /// The function that decides whether the arm can take a view.
   const plan::Reach& reach() const { return reach_; }
 
-  /// Clean, split and locate what has been seen so far, and plan the picking from where the arm stood last.
+  /// The result of the views so far: clean, segment, locate, and plan the picking from the arm's last posture.
   /// @throws Cancelled
   ScanResult result() const;
 

@@ -19,7 +19,7 @@ namespace agrisee {
 /// Why a view is not part of the map.
 enum class DiscardReason {
   none,                ///< it is part of the map
-  repeated_frame,      ///< its frame repeats the one before bit for bit: the camera hangs
+  repeated_frame,      ///< its frame repeats the one before bit for bit: the camera is stuck
   contradicts_others,  ///< it puts surface where other views looked through, or the reverse: its pose is wrong
 };
 
@@ -41,39 +41,39 @@ struct View {
   Pose world_T_optical = Pose::Identity();           ///< as reported by the robot
   Eigen::Vector3d target = Eigen::Vector3d::Zero();  ///< observed point on the optical axis
   std::optional<Joints> joints;                      ///< absent without an arm
-  double median_depth = 0.0;     ///< of its frame (m), inside the scan volume or not; 0 = no return, or not known
-  double volume_distance = 0.0;  ///< from the sensor to the middle of the scan volume (m); 0 = not known
-  std::size_t points_in = 0;     ///< points returned inside the scan volume
-  std::size_t points_new = 0;    ///< points that the merged cloud kept
+  double median_depth = 0.0;     ///< of the frame (m), inside the scan volume or not; 0 = no return, or unknown
+  double volume_distance = 0.0;  ///< from the sensor to the middle of the scan volume (m); 0 = unknown
+  std::size_t points_in = 0;     ///< number of points measured inside the scan volume
+  std::size_t points_new = 0;    ///< number of these that the merged cloud kept
   double plan_seconds = 0.0;     ///< time it took to choose this view
-  bool discarded = false;        ///< it is not part of the map
-  DiscardReason discard_reason = DiscardReason::none;  ///< why it is not
+  bool discarded = false;        ///< the view was rejected and is not part of the map
+  DiscardReason discard_reason = DiscardReason::none;  ///< why it was discarded
 };
 
-/// The body of a fruit as an ellipsoid: the one fitted to its points or, where they speak against it, the one with the
-/// center of volume and the second moments of its closed surface (cloud/closed_surface.hpp).
+/// The body of a fruit as an ellipsoid: the one fitted to its points or, if they contradict it, the one with the center
+/// of volume and the second moments of its closed surface (cloud/closed_surface.hpp).
 struct Body {
   Eigen::Vector3d center = Eigen::Vector3d::Zero();             ///< m, world
   Eigen::Vector3d radii = Eigen::Vector3d::Zero();              ///< semi-axes (m), largest first
   Eigen::Matrix3d axes = Eigen::Matrix3d::Identity();           ///< columns: directions of the semi-axes, right-handed
   Eigen::Matrix3d center_covariance = Eigen::Matrix3d::Zero();  ///< m2
-  /// The part of it that the unseen side's shape adds; what else there is comes from the sensor (m2).
+  /// The part of center_covariance due to the unknown shape of the unseen side; the rest is due to the sensor (m2).
   Eigen::Matrix3d center_covariance_by_shape = Eigen::Matrix3d::Zero();
   double rms = 0.0;           ///< root mean square distance of its points from the surface (m)
   double completeness = 0.0;  ///< share of its surface that was observed, 0..1
   double confidence = 0.0;    ///< probability that it is a fruit, 0..1
   double volume = 0.0;        ///< m3
-  double volume_error = 0.0;  ///< its standard error (m3); 0 = not known
-  double mass = 0.0;          ///< kg, through a density parameter
-  double mass_error = 0.0;    ///< its standard error (kg), the density's included; 0 = not known
+  double volume_error = 0.0;  ///< standard error of the volume (m3); 0 = unknown
+  double mass = 0.0;          ///< kg, with the density of MassParameters
+  double mass_error = 0.0;    ///< standard error of the mass (kg), including that of the density; 0 = unknown
 };
 
-/// Whether a fruit can be picked, or what prevents it. An approach passes the tests in this order; of all directions
-/// of approach, the reason of the one that came farthest is given.
+/// Whether a fruit can be picked, or what prevents it. Each direction of approach is tested in this order; the reason
+/// is that of the direction that passed most tests.
 enum class PickingReason {
   reachable,             ///< it can be picked
   not_tested,            ///< an approach is free, but there is no arm model to ask whether it can be reached
-  no_body,               ///< no body was fitted: where to grip is not known
+  no_body,               ///< no body was fitted, so it is unknown where to grip
   blocked_by_keep_out,   ///< every approach meets a space to keep out of
   blocked_by_fruit,      ///< every approach meets fruit that cannot be picked first
   out_of_reach,          ///< no joint angles within the limits put the tool at a pre-grasp pose
@@ -110,32 +110,32 @@ inline const char* to_string(PickingReason reason) {
 /// How to pick a fruit: the tool moves straight from the pre-grasp pose along the direction towards the fruit's centre.
 struct Picking {
   int order = 0;           ///< from 1 over all fruit of a result; those that cannot be picked come last
-  bool reachable = false;  ///< it can be picked
-  PickingReason reason = PickingReason::not_tested;     ///< why not, if it cannot
+  bool reachable = false;  ///< the fruit can be picked
+  PickingReason reason = PickingReason::not_tested;     ///< why it cannot be picked, if so
   Eigen::Vector3d direction = Eigen::Vector3d::Zero();  ///< unit, from pre-grasp to the centre; zero without a body
   Pose world_T_pre_grasp =
       Pose::Identity();          ///< of the tool: z along the direction (REP-103's optical frame); with a body
-  std::optional<Joints> joints;  ///< at the pre-grasp pose (rad), where it is reachable and the arm model gives them
+  std::optional<Joints> joints;  ///< at the pre-grasp pose (rad), if it is reachable and the arm model gives them
   std::vector<int> after;        ///< ids of the fruit that are in the way and must be picked first
 };
 
 /// A located fruit.
 struct Fruit {
-  int id = 0;                                          ///< from 1; the label of its points
-  int truss = 1;                                       ///< number of the truss that it hangs on, from 1
-  std::size_t points = 0;                              ///< number of its points
-  std::string found_by;                                ///< `region_growing`, `dbscan` or a further method's name
-  Eigen::Vector3d centroid = Eigen::Vector3d::Zero();  ///< mean of its points, world
-  Eigen::Vector3d centroid_cluster = Eigen::Vector3d::Zero();  ///< the same in the cluster frame {R}
+  int id = 0;                                                  ///< from 1; the label of its points
+  int truss = 1;                                               ///< number of the truss that it hangs on, from 1
+  std::size_t points = 0;                                      ///< number of its points
+  std::string found_by;                                        ///< the stage that found it, as in fruits.json
+  Eigen::Vector3d centroid = Eigen::Vector3d::Zero();          ///< mean of its points, world
+  Eigen::Vector3d centroid_cluster = Eigen::Vector3d::Zero();  ///< centroid in the cluster frame {R}
   Eigen::Vector3d sigma = Eigen::Vector3d::Zero();             ///< standard deviation of its points per world axis (m)
   Eigen::Matrix3d orientation = Eigen::Matrix3d::Identity();   ///< the pose frame's axes in world
-  std::optional<Body> body;                                    ///< where one was fitted
-  std::optional<Picking> picking;                              ///< where it was planned (pick/picking.hpp)
-  std::optional<Ripeness> ripeness = {};                       ///< where the cloud has colours
+  std::optional<Body> body;                                    ///< the fitted body, if any
+  std::optional<Picking> picking;                              ///< the approach, if planned (pick/picking.hpp)
+  std::optional<Ripeness> ripeness = {};                       ///< if the cloud has colours
 
-  /// Where the fruit is (m, world): the centre of its body where one was fitted, else the centroid of its points.
+  /// Position of the fruit (m, world): the centre of its body if one was fitted, else the centroid of its points.
   const Eigen::Vector3d& position() const { return body ? body->center : centroid; }
-  /// The same in the cluster frame {R} (m).
+  /// position() in the cluster frame {R} (m).
   Eigen::Vector3d position_cluster() const { return centroid_cluster + (position() - centroid); }
   /// The pose of the fruit in world, for a gripper: origin at position(), axes of the pose frame.
   Pose pose() const { return pose_at(position()); }
@@ -156,21 +156,20 @@ struct Fruit {
 struct FoundTruss {
   int id = 0;               ///< from 1, from the top down by their highest fruit
   std::vector<int> fruits;  ///< ids of its fruit, from the top down
-  /// The growth frame in world. Origin: the mean of the positions of its fruit. z: the direction in which its fruit are
-  /// strung, upwards; where no direction stands out, the mean growth axis of its fruit. x: as near to the x axis of
-  /// world as z allows.
+  /// The growth frame in world. Origin: the mean position of its fruit. z: the direction along which its fruit hang,
+  /// upwards; if no direction stands out, their mean growth axis. x: as near to the x axis of world as z allows.
   Pose world_T_truss = Pose::Identity();
-  std::optional<Ripeness> ripeness = {};  ///< of the surface of all its fruit, where the cloud has colours
+  std::optional<Ripeness> ripeness = {};  ///< of the surface of all its fruit, if the cloud has colours
 };
 
-/// How much of the fruit's surface has been seen, and how much the arm can see at all, as the planner estimates it from
-/// the bodies that it has found: shares of their surface, 0..1. No ground truth is used.
+/// The planner's estimate of how much of the fruit's surface has been seen and how much the arm can see at all: shares
+/// (0..1) of the surface of the bodies found so far. No ground truth is used.
 struct Completeness {
   /// The estimate for one body.
   struct Part {
     Eigen::Vector3d center = Eigen::Vector3d::Zero();  ///< m, world
     double seen = 0.0;                                 ///< share of its surface that points cover
-    double observable = 0.0;                           ///< share that will be covered once the arm has seen all it can
+    double observable = 0.0;                           ///< share that points can cover, from all views in reach
   };
   std::vector<Part> fruits;  ///< in the planner's order of bodies
   double seen = 0.0;         ///< of all bodies
@@ -184,9 +183,9 @@ struct Completeness {
 struct Timing {
   double capture = 0.0;  ///< taken by the simulated sensor; not part of `total`
   double plan = 0.0;     ///< choosing views
-  double fuse = 0.0;     ///< looking at frames and merging them
+  double fuse = 0.0;     ///< reconstructing, registering and merging frames
   double filter = 0.0;   ///< outlier removal
-  double normals = 0.0;  ///< where they had to be estimated
+  double normals = 0.0;  ///< estimating missing normals
   double segment = 0.0;  ///< segmentation into fruit
   double locate = 0.0;   ///< bodies, poses, picking
   double total = 0.0;    ///< everything except `capture`
@@ -205,20 +204,20 @@ struct Timing {
   }
 };
 
-/// Everything that a scan, or the processing of a ready cloud, leaves behind.
+/// The result of a scan, or of processing a ready cloud.
 struct ScanResult {
   std::vector<View> views;                                   ///< in the order in which they were taken
-  StopReason stop_reason = StopReason::not_stopped;          ///< why there are no more
+  StopReason stop_reason = StopReason::not_stopped;          ///< why the scan ended
   Cloud raw;                                                 ///< the merged cloud before any filtering; `views` filled
   Cloud cloud;                                               ///< the consolidated cloud: points, normals, views (world)
   Labels labels;                                             ///< one per point of `cloud`: the fruit's id, or 0
   Eigen::Vector3d cluster_origin = Eigen::Vector3d::Zero();  ///< origin of the cluster frame {R} (m, world)
   std::vector<Fruit> fruits;                                 ///< truss by truss, each from the top down
   std::vector<FoundTruss> trusses;                           ///< from the top down by their highest fruit
-  std::optional<Completeness> completeness;                  ///< as the planner estimates; empty if it does not
-  Timing seconds;                                            ///< of computing
-  std::vector<std::string> warnings;  ///< what was put right and should be looked at, in sentences
-  BodyCounts bodies;                  ///< what became of the round bodies that were proposed
+  std::optional<Completeness> completeness;                  ///< the planner's estimate; empty if it makes none
+  Timing seconds;                                            ///< computing time
+  std::vector<std::string> warnings;  ///< sentences about input that was corrected and should be checked
+  BodyCounts bodies;                  ///< how many proposed bodies were taken as fruit or rejected
 };
 
 /// How many of some views were discarded and why, in one sentence without a full stop; empty if none was. Views are

@@ -232,7 +232,7 @@ void add_completion(CLI::App& app, Run& run) {
   command->footer(
       "To use it (installed packages have it already):\n"
       "  source <(agrisee completion bash)                                      # in ~/.bashrc\n"
-      "  source <(agrisee completion zsh)                                       # in ~/.zshrc, behind compinit\n"
+      "  source <(agrisee completion zsh)                                       # in ~/.zshrc, after compinit\n"
       "  agrisee completion fish > ~/.config/fish/completions/agrisee.fish");
   command->callback([shell, &app, &run] {
     run = [shell, &app] {

@@ -233,11 +233,12 @@ int run_doctor(const std::string& scene) {
 }  // namespace
 
 void add_doctor(CLI::App& app, Run& run) {
-  auto* command = app.add_subcommand("doctor", "tell what is installed, and check a workcell: units, frames, reach");
+  auto* command =
+      app.add_subcommand("doctor", "show what is installed, and check a workcell: units, frames, camera, reach");
   auto scene = std::make_shared<std::string>();
-  command->add_option("scene", *scene, "scene file (YAML), or a folder with scene.yaml, whose workcell to check");
+  command->add_option("scene", *scene, "scene file (YAML) of the workcell to check, or a folder with scene.yaml");
   command->footer(
-      "Lines that begin with WRONG make a scan impossible; the exit code is then 2. Those with NOTE are unusual.\n"
+      "WRONG marks what makes a scan impossible; the exit code is then 2. NOTE marks what is unusual.\n"
       "Example:\n  agrisee doctor truss/scene.yaml");
   command->callback([scene, &run] { run = [scene] { return run_doctor(*scene); }; });
 }

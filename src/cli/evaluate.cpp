@@ -188,7 +188,7 @@ int run_evaluate(const EvaluateOptions& options) {
 }  // namespace
 
 void add_evaluate(CLI::App& app, Run& run) {
-  auto* command = app.add_subcommand("evaluate", "compare a result with the scene that it was made from");
+  auto* command = app.add_subcommand("evaluate", "compare a result with the true scene");
   auto options = std::make_shared<EvaluateOptions>();
   command->add_option("scene", options->scene, "scene file (YAML), or a folder with scene.yaml")->required();
   command->add_option("result", options->result, "result folder")->required();
@@ -199,8 +199,8 @@ void add_evaluate(CLI::App& app, Run& run) {
       ->check(CLI::Range(0, 1024));
   command->add_flag("--json", options->json, "print the metrics as JSON");
   command->footer(
-      "In the table, seen is the true share of a fruit's surface near a point (in JSON: scanned), which the table of\n"
-      "scan estimates; recall counts only the points that were given to fruit; docs/formats.md explains all.\n"
+      "In the table, seen is the true share of a fruit's surface near any point (in JSON: scanned), which scan can\n"
+      "only estimate; recall counts only points that belong to a fruit. docs/formats.md explains all metrics.\n"
       "Example:\n  agrisee evaluate truss/scene.yaml result --json");
   command->callback([options, &run] { run = [options] { return run_evaluate(*options); }; });
 }

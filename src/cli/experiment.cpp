@@ -330,11 +330,11 @@ void add_experiment(CLI::App& app, Run& run) {
       ->capture_default_str();
   command
       ->add_option("--groups", options->groups,
-                   "what to run instead of all combinations of --presets, --planner and --noise: PRESET/PLANNER/NOISE, "
-                   "or PRESET/PLANNER/NOISE/free for a camera that flies instead of the arm")
+                   "groups to run instead of all combinations of --presets, --planner and --noise: "
+                   "PRESET/PLANNER/NOISE, or PRESET/PLANNER/NOISE/free for a free-flying camera instead of the arm")
       ->delimiter(',');
   command->add_flag("--scanned-only", options->scanned_only,
-                    "after each view judge only how much surface was scanned, not the fruit; much faster");
+                    "after each view measure only how much surface was scanned, not the fruit; much faster");
   command->add_option("--trials", options->trials, "number of trials; the seeds are 1, 2, ...")
       ->check(CLI::Range(1, 1000))
       ->capture_default_str();

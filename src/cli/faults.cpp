@@ -143,8 +143,7 @@ int run_faults(const FaultOptions& options) {
 }  // namespace
 
 void add_faults(CLI::App& app, Run& run) {
-  auto* command =
-      app.add_subcommand("faults", "simulate faults of sensor and arm, and report what the scans still find");
+  auto* command = app.add_subcommand("faults", "simulate faults of sensor and arm, and report what is still found");
   auto options = std::make_shared<FaultOptions>();
   command
       ->add_option("--report", options->report, "Markdown file to write; its table and plot go into a folder beside it")

@@ -294,13 +294,12 @@ int run_limit(const LimitOptions& options) {
 }  // namespace
 
 void add_limit(CLI::App& app, Run& run) {
-  auto* command =
-      app.add_subcommand("limit", "how much of the fruit in a scene the arm can see at all, and in how few views");
+  auto* command = app.add_subcommand(
+      "limit", "compute how much of the fruit in a scene the arm can see at all, and in how few views");
   auto options = std::make_shared<LimitOptions>();
   command->add_option("scene", options->scene, "scene file (YAML), or a folder with scene.yaml")->required();
   command->add_option("-o,--output", options->output, "folder for the result")->required();
-  auto* search =
-      command->add_flag("--base-search", options->base_search, "also try places around the present one for the base");
+  auto* search = command->add_flag("--base-search", options->base_search, "also try other places for the base");
   command
       ->add_option("--base-range", options->base.range,
                    "largest distance to move the base along x and y, either way (m)")

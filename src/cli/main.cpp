@@ -9,7 +9,7 @@
 int main(int argc, char** argv) {
   using namespace agrisee;
   std::signal(SIGXFSZ, SIG_IGN);  // a write beyond the limit on file sizes then fails with an error, not a signal
-  CLI::App app{"AgriSEE: scan a truss, find every fruit, and tell where it is."};
+  CLI::App app{"AgriSEE: scan a truss with a robot arm, find every fruit, and report where it is."};
   app.set_version_flag("--version", cli::version_text, "print the version and how it was built");
   app.require_subcommand(1);
   const auto complaint = [](const std::string& what) {
@@ -24,11 +24,9 @@ int main(int argc, char** argv) {
       "  agrisee limit truss/scene.yaml -o limit --base-search\n"
       "  agrisee process cloud.ply -o result --views views.csv\n"
       "  agrisee process recorded/views.yaml -o result\n"
-      "Exit codes: 0 success; 1 bad usage: the command line cannot be followed, whatever its inputs hold; 2 bad "
-      "input:\n"
-      "an input is missing or damaged, or does not fit what the command line says of it, such as --viewpoint; 3 a "
-      "scan\n"
-      "that failed midway or could take no view.");
+      "Exit codes: 0 success; 1 bad usage: the command line is wrong, whatever its inputs contain; 2 bad input: an\n"
+      "input is missing or damaged, or contradicts the command line (such as --viewpoint); 3 a scan failed midway, or\n"
+      "could not take any view.");
   cli::Run run;
   cli::add_scan(app, run);
   cli::add_process(app, run);

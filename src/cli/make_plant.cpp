@@ -72,10 +72,8 @@ void add_make_plant(CLI::App& app, Run& run) {
   auto options = std::make_shared<PlantOptions>();
   study::PlantParameters& plant = options->plant;
   const std::vector<std::string> kinds(study::kPlantKinds.begin(), study::kPlantKinds.end());
-  command->add_option("--kind", plant.kind, "what grows on it")->check(one_of(kinds))->capture_default_str();
-  command
-      ->add_option("--total", options->total,
-                   "number of fruit, at most 12 for each truss; by default, as usual for the kind")
+  command->add_option("--kind", plant.kind, "kind of plant")->check(one_of(kinds))->capture_default_str();
+  command->add_option("--total", options->total, "number of fruit, at most 12 per truss (default: usual for the kind)")
       ->check(CLI::Range(1, 24));
   command->add_option("--trusses", plant.trusses, "number of trusses, side by side")
       ->check(CLI::Range(1, 2))
@@ -84,13 +82,11 @@ void add_make_plant(CLI::App& app, Run& run) {
       ->check(not_negative())
       ->capture_default_str();
   command
-      ->add_option(
-          "--radius", options->radius,
-          "half width of the first,last fruit of a truss (m, from 0.06 to 0.008); by default, as usual for the "
-          "kind")
+      ->add_option("--radius", options->radius,
+                   "half width of the first,last fruit of a truss (m, from 0.06 to 0.008; default: usual for the kind)")
       ->delimiter(',')
       ->expected(2);
-  command->add_option("--foliage", plant.foliage, "share that leaves hide of the fruit surface seen from the front")
+  command->add_option("--foliage", plant.foliage, "share of the fruit surface, seen from the front, that leaves hide")
       ->check(CLI::Range(0.0, 0.6))
       ->capture_default_str();
   command->add_option("--leaves-behind", plant.leaves_behind, "number of leaves that hide no fruit")

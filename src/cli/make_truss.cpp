@@ -58,7 +58,9 @@ void add_make_truss(CLI::App& app, Run& run) {
   command->add_option("--total", options->truss.total, "number of fruit")
       ->check(CLI::Range(1, 12))
       ->capture_default_str();
-  command->add_option("--hidden", options->truss.hidden, "how many of them hang behind the others, at most half")
+  command
+      ->add_option("--hidden", options->truss.hidden,
+                   "number of fruit that hang behind the others, at most half of them")
       ->check(CLI::Range(0, 6))
       ->capture_default_str();
   command->add_option("--seed", options->truss.seed, "seed of the generator; each seed gives another truss")

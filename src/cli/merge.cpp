@@ -75,7 +75,9 @@ int run_merge(const MergeOptions& options) {
 void add_merge(CLI::App& app, Run& run) {
   auto* command = app.add_subcommand("merge", "join the summaries of shards, and put results into a database");
   auto options = std::make_shared<MergeOptions>();
-  command->add_option("folder", options->folders, "output folders of lists; shards' hold summary-I-of-N.csv")
+  command
+      ->add_option("folder", options->folders,
+                   "output folders of lists of inputs; those of shards hold summary-I-of-N.csv")
       ->required();
   command->add_flag("--unfinished", options->unfinished,
                     "only print the numbers of the shards to run again, separated by commas");

@@ -69,7 +69,7 @@ int run_parameters(const ParameterOptions& options) {
   add_ranges(parameters, "", notes);
   std::cout << "# Parameters of agrisee " AGRISEE_VERSION ", preset " << options.preset
             << ". Keep the lines that you change, with the keys above them, and\n"
-               "# delete the rest: what a file does not name has its default. Use it with --params FILE.\n"
+               "# delete the rest: keys that are left out keep their defaults. Use the file with --params FILE.\n"
                "# What happens when a value is too small or too large: docs/parameters.md\n";
   std::istringstream lines(io::parameters_to_yaml(parameters));
   std::vector<std::string> keys;  // of the maps around a line
@@ -93,7 +93,7 @@ int run_parameters(const ParameterOptions& options) {
 void add_parameters(CLI::App& app, Run& run) {
   auto* command = app.add_subcommand("parameters", "print a parameter file with every key, its default and meaning");
   auto options = std::make_shared<ParameterOptions>();
-  command->add_option("--preset", options->preset, "whose values to print")
+  command->add_option("--preset", options->preset, "preset whose values to print")
       ->check(one_of(preset_choices()))
       ->capture_default_str();
   command->footer("Example:\n  agrisee parameters > my.yaml");

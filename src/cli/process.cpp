@@ -247,7 +247,7 @@ int run_process(const ProcessOptions& options) {
 void add_image_options(CLI::App& command, ProcessOptions& options) {
   auto* depth =
       command.add_option("--depth", options.depth,
-                         "instead of an input: a depth image (PNG with 16 bits, or NPY); the result is in its "
+                         "depth image to process instead of an input (PNG with 16 bits, or NPY); the result is in its "
                          "optical frame (z forward, x right, y down)");
   command.add_option("--intrinsics", options.intrinsics, "fx,fy,cx,cy of the depth image (pixels)")
       ->delimiter(',')
@@ -255,7 +255,8 @@ void add_image_options(CLI::App& command, ProcessOptions& options) {
       ->needs(depth);
   command
       .add_option("--distortion", options.distortion,
-                  "k1,k2,p1,p2,k3 (or 4, or 8 with k4,k5,k6) of the lens, which is then taken out; none by default")
+                  "distortion k1,k2,p1,p2,k3 of the lens (or 4 of them, or 8 with k4,k5,k6), to be removed "
+                  "(default: none)")
       ->delimiter(',')
       ->expected(4, 8)
       ->needs(depth);
@@ -267,8 +268,8 @@ void add_image_options(CLI::App& command, ProcessOptions& options) {
   command.add_option("--color", options.color, "colour image (PNG) registered to the depth image")->needs(depth);
   command
       .add_option("--masks", options.masks,
-                  "label image (PNG): the instance of each pixel, 0 = none; classes and scores in a file beside it, of "
-                  "the same name but .json or .csv")
+                  "label image (PNG): the instance of each pixel, 0 = none; classes and scores come from a file of the "
+                  "same name with .json or .csv")
       ->needs(depth);
   command
       .add_option("--boxes", options.boxes,
@@ -283,8 +284,8 @@ void add_process(CLI::App& app, Run& run) {
   auto options = std::make_shared<ProcessOptions>();
   command->add_option(
       "input", options->clouds,
-      "cloud (PLY, PCD, NPY, XYZ, CSV; metres; - for standard input), or views.yaml, or a folder with it, "
-      "which names depth images and camera poses, or a recording of ROS 2 (MCAP); with several, or a pattern, each "
+      "cloud (PLY, PCD, NPY, XYZ, CSV; metres; - for standard input); or views.yaml (or its folder), which lists "
+      "depth images and camera poses; or a recording of ROS 2 (MCAP); with several, or a pattern, each "
       "gets its own folder in "
       "the output folder");
   add_common_options(*command, *options)->required();
@@ -294,11 +295,10 @@ void add_process(CLI::App& app, Run& run) {
       ->delimiter(',')
       ->expected(3);
   command->add_flag("--turn-normals", options->turn_normals,
-                    "believe --viewpoint: turn normals of the file that face away from it, however many they are, "
-                    "and do not refuse it");
+                    "trust --viewpoint: turn all normals of the file that face away from it, and do not refuse it");
   command
       ->add_option("--views", options->views,
-                   "views.csv with the sensor poses that the property 'view' of the points refers to")
+                   "views.csv with the sensor pose of each view, for points with a property 'view'")
       ->excludes("--viewpoint");
   add_image_options(*command, *options);
   command->add_option("--topic", options->mcap.topic,
@@ -307,10 +307,10 @@ void add_process(CLI::App& app, Run& run) {
                       "frame of the result, for an MCAP file (default: world, base_link, or the root of tf)");
   add_shard_option(*command, options->shard);
   command->footer(
-      "Normals in the file are kept; those that face away from the view of their point are turned. Missing normals\n"
-      "are estimated; without viewpoint or views they are turned so that neighbors agree. --viewpoint is refused for\n"
-      "points of several views, where more than 1 % of the normals face away from it, where more than 3 % of the\n"
-      "points lie hidden behind others, and where it lies on the hollow side of what is curved.\n"
+      "Normals in the file are kept; those that face away from their sensor are turned. Missing normals are\n"
+      "estimated; without viewpoint or views they are turned so that neighbors agree. --viewpoint is refused for\n"
+      "points of several views, if more than 1 % of the normals face away from it, if more than 3 % of the points\n"
+      "are hidden behind others, and if it lies on the hollow side of curved surfaces.\n"
       "Examples:\n"
       "  agrisee process cloud.ply -o result\n"
       "  agrisee process recorded/views.yaml -o result\n"

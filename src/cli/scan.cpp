@@ -308,23 +308,23 @@ void add_scan(CLI::App& app, Run& run) {
   command
       ->add_option(
           "--planner", options->planner,
-          "decides where to look next; greedy knows the truth and is for studies (default: that of the preset)")
+          "planner that chooses the views; greedy knows the truth, for comparison only (default: that of the preset)")
       ->check(one_of(planner_choices()));
   command->add_option("--noise", options->noise, std::string("noise model of the sensor: ") + study::kNoiseNames)
       ->capture_default_str();
   command->add_option("--light", options->light, "light on the plant, for the noise models l515, azure and d405")
       ->check(one_of({"shade", "sun"}));
-  command->add_flag("--color", options->color, "the camera returns colours, too, and each fruit gets a ripeness");
+  command->add_flag("--color", options->color, "simulate colours, so that each fruit gets a ripeness");
   command
       ->add_option("--detector", options->detector,
-                   "a simulated detector looks at the colours: its masks are used, errors and all")
+                   "simulate a detector and use its masks, which have errors; implies --color")
       ->check(one_of(std::vector<std::string>(study::kDetectorNames.begin(), study::kDetectorNames.end())));
   command->add_option("--max-views", options->max_views, "largest number of views (default: that of the preset)")
       ->check(CLI::Range(1, 10000));
   command->add_flag("--live", options->live,
-                    "write report.html after every view; open in a browser, it then shows the scan as it goes on");
+                    "write report.html after every view; a browser that shows it then follows the scan");
   command->add_option("--mcap", options->mcap,
-                      "write the scan to this file, too, as a recording of ROS 2 for Foxglove; for a single scene");
+                      "also write the scan to this MCAP file, for Foxglove and ROS 2; for a single scene");
   add_shard_option(*command, options->shard);
   auto* resume =
       command->add_option("--resume", options->resume,

@@ -90,16 +90,17 @@ int run_season(const PageOptions&) { throw UsageError(kNoSqlite); }
 
 void add_season_options(CLI::App& command, SeasonOptions& options) {
   auto* database = command.add_option("--db", options.database,
-                                      "SQLite file for all results in the folders: scans, fruit, views; what it holds "
-                                      "already is skipped");
+                                      "SQLite file for all results in the folders: scans, fruit, views; results that "
+                                      "it already holds are skipped");
   command
-      .add_option("--row", options.row,
-                  "regular expression that finds the row of plants in the path of an input (default: row_07 and alike)")
+      .add_option(
+          "--row", options.row,
+          "regular expression that finds the row of plants in the path of an input (default: row_07 and the like)")
       ->needs(database);
   command
       .add_option("--date", options.date,
-                  "regular expression that finds the date in the path of an input (default: 2026-06-03, 20260603; else "
-                  "the day of processing)")
+                  "regular expression that finds the date in the path of an input (default: 2026-06-03 or 20260603, or "
+                  "else the day of processing)")
       ->needs(database);
   command.add_option("--threads", options.threads, "number of threads that read results (0: one per core)")
       ->check(CLI::Range(0, 1024))
@@ -126,7 +127,8 @@ void add_to_season(const std::vector<std::string>&, const SeasonOptions&) { thro
 #endif
 
 void add_season(CLI::App& app, Run& run) {
-  auto* command = app.add_subcommand("season", "write a page about a season: counts, sizes, ripeness by row and date");
+  auto* command =
+      app.add_subcommand("season", "write a page about a season: numbers, sizes and ripeness by row and date");
   auto options = std::make_shared<PageOptions>();
   command->add_option("database", options->database, "SQLite file, as `agrisee merge --db` writes it")->required();
   command->add_option("-o,--output", options->output, "HTML file to write")->required();

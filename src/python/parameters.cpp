@@ -164,8 +164,9 @@ void bind_access(py::class_<Group<T>>& group) {
            })
       .def(
           "to_dict", [](const Group<T>& self) { return value_of(*self.value); }, "All values, as nested dicts.")
-      .def("update", &update<T>, py::arg("values"),
-           "Set what a dict names (nested, or by dotted keys), then test all ranges; on an error nothing is changed.")
+      .def(
+          "update", &update<T>, py::arg("values"),
+          "Set the values of a dict (nested, or with dotted keys), then check all ranges; on an error nothing changes.")
       .def("__eq__", [](const Group<T>& self, const py::object& other) {
         return py::isinstance<Group<T>>(other) &&
                value_of(*self.value).equal(value_of(*other.cast<const Group<T>&>().value));
@@ -260,7 +261,7 @@ Parameters parameters_of(const py::object& argument) {
 void bind_parameters(py::module_& m) {
   py::class_<ParametersObject> parameters(m, "Parameters",
                                           "The parameters of all stages; docs/parameters.md explains each. Metres, "
-                                          "radians.\n\nA value that is out of its range raises ParameterError with the "
+                                          "radians.\n\nA value out of range raises ParameterError, which names the "
                                           "whole key.");
   bind_fields(m, parameters, "");
   bind_access(parameters);
@@ -272,15 +273,15 @@ void bind_parameters(py::module_& m) {
              return object_of(std::move(out));
            }),
            py::arg("preset") = "default",
-           "The values of a preset (default, paper, see), but for those that keyword arguments name: numbers, texts, "
-           "or dicts for groups.")
+           "The values of a preset (default, paper, see). Keyword arguments replace values: numbers, texts, or dicts "
+           "for groups.")
       .def_static(
           "from_dict", [](const py::dict& values) { return object_of(from_dict(values)); }, py::arg("values"),
-          "Defaults, or those of values['preset'], but for what a nested dict names.")
+          "The values of a nested dict; all others are those of values['preset'], or the defaults.")
       .def_static(
           "from_yaml", [](const py::object& source) { return object_of(from_yaml(source)); }, py::arg("source"),
-          "The same from YAML: a path of a file, or the text itself. Raises FileError for a file, "
-          "ParameterError for a text; both name line and key.")
+          "Read YAML from a file (given its path) or from a text. Raises FileError for a file, ParameterError for "
+          "a text; both name line and key.")
       .def(
           "to_yaml", [](const ParametersObject& self) { return io::parameters_to_yaml(*self.value); },
           "All values as YAML, which `agrisee --params` reads.")
@@ -288,7 +289,7 @@ void bind_parameters(py::module_& m) {
           "expect_radii",
           [](ParametersObject& self, double smallest, double largest) { self.value->expect_radii(smallest, largest); },
           py::arg("smallest"), py::arg("largest"),
-          "Expect fruit with radii (m) from smallest to largest, and set what follows from it.")
+          "Expect fruit with radii (m) from smallest to largest, and adapt the lengths that depend on them.")
       .def(
           "check", [](const ParametersObject& self) { self.value->check(); },
           "Raise ParameterError for the first value that is out of its range.")

@@ -157,34 +157,35 @@ std::string repr(Scan& scan) {
 void bind_calls(py::class_<Scan>& scan) {
   scan.def("next_view", &next_view, py::arg("joints") = py::none(),
            "Where to look next, as a ReachableView, or None when the scan is over (stop_reason says why).\n\n"
-           "joints: where the arm stands (six numbers, rad); else where it was at the last observe, or at the start.")
+           "joints: the arm's posture (six numbers, rad); by default that of the last observe, or the start.")
       .def(
           "refused", [](Scan& s) { s.read([](Pipeline& p) { return p.refused(), 0; }); },
-          "The arm could not take the view that next_view returned last; ask for another one.")
+          "Report that the arm could not take the view that next_view returned last; then ask for another one.")
       .def("observe", &observe, py::arg("depth"), py::arg("pose"), py::arg("joints") = py::none(),
            py::arg("depth_scale") = 1.0, py::arg("distortion") = std::vector<double>(),
-           R"(Take in a depth image and return the View as recorded.
+           R"(Add a depth image to the scan and return the View as recorded.
 
-depth: H x W, float32 or uint16: z along the optical axis; times depth_scale it is in metres (0.001 for millimetres).
-  Zero, negative, NaN and infinite mean no return.
-pose: 4 x 4, world_T_optical, from where it was really taken.
-joints: six numbers (rad) at that moment, where an arm is known.
-distortion: k1, k2, p1, p2, k3 (or 4, or 8 with k4, k5, k6) of the lens, which is taken out; none for a pinhole.
+depth: H x W, float32 or uint16: z along the optical axis, in metres after multiplication by depth_scale (0.001 for
+  millimetres). Zero, negative, NaN and infinite values mean no return.
+pose: 4 x 4, world_T_optical, at which the image was really taken.
+joints: six numbers (rad) at that moment, if an arm is known.
+distortion: k1, k2, p1, p2, k3 of the lens (or 4 of them, or 8 with k4, k5, k6), to be removed; empty for a pinhole.
 
 Raises InputError for a wrong shape, unit or pose; the scan so far is kept.)")
       .def("observe_points", &observe_points, py::arg("points"), py::arg("pose"), py::arg("joints") = py::none(),
-           "The same for N x 3 points (m, optical frame) in any order.")
+           "Like observe, for N x 3 points (m, optical frame) in any order.")
       .def(
           "result", [](Scan& s) { return shared(s.run([](Pipeline& p) { return p.result(); })); },
-          "Clean, split and locate what has been seen so far, and plan the picking: a ScanResult.");
+          "The ScanResult of the views so far: clean, segment and locate, and plan the picking.");
 }
 
 void bind_state(py::class_<Scan>& scan) {
   scan.def_property_readonly(
-          "views", [](Scan& s) { return s.read([](Pipeline& p) { return p.views(); }); }, "list of View, taken so far")
+          "views", [](Scan& s) { return s.read([](Pipeline& p) { return p.views(); }); },
+          "the views taken so far, a list of View")
       .def_property_readonly(
           "candidates", [](Scan& s) { return s.read([](Pipeline& p) { return p.candidates(); }); },
-          "list of ReachableView from which next_view chose last, best first")
+          "the views that the last next_view chose from, best first, a list of ReachableView")
       .def_property_readonly(
           "points",
           [](Scan& s) {
@@ -193,13 +194,13 @@ void bind_state(py::class_<Scan>& scan) {
           "N x 3 float32: the cloud merged so far (m, world), a copy")
       .def_property_readonly(
           "stop_reason", [](Scan& s) { return s.read([](Pipeline& p) { return to_string(p.stop_reason()); }); },
-          "why next_view returned None last")
+          "why next_view last returned None")
       .def_property_readonly("completeness", &completeness_of,
                              "dict of shares of the fruit's surface, seen and observable, as the planner estimates; "
                              "or None")
       .def_property_readonly(
           "warnings", [](Scan& s) { return s.read([](Pipeline& p) { return p.warnings(); }); },
-          "what was put right and should be looked at, in sentences")
+          "sentences about input that was corrected and should be checked")
       .def("__repr__", &repr);
 }
 
@@ -216,9 +217,9 @@ void bind_pipeline(py::module_& m) {
            py::arg("planner") = py::none(), py::arg("reach") = py::none(), py::arg("seed") = 0, py::arg("threads") = 0,
            R"(workcell: Workcell, a dict as of Workcell.from_dict, or the path of a scene file.
 parameters: Parameters, or a dict of them.
-planner: gain, see, fixed or random; else that of the parameters.
+planner: gain, see, fixed or random; by default that of the parameters.
 reach: reach(request, joints) -> ReachableView or None, for an arm of your own: whether it can take a ViewRequest from
-  where it stands (six numbers, rad). Called up to gain.candidates times a view, on a thread of the library.
+  its present joints (six numbers, rad). Called up to gain.candidates times per view, on a thread of the library.
 seed: of the planner's random draws.
 threads: 0 for all processor cores; the result does not depend on it.)");
   bind_calls(scan);

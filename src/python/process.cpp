@@ -94,19 +94,19 @@ void bind_process(py::module_& m) {
         py::arg("viewpoint") = py::none(), py::arg("radius") = py::none(), py::arg("parameters") = py::none(),
         py::arg("threads") = 0, py::kw_only(), py::arg("check_normals") = false, py::arg("trust_viewpoint") = false,
         py::arg("views") = py::none(), py::arg("sensors") = py::none(),
-        R"(Find the fruit in a cloud: clean, split and locate.
+        R"(Find the fruit in a cloud: clean, segment and locate.
 
-points: N x 3 array of float32 or float64, of any strides, which is read where it is (m, any frame). Rows that are not
-  finite are dropped. Do not change it meanwhile from another thread.
-normals: N x 3 unit normals towards the side that was seen, zero where unknown; estimated where they are missing.
+points: N x 3 array of float32 or float64 (m, any frame), with any strides, read in place. Rows that are not finite are
+  dropped. Other threads must not change it during the call.
+normals: N x 3 unit normals towards the side that was seen, zero where unknown; missing ones are estimated.
 viewpoint: x, y, z of the sensor (m) if a single view saw all points.
 radius: (smallest, largest) expected radius of a fruit (m).
 parameters: Parameters, or a dict of them.
 threads: 0 for all processor cores; the result does not depend on it.
 check_normals: turn given normals that face away from the viewpoint.
-trust_viewpoint: use the viewpoint although the points speak against it.
-views, sensors: for a cloud of several views: N whole numbers, which view saw each point (-1: not known), and the
-  sensor's position at each view, K x 3 (m).
+trust_viewpoint: use the viewpoint even if the points contradict it.
+views, sensors: for a cloud of several views: the view that saw each point (N whole numbers, -1: unknown), and the
+  sensor's position of each view (K x 3, m).
 
 Returns a ScanResult. Raises ParameterError, InputError (a cloud that cannot be in metres, or was not seen from the
 viewpoint), and KeyboardInterrupt within 50 ms of Ctrl-C. Other Python threads run meanwhile.)");

@@ -98,10 +98,10 @@ void bind_rays(py::module_& m) {
       .def(py::init(&make_bvh), py::arg("vertices"), py::arg("triangles"), py::arg("threads") = 0,
            "vertices: N x 3 (m); triangles: M x 3 whole numbers, indices of vertices.")
       .def("rays", &cast_rays, py::arg("origins"), py::arg("directions"), py::arg("threads") = 0,
-           "What each ray hits first: distances in units of the direction's length (float32; infinite: nothing), and "
+           "The first hit of each ray: distances in units of the direction's length (float32; infinite: no hit), and "
            "triangles (int64; -1: none). origins and directions: K x 3.")
       .def("nearest", &nearest_points, py::arg("points"), py::arg("threads") = 0,
-           "The point of the surface nearest to each of K points: distances (m), triangles, and the points, K x 3.")
+           "The surface point nearest to each of K points: distances (m), triangles, and the surface points, K x 3.")
       .def("__len__", &Bvh::size)
       .def("__repr__", [](const Bvh& bvh) { return "<Bvh of " + std::to_string(bvh.size()) + " triangles>"; });
 }

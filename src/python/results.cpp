@@ -107,66 +107,66 @@ void bind_pickle(Class& c) {
 void bind_body(py::module_& m) {
   py::class_<Body>(m, "Body", "The body of a fruit as an ellipsoid, in world (m).")
       .def_property_readonly(
-          "center", [](const Body& b) { return b.center; }, "m")
+          "center", [](const Body& b) { return b.center; }, "centre (m)")
       .def_property_readonly(
           "radii", [](const Body& b) { return b.radii; }, "semi-axes (m), largest first")
       .def_property_readonly(
           "axes", [](const Body& b) { return b.axes; }, "3 x 3, columns: directions of the semi-axes")
       .def_property_readonly(
           "center_covariance", [](const Body& b) { return b.center_covariance; }, "3 x 3 (m2)")
-      .def_readonly("rms", &Body::rms, "root mean square distance of its points from the surface (m)")
+      .def_readonly("rms", &Body::rms, "root mean square distance of its points from its surface (m)")
       .def_readonly("completeness", &Body::completeness, "share of its surface that was observed, 0 to 1")
       .def_readonly("confidence", &Body::confidence, "probability that it is a fruit, 0 to 1")
       .def_readonly("volume", &Body::volume, "m3")
-      .def_readonly("volume_error", &Body::volume_error, "standard error (m3); 0: not known")
-      .def_readonly("mass", &Body::mass, "kg, by the parameter mass.density")
-      .def_readonly("mass_error", &Body::mass_error, "standard error (kg); 0: not known")
+      .def_readonly("volume_error", &Body::volume_error, "standard error of the volume (m3); 0: unknown")
+      .def_readonly("mass", &Body::mass, "mass (kg), with the density of the parameter mass.density")
+      .def_readonly("mass_error", &Body::mass_error, "standard error of the mass (kg); 0: unknown")
       .def("__repr__", [](const Body& b) { return repr(b); });
 }
 
 void bind_picking(py::module_& m) {
-  py::class_<Picking>(m, "Picking", "How to pick a fruit.")
-      .def_readonly("order", &Picking::order, "from 1 over all fruit of a result")
+  py::class_<Picking>(m, "Picking", "How to approach and when to pick a fruit.")
+      .def_readonly("order", &Picking::order, "place in the picking order of all fruit, from 1")
       .def_readonly("reachable", &Picking::reachable, "whether it can be picked")
       .def_property_readonly(
           "reason", [](const Picking& p) { return to_string(p.reason); },
           "'reachable', or why it cannot be picked, as in fruits.json")
       .def_property_readonly(
           "direction", [](const Picking& p) { return p.direction; },
-          "unit, from the pre-grasp pose to the centre; zero without a body")
+          "unit vector from the pre-grasp pose to the fruit's centre; zero without a body")
       .def_property_readonly(
           "pre_grasp", [](const Picking& p) { return matrix_of(p.world_T_pre_grasp); },
           "4 x 4 pose of the tool in world, z along the direction")
-      .def_readonly("joints", &Picking::joints, "at the pre-grasp pose (rad), or None")
+      .def_readonly("joints", &Picking::joints, "joints at the pre-grasp pose (rad), or None")
       .def_readonly("after", &Picking::after, "ids of the fruit that must be picked first")
       .def("__repr__", [](const Picking& p) { return formatted("<Picking %d: %s>", p.order, to_string(p.reason)); });
 }
 
 void bind_fruit(py::module_& m) {
   py::class_<Fruit> fruit(m, "Fruit", "A located fruit, in world (m).");
-  fruit.def_readonly("id", &Fruit::id, "from 1; the label of its points")
+  fruit.def_readonly("id", &Fruit::id, "number, from 1; the label of its points")
       .def_readonly("truss", &Fruit::truss, "number of the truss that it hangs on, from 1")
       .def_readonly("points", &Fruit::points, "number of its points")
-      .def_readonly("found_by", &Fruit::found_by, "the method that found it")
+      .def_readonly("found_by", &Fruit::found_by, "the stage that found it, as in fruits.json")
       .def_property_readonly(
           "position", [](const Fruit& f) { return f.position(); }, "centre of its body, or centroid of its points (m)")
-      .def_property_readonly("position_cluster", &Fruit::position_cluster, "the same in the cluster frame (m)")
+      .def_property_readonly("position_cluster", &Fruit::position_cluster, "position in the cluster frame (m)")
       .def_property_readonly(
           "pose", [](const Fruit& f) { return matrix_of(f.pose()); },
           "4 x 4: origin at position, axes of the pose frame (z: growth axis)")
       .def_property_readonly(
           "centroid", [](const Fruit& f) { return f.centroid; }, "mean of its points (m)")
       .def_property_readonly(
-          "centroid_cluster", [](const Fruit& f) { return f.centroid_cluster; }, "the same in the cluster frame (m)")
+          "centroid_cluster", [](const Fruit& f) { return f.centroid_cluster; }, "centroid in the cluster frame (m)")
       .def_property_readonly(
           "centroid_pose", [](const Fruit& f) { return matrix_of(f.centroid_pose()); },
-          "4 x 4: origin at centroid, axes as of pose")
+          "4 x 4: origin at centroid, axes those of pose")
       .def_property_readonly(
           "sigma", [](const Fruit& f) { return f.sigma; }, "standard deviation of its points along each axis (m)")
       .def_property_readonly(
           "orientation", [](const Fruit& f) { return f.orientation; }, "3 x 3 rotation of pose")
       .def_readonly("body", &Fruit::body, "the ellipsoid, or None")
-      .def_readonly("picking", &Fruit::picking, "how to pick it, or None where that was not planned")
+      .def_readonly("picking", &Fruit::picking, "how to pick it, or None if that was not planned")
       .def(
           "to_dict", [](const Fruit& f) { return py::dict(dicts_of({f})[0]); },
           "The keys and values of fruits.json (docs/formats.md).")
@@ -178,21 +178,21 @@ void bind_view(py::module_& m) {
   py::class_<View> view(m, "View", "A view that was taken.");
   view.def_property_readonly(
           "pose", [](const View& v) { return matrix_of(v.world_T_optical); },
-          "4 x 4, as reported by the robot: world_T_optical")
+          "4 x 4: world_T_optical, as reported by the robot")
       .def_property_readonly(
           "target", [](const View& v) { return v.target; }, "observed point on the optical axis (m)")
-      .def_readonly("joints", &View::joints, "rad, or None without an arm")
-      .def_readonly("points_in", &View::points_in, "points returned inside the scan volume")
-      .def_readonly("points_new", &View::points_new, "points that the merged cloud kept")
+      .def_readonly("joints", &View::joints, "joints (rad), or None without an arm")
+      .def_readonly("points_in", &View::points_in, "number of points measured inside the scan volume")
+      .def_readonly("points_new", &View::points_new, "number of these that the merged cloud kept")
       .def_readonly("plan_seconds", &View::plan_seconds, "time it took to choose the view")
-      .def_readonly("discarded", &View::discarded, "it is not part of the map")
+      .def_readonly("discarded", &View::discarded, "whether the view was rejected and is not part of the map")
       .def_property_readonly(
           "discard_reason", [](const View& v) { return to_string(v.discard_reason); },
-          "none, repeated_frame or contradicts_others")
+          "why it was discarded: none, repeated_frame or contradicts_others")
       .def("__repr__", [](const View& v) { return repr(v); });
   bind_pickle<View>(view);
   py::class_<FoundTruss>(m, "Truss", "Fruit that hang close to one another.")
-      .def_readonly("id", &FoundTruss::id, "from 1, from the top down")
+      .def_readonly("id", &FoundTruss::id, "number, from 1, from the top down")
       .def_readonly("fruits", &FoundTruss::fruits, "ids of its fruit, from the top down")
       .def_property_readonly(
           "pose", [](const FoundTruss& t) { return matrix_of(t.world_T_truss); },
@@ -231,8 +231,8 @@ void write_files(const ScanResult& result, const std::filesystem::path& folder, 
 void bind_result(py::module_& m) {
   using Result = py::class_<ScanResult, SharedResult>;
   Result result(m, "ScanResult",
-                "What a scan, or the processing of a cloud, leaves behind. Arrays are read-only views that keep the "
-                "result alive.");
+                "The result of a scan, or of processing a cloud. Arrays are read-only views that keep the result "
+                "alive.");
   const auto array = [&](const char* name, auto member, const char* doc) {
     result.def_property_readonly(
         name, [member](const py::object& self) { return shown(member(self.cast<const ScanResult&>()), self); }, doc);
@@ -245,10 +245,10 @@ void bind_result(py::module_& m) {
       "N x 3 float32: unit normals towards the side that was seen");
   array(
       "labels", [](const ScanResult& r) -> const auto& { return r.labels; },
-      "N int32: for each of points the id of its fruit, or 0");
+      "N int32: the id of each point's fruit, or 0");
   array(
       "point_views", [](const ScanResult& r) -> const auto& { return r.cloud.views; },
-      "N int32: for each of points the view that saw it, or -1");
+      "N int32: the view that saw each point, or -1");
   array(
       "raw_points", [](const ScanResult& r) -> const auto& { return r.raw.points; },
       "M x 3 float32: the merged cloud before cleaning (m, world)");
@@ -256,7 +256,7 @@ void bind_result(py::module_& m) {
       .def_readonly("trusses", &ScanResult::trusses, "list of Truss, from the top down")
       .def_readonly("views", &ScanResult::views, "list of View, in the order in which they were taken")
       .def_property_readonly(
-          "stop_reason", [](const ScanResult& r) { return to_string(r.stop_reason); }, "why there are no more views")
+          "stop_reason", [](const ScanResult& r) { return to_string(r.stop_reason); }, "why the scan ended")
       .def_property_readonly(
           "cluster_origin", [](const ScanResult& r) { return r.cluster_origin; },
           "origin of the cluster frame (m, world)")
@@ -265,14 +265,14 @@ void bind_result(py::module_& m) {
                              "or None")
       .def_property_readonly(
           "seconds", [](const ScanResult& r) { return dict_of_fields(r.seconds); },
-          "dict: seconds of computing per stage")
+          "dict: computing time of each stage (s)")
       .def_property_readonly(
           "bodies", [](const ScanResult& r) { return dict_of_fields(r.bodies); },
-          "dict: what became of the round bodies that were proposed")
-      .def_readonly("warnings", &ScanResult::warnings, "what was put right and should be looked at, in sentences")
+          "dict: how many proposed bodies were taken as fruit, or rejected for each reason")
+      .def_readonly("warnings", &ScanResult::warnings, "sentences about input that was corrected and should be checked")
       .def_property_readonly(
           "why_no_fruit", [](const ScanResult& r) { return why_no_fruit(r); },
-          "why there is no fruit, as far as it is known; empty if there is")
+          "why there is no fruit, as far as it is known; empty if there are fruit")
       .def(
           "to_dicts",
           [](const ScanResult& r) {
@@ -280,11 +280,11 @@ void bind_result(py::module_& m) {
             for (const auto& fruit : dicts_of(r.fruits)) rows.append(flat(py::reinterpret_borrow<py::dict>(fruit)));
             return rows;
           },
-          "A dict a fruit, with the columns of fruits.csv: pandas.DataFrame(result.to_dicts()).")
+          "One dict per fruit, with the columns of fruits.csv: pandas.DataFrame(result.to_dicts()).")
       .def("write", &write_files, py::arg("folder"), py::arg("workcell") = py::none(),
            "Write a result folder (docs/formats.md): clouds, fruits.json, fruits.csv, views.csv, run.json, and "
-           "report.html, which shows the arm if a workcell is given. Parameters and seed are not known to a result, so "
-           "run.json does not have them.")
+           "report.html, which shows the arm if a workcell is given. A result does not know its parameters and seed, "
+           "so run.json lacks them.")
       .def("__repr__", [](const ScanResult& r) { return repr(r); });
   result.def(py::pickle([](const ScanResult& r) { return py::bytes(to_bytes(r)); },
                         [](const py::bytes& bytes) { return shared(from_bytes<ScanResult>(bytes)); }));

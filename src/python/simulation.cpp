@@ -102,17 +102,17 @@ void bind_simulation(py::module_& m) {
 scene: path of a scene file.
 noise: none, gaussian:SIGMA (m), l515, azure, d405 (each also with :shade or :sun), l515-white or rough.
 seed: of noise and planner.
-parameters, planner, reach, threads: as of Pipeline.
+parameters, planner, reach, threads: as for Pipeline.
 progress: progress(number of views taken, last View), called after each view; an exception ends the scan.
 
 Returns a ScanResult.)");
   m.def("make_truss", &make_truss, py::arg("folder"), py::arg("total") = 7, py::arg("hidden") = 1, py::arg("seed") = 1,
         "Write a procedural truss with ground truth into a folder; returns the path of its scene.yaml.");
-  py::class_<Camera>(m, "SimulatedCamera", "A depth camera in a scene, in place of a real one.")
+  py::class_<Camera>(m, "SimulatedCamera", "A simulated depth camera in a scene.")
       .def(py::init<const fs::path&, const std::string&, std::uint64_t, int>(), py::arg("scene"),
            py::arg("noise") = "none", py::arg("seed") = 0, py::arg("threads") = 0,
-           "scene: path of a scene file; noise as of scan.")
-      .def_property_readonly("workcell", &Camera::workcell, "that of the scene")
+           "scene: path of a scene file; noise: as for scan.")
+      .def_property_readonly("workcell", &Camera::workcell, "the workcell of the scene")
       .def("capture", &Camera::capture, py::arg("pose"),
            "H x W float32: z (m) of each pixel as seen from the 4 x 4 pose world_T_optical; 0 = no return.");
 }

@@ -129,16 +129,17 @@ std::optional<EllipsoidFit> fit(const py::object& points, const py::object& norm
 }
 
 void bind_stage_results(py::module_& m) {
-  py::class_<IcpResult>(m, "IcpResult", "What icp found.")
+  py::class_<IcpResult>(m, "IcpResult", "The result of icp.")
       .def_property_readonly(
           "target_T_source", [](const IcpResult& r) { return matrix_of(r.target_T_source); },
           "4 x 4: the corrected pose, or the initial one if no correction is accepted")
       .def_readonly("accepted", &IcpResult::accepted, "whether the correction lowers the residual within its limits")
       .def_readonly("rms_before", &IcpResult::rms_before, "residual (m) at the initial pose")
-      .def_readonly("rms_after", &IcpResult::rms_after, "residual (m) at the end, over the same points")
-      .def_readonly("matches", &IcpResult::matches, "number of matched points at the end")
-      .def_readonly("iterations", &IcpResult::iterations, "steps taken")
-      .def_readonly("constrained", &IcpResult::constrained, "how many of six directions the surface determined")
+      .def_readonly("rms_after", &IcpResult::rms_after, "final residual (m), over the same points")
+      .def_readonly("matches", &IcpResult::matches, "final number of matched points")
+      .def_readonly("iterations", &IcpResult::iterations, "number of iterations")
+      .def_readonly("constrained", &IcpResult::constrained,
+                    "number of the six degrees of freedom that the surface determines")
       .def_readonly("translation", &IcpResult::translation, "how far the source's centroid moved (m)")
       .def_readonly("rotation", &IcpResult::rotation, "how far the source turned (rad)")
       .def("__repr__", [](const IcpResult& r) {
@@ -146,9 +147,9 @@ void bind_stage_results(py::module_& m) {
                number_text(1e3 * r.translation, 3) + " mm, residual " + number_text(1e3 * r.rms_before, 3) + " to " +
                number_text(1e3 * r.rms_after, 3) + " mm>";
       });
-  py::class_<EllipsoidFit>(m, "EllipsoidFit", "What fit_ellipsoid found.")
+  py::class_<EllipsoidFit>(m, "EllipsoidFit", "The result of fit_ellipsoid.")
       .def_property_readonly(
-          "center", [](const EllipsoidFit& f) { return f.body.center; }, "m")
+          "center", [](const EllipsoidFit& f) { return f.body.center; }, "centre (m)")
       .def_property_readonly(
           "radii", [](const EllipsoidFit& f) { return semi_axes(f.body).first; }, "semi-axes (m), largest first")
       .def_property_readonly(
@@ -157,7 +158,7 @@ void bind_stage_results(py::module_& m) {
       .def_property_readonly(
           "center_covariance", [](const EllipsoidFit& f) { return f.center_covariance; }, "3 x 3 (m2)")
       .def_readonly("rms", &EllipsoidFit::rms, "root mean square distance of the inliers (m)")
-      .def_readonly("inliers", &EllipsoidFit::inliers, "points that are near and whose normals agree")
+      .def_readonly("inliers", &EllipsoidFit::inliers, "number of points that are near and whose normals agree")
       .def("__repr__", [](const EllipsoidFit& f) {
         const Eigen::Vector3d radii = 1e3 * semi_axes(f.body).first;
         return "<EllipsoidFit with radii " + number_text(radii[0], 4) + ", " + number_text(radii[1], 4) + ", " +
@@ -169,30 +170,30 @@ void bind_stage_functions(py::module_& m) {
   using py::arg;
   const py::none none;
   m.def("remove_statistical_outliers", &remove_outliers, arg("points"), arg("threads") = 0,
-        "Indices (int32, ascending) of the points that are no outliers.\n\nFurther keywords: mean_k, std_ratio, "
-        "sample_deviation, as the parameters `sor` (std_ratio is 2 here).");
-  m.def(
-      "estimate_normals", &normals, arg("points"), arg("viewpoint") = none, arg("curvatures") = false,
-      arg("threads") = 0,
-      "Unit normals, N x 3, zero where there is none: turned to the viewpoint (x, y, z; m), or, without it, such that "
-      "neighbors agree. With curvatures=True also the surface variation of each point (0 to 1/3).\n\nFurther "
-      "keywords: radius (m), max_neighbors, as the parameters `normals`.");
+        "Indices (int32, ascending) of the points that are not outliers.\n\nFurther keywords: mean_k, std_ratio, "
+        "sample_deviation, as the parameters `sor` (here std_ratio is 2 by default).");
+  m.def("estimate_normals", &normals, arg("points"), arg("viewpoint") = none, arg("curvatures") = false,
+        arg("threads") = 0,
+        "Unit normals, N x 3, zero where there is none: turned to the viewpoint (x, y, z; m) or, without one, so that "
+        "neighbors agree. With curvatures=True also the surface variation of each point (0 to 1/3).\n\nFurther "
+        "keywords: radius (m), max_neighbors, as the parameters `normals`.");
   m.def("grow_regions", &regions, arg("points"), arg("normals"), arg("curvatures") = none, arg("threads") = 0,
-        "Labels (int32) of smooth regions, from 1; 0 for points of none.\n\nFurther keywords: radius (m), smoothness "
+        "Labels (int32) of smooth regions, from 1; 0 for no region.\n\nFurther keywords: radius (m), smoothness "
         "(rad), min_size and more, as the parameters `split.growing`. Some of them need curvatures.");
   m.def("dbscan", &clusters, arg("points"), arg("threads") = 0,
         "Labels (int32) of clusters, from 1; 0 for noise.\n\nFurther keywords: eps (m), min_points, as the parameters "
         "`split.clustering`.");
   m.def("icp", &icp, arg("source"), arg("target"), arg("source_normals") = none, arg("target_normals") = none,
         arg("initial") = none, arg("threads") = 0,
-        "The small rigid motion that lays a source cloud on a target, as an IcpResult; point to plane, so the target "
-        "needs normals, unless point_to_point=True.\n\ninitial: 4 x 4 target_T_source. Further keywords: max_distance "
-        "(m), kernel and more, as the parameters `icp`.");
-  m.def("fit_ellipsoid", &fit, arg("points"), arg("normals"),
-        "The ellipsoid through points with outward normals as an EllipsoidFit, or None if there are too few or they "
-        "support none.\n\nFurther keywords: noise (m), shape_prior and more, as the parameters `split.bodies.fit`.");
+        "The small rigid motion that aligns a source cloud with a target, as an IcpResult. Point to plane, so the "
+        "target needs normals, unless point_to_point=True.\n\ninitial: 4 x 4 target_T_source. Further keywords: "
+        "max_distance (m), kernel and more, as the parameters `icp`.");
+  m.def(
+      "fit_ellipsoid", &fit, arg("points"), arg("normals"),
+      "The ellipsoid that fits points with outward normals as an EllipsoidFit, or None if there are too few points or "
+      "no ellipsoid fits.\n\nFurther keywords: noise (m), shape_prior and more, as the parameters `split.bodies.fit`.");
   m.def("count_neighbors", &neighbor_counts, arg("points"), arg("radius"), arg("threads") = 0,
-        "Density: the number of points (int32) at most radius (m) from each point, itself included.");
+        "The density: how many points (int32) are at most radius (m) away from each point, itself included.");
 }
 
 }  // namespace

@@ -59,10 +59,11 @@ void bind_cell(py::module_& m) {
   py::class_<Workcell>(m, "Workcell", "Arm, camera, scan volume and keep-out spaces; docs/formats.md has the keys.")
       .def_static(
           "from_yaml", [](const std::filesystem::path& path) { return io::read_scene(path).workcell; }, py::arg("path"),
-          "That of a scene file. Raises FileError, which names line and key.")
-      .def_static("from_dict", &from_dict, py::arg("values"),
-                  "From the keys of a scene file, as nested dicts. Raises ParameterError, which names the key.")
-      .def_readonly("name", &Workcell::name, "as in run.json")
+          "The workcell of a scene file. Raises FileError, which names line and key.")
+      .def_static(
+          "from_dict", &from_dict, py::arg("values"),
+          "A workcell from the keys of a scene file, as nested dicts. Raises ParameterError, which names the key.")
+      .def_readonly("name", &Workcell::name, "name of the scene, as in run.json")
       .def_property_readonly(
           "arm", [](const Workcell& c) { return std::string(c.arm.name); }, "name of the model")
       .def_property_readonly(
@@ -76,19 +77,19 @@ void bind_cell(py::module_& m) {
       .def_property_readonly("intrinsics", &intrinsics_of, "dict: width, height, fx, fy, cx, cy of the depth image")
       .def_property_readonly(
           "scan_volume", [](const Workcell& c) { return std::pair(c.scan_volume.min, c.scan_volume.max); },
-          "its lower and upper corner (m, world)")
+          "lower and upper corner of the volume to scan (m, world)")
       .def("__repr__", &repr);
 }
 
 void bind_views(py::module_& m) {
   using plan::ReachableView;
   using plan::ViewRequest;
-  py::class_<ViewRequest>(
-      m, "ViewRequest", "A request to look at a point: from target - distance * direction along direction (m, world).")
+  py::class_<ViewRequest>(m, "ViewRequest",
+                          "A request to look at target from target - distance * direction (m, world).")
       .def_property_readonly(
           "target", [](const ViewRequest& r) { return r.target; }, "the point to look at (m)")
       .def_property_readonly(
-          "direction", [](const ViewRequest& r) { return r.direction; }, "unit, from the sensor to the target")
+          "direction", [](const ViewRequest& r) { return r.direction; }, "unit vector from the sensor to the target")
       .def_readonly("distance", &ViewRequest::distance, "preferred distance from the sensor to the target (m)")
       .def_readonly("distance_min", &ViewRequest::distance_min, "shortest distance (m)")
       .def_readonly("distance_max", &ViewRequest::distance_max, "longest distance (m)")
@@ -112,17 +113,16 @@ void bind_views(py::module_& m) {
              return view;
            }),
            py::arg("pose"), py::arg("target") = py::none(), py::arg("joints") = py::none(), py::arg("move_time") = 0.0,
-           "pose: 4 x 4, world_T_optical; target: the point looked at (m), else 0.38 m ahead; joints: six numbers "
-           "(rad), "
-           "or None where the arm does not report them; move_time: of the move there (s).")
+           "pose: 4 x 4, world_T_optical; target: the point looked at (m), by default 0.38 m ahead; joints: six "
+           "numbers (rad), or None if the arm does not report them; move_time: duration of the move there (s).")
       .def_property_readonly(
           "pose", [](const ReachableView& v) { return matrix_of(v.world_T_optical); },
           "4 x 4 pose of the sensor: world_T_optical")
       .def_property_readonly(
           "target", [](const ReachableView& v) { return v.target; }, "the point looked at, on the optical axis (m)")
       .def_readonly("joints", &ReachableView::joints, "six joint angles (rad), or None")
-      .def_readonly("move_time", &ReachableView::move_time, "time of the move there (s)")
-      .def_readonly("gain", &ReachableView::gain, "what the planner expects of it, in the planner's own unit")
+      .def_readonly("move_time", &ReachableView::move_time, "duration of the move there (s)")
+      .def_readonly("gain", &ReachableView::gain, "what the planner expects to gain from it, in the planner's own unit")
       .def("__repr__", [](const ReachableView& v) {
         return "<ReachableView at " + py::str(py::cast(v.target)).cast<std::string>() + ", " +
                number_text(v.move_time, 3) + " s away>";

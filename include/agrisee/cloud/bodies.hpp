@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// @file
-/// Decides which round bodies a cloud holds: candidates compete for its points.
+/// Finds the round bodies in a cloud: candidates compete for its points.
 ///
-/// Regions, clusters and voted centers each propose bodies. Every proposal is fitted (fit.hpp). Its score is the share
-/// of its surface that points cover, less what contradicts it: points inside it, and sight lines that went through it.
-/// The best body is taken together with its points, the others are judged anew on the points that are left, and so on
-/// until no body scores enough. Bodies may touch but not go deep into each other. Leaves and stems are
-/// refused because the points on them are flat or ridge-like: of their two principal curvatures one is much the
-/// smaller. Metres; most limits are shares of the body's radius. Cost: linear in the points near each candidate.
+/// Regions, clusters, voted centers and masks propose bodies. Every proposal is fitted (fit.hpp). Its score is the
+/// share of its surface that points cover, minus contradictions: points inside it, and sight lines through it. The best
+/// body is taken together with its points, the others are scored again on the points that are left, and so on until no
+/// body scores enough. Bodies may touch but not penetrate each other deeply. Leaves and stems are rejected because the
+/// points on them are flat or ridge-like: one of their principal curvatures is much smaller than the other. Metres;
+/// most limits are shares of the body's radius. Cost: linear in the points near each candidate.
 #pragma once
 
 #include <agrisee/cloud/body_verdict.hpp>
@@ -23,33 +23,33 @@
 
 namespace agrisee {
 
-/// A proposal of a body and what proposed it.
+/// A proposed body, and the stage that proposed it.
 struct BodyCandidate {
   Ellipsoid body;        ///< first guess
-  std::string found_by;  ///< what proposed it; see Fruit::found_by
-  /// What to count if its points do not support it: that they suggest a radius outside of what is expected, say.
+  std::string found_by;  ///< the stage that proposed it; see Fruit::found_by
+  /// The count to raise if its points do not support it, for example because they suggest an unexpected radius.
   std::size_t BodyCounts::*doubt = nullptr;
-  std::optional<EllipsoidFit> fit = {};      ///< its fit to the same points as now, if it is known already
-  std::optional<double> mask_log_odds = {};  ///< masks proposed it with these odds, and `fit` is that of their outlines
+  std::optional<EllipsoidFit> fit = {};      ///< fit to the present points, if already known
+  std::optional<double> mask_log_odds = {};  ///< set if masks proposed it; `fit` is then that of their outlines
 };
 
-/// A body that won.
+/// A body that won its points.
 struct FoundBody {
-  EllipsoidFit fit;         ///< the body, and how well it is known
+  EllipsoidFit fit;         ///< the body with its uncertainty
   std::string found_by;     ///< the stage that found it; see Fruit::found_by
   double coverage = 0.0;    ///< share of its surface covered by its points
   double confidence = 0.0;  ///< probability that it is a fruit, see detail::fruit_probability
-  bool by_mask = false;     ///< `fit` is that of the outline of a mask, and better than one of the few points seen
+  bool by_mask = false;     ///< `fit` is that of a mask's outline, because few points were seen
 };
 
 namespace detail {
 
-/// Whether an ellipsoid could be a fruit by its size, however its mean radius is taken.
+/// Whether the size of an ellipsoid is that of a fruit, by either definition of its mean radius.
 inline bool plausible(const Ellipsoid& body, const BodyParameters& parameters) {
   return parameters.plausible(body.mean_radius()) && parameters.plausible(body.mean_semi_axis());
 }
 
-/// How deep two bodies go into each other along the line between their centers (m); negative when apart.
+/// How deep two bodies penetrate each other along the line between their centers (m); negative when apart.
 inline double overlap(const Ellipsoid& a, const Ellipsoid& b) {
   const Eigen::Vector3d d = b.center - a.center;
   const double length = d.norm();
@@ -316,7 +316,7 @@ class Competition {
 /// @param candidates of equally good ones the first wins
 /// @param parameters see their struct
 /// @param seen_through evidence of free space, or empty
-/// @param counts receives what became of the candidates, where it is not null
+/// @param counts if not null, receives the numbers of candidates by outcome
 /// @param masks evidence of a detector, or empty
 /// @return the bodies that won, best first; assign_to_bodies gives them their points
 /// @throws ParameterError; InputError if the cloud has no normals

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// @file
-/// What the points and the sight lines near a body say for and against it. Metres. Cost: linear in the points near it.
+/// Evidence for and against a body from the points and sight lines near it. Metres. Cost: linear in the points near it.
 #pragma once
 
 #include <agrisee/cloud/fit.hpp>
@@ -31,11 +31,11 @@ inline double loose_cosine(const BodyParameters& parameters) {
   return std::cos(std::min(kPi / 2, 1.6 * parameters.max_angle));
 }
 
-/// How a body fares against the points that are still free, and against the sight lines.
+/// The evidence for a body from the points that are still free, and from sight lines.
 struct Verdict {
   double coverage = 0.0;       ///< share of the surface covered by points on it
   double inside = 0.0;         ///< share of the directions in which there are points inside the body
-  double seen_through = 0.0;   ///< share of the surface that sight lines went through
+  double seen_through = 0.0;   ///< share of the surface that sight lines pass through
   double roundness = 0.0;      ///< smaller over larger principal curvature of the points on the surface
   double normal_spread = 0.0;  ///< root mean square sine of the angle between the normals of points on it and its own
   double clutter = 0.0;        ///< points close to the surface that do not lie on it, for each that does
@@ -148,8 +148,8 @@ Verdict judge_quickly(const PointCloud<S>& cloud, const Indices& near, const std
   return judge_points(cloud, visit, step, taken, body, parameters);
 }
 
-/// The probability (0 to 1) that a body is a fruit, from what speaks for and against it: logistic regression. Points
-/// of leaves and stems lie on no body for long: their normals spread, other points lie close by, little supports it.
+/// The probability (0 to 1) that a body is a fruit, by logistic regression on its evidence. On leaves and stems normals
+/// spread, other points lie close to the body, and few points support it.
 ///
 /// The weights were fitted to 1,700 bodies: in 33 simulated scenes (plants of six kinds and bare trusses, one to 14
 /// views, four noise models) and in three frames of real apple trees; docs/segmentation.md shows how well they hold.

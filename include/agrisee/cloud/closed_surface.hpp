@@ -1,17 +1,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// @file
-/// Closes the surface of a fruit that is no ellipsoid behind what was seen of it: center of volume, volume, moments.
+/// Reconstructs the closed surface of a fruit that is not an ellipsoid, with its center of volume, volume and moments.
 ///
-/// Peppers have lobes, pears a neck, strawberries a point. What they have in common is an axis: seen along it they look
-/// the same after each turn by a fraction of a circle. So the side that nobody saw follows from the sides that were
-/// seen. The surface is r(u) = exp(sum of c_k Y_k(u)): the logarithm of its distance from the center in real spherical
-/// harmonics about that axis. The c_k are normal with means 0 and with variances that say what fruit look like: large
-/// for order 0, the profile of a body of revolution; large for the orders n and 2 n, if the fruit has n lobes; small
-/// for all others. This is Gaussian process regression with a covariance that knows of the axis (Rasmussen & Williams,
-/// Gaussian Processes for Machine Learning, 2006, 2.1 and 5.4.1). n is the one with the largest evidence. A shift and a
-/// tilt of the axis are unknowns of the same least squares and are applied after each step; points far from the surface
-/// or with other normals lose their weight (Tukey's biweight). Points of no fruit that lie on the surface are joined:
-/// the neck of a pear is too far from any ellipsoid to have got its label.
+/// Peppers have lobes, pears a neck, strawberries a point, but all have an axis about which they look the same after a
+/// turn by a fraction of a circle. The unseen side therefore follows from the seen ones. The surface is
+/// r(u) = exp(sum of c_k Y_k(u)): the logarithm of its distance from the center, in real spherical harmonics about that
+/// axis. The c_k have normal priors with mean 0 and variances that describe fruit: large for order 0, the profile of a
+/// body of revolution; large for the orders n and 2 n, if the fruit has n lobes; small for all others. This is Gaussian
+/// process regression with a covariance that depends on the axis (Rasmussen & Williams, Gaussian Processes for Machine
+/// Learning, 2006, 2.1 and 5.4.1). n is chosen by the evidence. Shift and tilt of the axis are unknowns of the same
+/// least-squares problem and are applied after each step. Points far from the surface, or with other normals, lose
+/// their weight (Tukey's biweight). Unlabelled points on the surface join the fruit: the neck of a pear is too far from
+/// any ellipsoid to be labelled before.
 ///
 /// Metres, any frame. Cost: 2 to 6 ms, and up to 20 ms if the first guess of the axis is bad; points are thinned, so it
 /// hardly grows with them.
@@ -36,16 +36,16 @@
 
 namespace agrisee {
 
-/// Parameters of closed_surface. Standard deviations are of the logarithm of the radius, so relative to it.
+/// Parameters of closed_surface. Standard deviations are of the logarithm of the radius, that is, relative to it.
 struct ClosedSurfaceParameters {
   double profile = 0.1;    ///< standard deviation of degree 2 of the profile; falls with degree^-1.5
   double lobes = 0.05;     ///< standard deviation of the lobes at their lowest degree; falls with 1 / degree
-  double uneven = 0.0015;  ///< standard deviation of degree 2 of what no symmetry explains; falls with 1 / degree
-  double noise = 0.0025;   ///< standard deviation of a point, relative to the radius, is never below this
-  double join = 0.035;     ///< points of no fruit this near to the surface, relative to the radius, are joined
-  double doubtful = 100;   ///< up to this evidence (nats) against the ellipsoid, the ellipsoid is right
-  double certain = 200;    ///< from this evidence on, the closed surface is; in between it is a mixture
-  double error_scale = 5;  ///< standard errors are this multiple of those that independent points would give
+  double uneven = 0.0015;  ///< standard deviation of degree 2 of the asymmetric part; falls with 1 / degree
+  double noise = 0.0025;   ///< least standard deviation of a point, relative to the radius
+  double join = 0.035;     ///< unlabelled points this near to the surface, relative to the radius, join the fruit
+  double doubtful = 100;   ///< up to this evidence (nats) against the ellipsoid, the ellipsoid is used
+  double certain = 200;    ///< from this evidence on, the closed surface is used; in between a mixture
+  double error_scale = 5;  ///< standard errors are this multiple of those for independent points
   int max_points = 1500;   ///< larger sets of points are thinned evenly to this many
 
   /// @throws FieldError for the first field that is out of its range
@@ -68,7 +68,7 @@ struct ClosedSurfaceParameters {
 
 /// A fruit's closed surface.
 struct ClosedSurface {
-  /// 0: the ellipsoid explains the points; 1: only this surface does; in between by the evidence.
+  /// 0: the ellipsoid explains the points; 1: only this surface does; in between according to the evidence.
   double weight = 0.0;
   double evidence = 0.0;                             ///< logarithm of its probability over the ellipsoid's (nats)
   int lobes = 0;                                     ///< how many, 3 to 9; 0: a body of revolution
@@ -80,7 +80,7 @@ struct ClosedSurface {
   double volume_error = 0.0;                                    ///< its standard error, relative
   Eigen::Matrix3d spread = Eigen::Matrix3d::Zero();             ///< covariance of the positions inside it (m2)
   double rms = 0.0;                                             ///< root mean square distance of its points (m)
-  Indices joined;  ///< points of no fruit that are on it, ascending; none without weight
+  Indices joined;  ///< unlabelled points on it, ascending; none if the weight is 0
 };
 
 namespace detail {
@@ -443,12 +443,12 @@ inline void integrate(const SurfaceModel& model, const SurfaceFit& fit, const Li
 
 }  // namespace detail
 
-/// Closes the surface of a fruit.
+/// Reconstructs the closed surface of a fruit.
 /// @param cloud points (m) with normals
 /// @param own the fruit's points
 /// @param others points that belong to no fruit; those far away are not used
 /// @param body the fitted ellipsoid
-/// @param axis first guess of the axis of symmetry; the ellipsoid's own axes are tried, too
+/// @param axis first guess of the axis of symmetry; the ellipsoid's own axes are tried too
 /// @param parameters see their struct
 /// @return empty if the points are too few or fit no closed surface
 /// @throws InputError if the cloud has no normals; ParameterError; Cancelled

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// @file
-/// Whether the curved parts of a cloud bulge towards the side of their normals, as fruit do, or away from it, as they
-/// do when the normals were turned to the wrong side. Metres. Cost: some 2000 neighborhoods.
+/// Tests whether the curved parts of a cloud bulge towards the side of their normals, as fruit do, or away from it,
+/// because the normals were turned to the wrong side. Metres. Cost: some 2000 neighborhoods.
 #pragma once
 
 #include <agrisee/core/cancellation.hpp>
@@ -18,8 +18,8 @@ namespace agrisee {
 /// Share (0..1) of the curved places of a cloud that bulge towards the side of their normals.
 ///
 /// The curvature of a place is the slope of the regression of normals on points within half of `radius_min`, 1 / r on a
-/// sphere of radius r. Places count that are curved as bodies between half of `radius_min` and twice `radius_max`. On a
-/// truss seen from where its normals point to, nearly all of them bulge; on leaves about half of them.
+/// sphere of radius r. Only places count that are curved like bodies with radii between half of `radius_min` and twice
+/// `radius_max`. Nearly all of them bulge on a truss whose normals point to the sensor, about half of them on leaves.
 /// @param cloud points (m) with normals
 /// @param radius_min smallest expected radius (m), > 0
 /// @param radius_max largest expected radius (m), > 0

@@ -110,7 +110,7 @@ Labels dbscan(const C& cloud, const DbscanParameters& parameters, const Search& 
   return labels;
 }
 
-/// The same clusters without a ready-made search; several times as fast.
+/// dbscan without a ready-made search; several times as fast.
 template <typename C>
 Labels dbscan(const C& cloud, const DbscanParameters& parameters = {}, int threads = 1) {
   using S = scalar_t<C>;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// @file
-/// How many points of a cloud hide behind others, so that they cannot have been seen from a certain place. Metres.
-/// Cost: linear in the points, to build a grid of their directions.
+/// The share of a cloud's points that are hidden behind others and so cannot have been seen from a given viewpoint.
+/// Metres. Cost: linear in the points, to build a grid of their directions.
 #pragma once
 
 #include <agrisee/cloud/spacing.hpp>
@@ -15,9 +15,9 @@ namespace agrisee {
 
 /// Share (0..1) of the points of a cloud that a closed surface of other points hides from `viewpoint`.
 ///
-/// A point is hidden if, as seen from there, nearer points surround its direction: in each of six sectors about it one
-/// is nearer by `margin`, within three spacings of the directions. A cloud of one view has no such points but for
-/// a few in small holes, as beside the border of a surface the points behind it are seen from one side only.
+/// A point is hidden if nearer points surround its direction: in each of six sectors about it one is nearer by
+/// `margin`, within three spacings of the directions. A cloud of one view has hardly any such points, except in small
+/// holes: points that it shows behind a surface have nearer points on one side only.
 /// @param cloud points (m), any cloud type
 /// @param viewpoint where a sensor may have stood (m)
 /// @param margin by how much the points of the hiding surface are nearer (m), > 0; larger than the noise of the points

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// Iterative closest point, point to plane (Chen & Medioni, 1992) or point to point (Besl & McKay, 1992): the small
-/// rigid motion that lays a source cloud (one view) on a target cloud (what is fused so far), or a report that no
-/// motion can be trusted. [1] names ICP in the last line of alg. 1 and says no more of it.
+/// rigid motion that aligns a source cloud (one view) with a target cloud (the map so far), or a report that no motion
+/// can be trusted. [1] mentions ICP in the last line of alg. 1, without details.
 ///
 /// Both clouds are in one frame, up to a small error; metres, radians. Cost of an iteration: one neighbor query for
 /// every source point whose match may have changed, with a radius that shrinks to the distance of its last match, and
@@ -25,7 +25,7 @@
 
 namespace agrisee {
 
-/// What register_cloud found.
+/// The result of register_cloud.
 struct IcpResult {
   Pose target_T_source = Pose::Identity();  ///< the corrected pose, or the initial one if no correction is accepted
   bool accepted = false;                    ///< whether the correction lowers the residual and is within its limits
@@ -126,7 +126,7 @@ inline bool worth_a_correction(const IcpResult& result, const IcpParameters& par
 /// normal is needed but zero is not matched. The motion found is dropped (`accepted` is false and the initial pose is
 /// returned) if it does not lower the residual (by more than chance would, see IcpParameters::independent), is larger
 /// than the limits, loses half of the matches, or has fewer than `min_matches`.
-/// @param source points (m) that are laid on the target
+/// @param source points (m) to be aligned with the target
 /// @param source_normals one unit normal per source point, or empty: the angle between normals is not tested then
 /// @param target points (m) that stay where they are
 /// @param target_normals one unit normal per target point; may be empty for point to point

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// @file
-/// What a detector's masks say of bodies, as the split uses it, without knowing what gives it (fuse/masks.hpp does).
+/// Evidence for or against bodies from a detector's masks, as segmentation uses it. fuse/masks.hpp computes it.
 #pragma once
 
 #include <agrisee/cloud/fit.hpp>
@@ -10,22 +10,22 @@
 
 namespace agrisee {
 
-/// A body that masks propose.
+/// A body proposed by masks.
 struct MaskBody {
   EllipsoidFit fit;       ///< to the outlines and depths of its masks
-  double log_odds = 0.0;  ///< that it is a fruit, by its masks and the depths under them
+  double log_odds = 0.0;  ///< of being a fruit, from its masks and the depths under them
 };
 
-/// What masks say.
+/// The evidence of all masks.
 struct MaskEvidence {
-  std::vector<MaskBody> bodies;  ///< proposals that come before those of the points: of a single view's cloud
-  /// Proposals of the masks that none of some bodies explains; they come after those of the points, for what these
-  /// leave: where several views have seen a fruit, its points say more of it than its outlines. Empty: none.
+  std::vector<MaskBody> bodies;  ///< proposals that compete before those of the points, for the cloud of a single view
+  /// Bodies proposed by the masks that the given bodies do not explain. They come after those of the points and get the
+  /// points that these leave: once several views have seen a fruit, its points describe it better than its outlines.
+  /// Empty: none.
   std::function<std::vector<MaskBody>(const std::vector<Ellipsoid>&)> remaining;
-  /// How far the masks on the pixels of a body speak for a fruit: log-odds, to be added to what the points say. Empty:
-  /// nobody looked.
+  /// The log-odds that the masks on a body's pixels add to those of its points. Empty: no detector has looked.
   std::function<double(const Ellipsoid&)> log_odds;
-  double most = 0.0;  ///< the largest magnitude of these
+  double most = 0.0;  ///< largest magnitude of log_odds
 };
 
 }  // namespace agrisee

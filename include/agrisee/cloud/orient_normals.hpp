@@ -196,8 +196,7 @@ std::vector<PatchSums> single_points(const std::vector<Vector3<scalar_t<C>>>& no
 /// @param cloud points (m)
 /// @param parameters see their struct
 /// @param lists neighbor lists of `cloud`, of more than `parameters.neighbors` points as the point itself is one of
-/// them;
-///   shorter ones are used as far as they reach
+///   them; shorter ones are used as far as they reach
 /// @param threads the result does not depend on it
 /// @throws ParameterError for a bad parameter, InputError if sizes disagree
 template <typename C>
@@ -226,7 +225,7 @@ std::vector<Vector3<scalar_t<C>>> orient_normals_consistently(std::vector<Vector
   return normals;
 }
 
-/// The same with neighbor lists made for the call.
+/// orient_normals_consistently with neighbor lists made for the call.
 template <typename C>
 std::vector<Vector3<scalar_t<C>>> orient_normals_consistently(std::vector<Vector3<scalar_t<C>>> normals, const C& cloud,
                                                               const OrientationParameters& parameters = {},

@@ -114,15 +114,15 @@ struct IcpParameters {
   double max_distance = 0.005;  ///< points farther apart than this are not matched (m)
   double max_normal_angle = deg(30.0);        ///< nor are points whose normals differ by more (rad); pi: no such test
   RobustKernel kernel = RobustKernel::tukey;  ///< how much large residuals count
-  int max_iterations = 30;                    ///< upper limit of the number of steps
+  int max_iterations = 30;                    ///< largest number of iterations
   double translation_tolerance = 1e-6;  ///< ICP has converged when a step moves the centroid by less than this (m)
   double rotation_tolerance = 1e-5;     ///< and rotates by less than this (rad)
   double degeneracy = 0.01;  ///< directions with eigenvalues below this share of the largest one are not corrected
-  int min_matches = 20;      ///< with fewer matches the cloud is left where it is
+  int min_matches = 20;      ///< with fewer matches the cloud is not moved
   double max_translation = 0.005;  ///< larger corrections are rejected (m, at the source's centroid)
   double max_rotation = deg(1.0);  ///< larger rotations are rejected (rad)
-  /// Every how many matches one tells something of its own, as the errors of neighboring pixels are alike. A correction
-  /// has to lower the residual by more than chance would then. 0: every correction that lowers it is accepted.
+  /// Number of matches that count as one independent measurement, because errors of neighboring pixels are correlated.
+  /// A correction must lower the residual by more than chance would. 0: every correction that lowers it is accepted.
   double independent = 0.0;
   double pose_translation = 0.002;  ///< expected error of the initial position (m); only `independent` > 0 reads it
   double pose_rotation = deg(0.3);  ///< expected error of the initial rotation (rad); only `independent` > 0 reads it
@@ -165,13 +165,13 @@ struct IcpParameters {
 
 /// Parameters of fit_ellipsoid.
 struct FitParameters {
-  double noise = 0.001;        ///< standard deviation of points about a fruit's ellipsoid, its lobes included (m)
-  double max_noise = 0.05;     ///< but on a small body at most this share of its radius, as its lobes are smaller, too
-  double sensor_noise = 0.0;   ///< and never below this: standard deviation that is the sensor's alone (m)
-  double shape_prior = 0.04;   ///< standard deviation of the semi-axes about those of a sphere, relative to its radius
+  double noise = 0.001;        ///< standard deviation of points from a fruit's ellipsoid, including its lobes (m)
+  double max_noise = 0.05;     ///< `noise` is at most this share of the radius, as small bodies have smaller lobes
+  double sensor_noise = 0.0;   ///< `noise` is at least this: standard deviation due to the sensor alone (m)
+  double shape_prior = 0.04;   ///< standard deviation of the semi-axes from those of a sphere, relative to its radius
   double max_angle = deg(50);  ///< points whose normals differ from the ellipsoid's by more are ignored (rad)
   int independent = 150;       ///< points beyond this number add no certainty, since errors of neighbors correlate
-  int iterations = 12;         ///< upper limit of the number of steps
+  int iterations = 12;         ///< largest number of iterations
   int max_points = 400;        ///< larger sets of points are thinned evenly to this many
 
   /// Standard deviation (m) of points about a body of this mean radius (m).
@@ -201,10 +201,10 @@ struct BodyParameters {
   double tolerance = 0.08;        ///< points within this share of the radius from the surface may belong to the body
   double min_tolerance = 0.0014;  ///< on small bodies, points within this distance from the surface (m)
   double max_angle = deg(35);     ///< if their normals are also within this angle of the body's (rad)
-  double min_coverage = 0.08;     ///< least share of the surface that is covered by points, less what contradicts it
+  double min_coverage = 0.08;     ///< least share of the surface that is covered by points, minus contradictions
   double min_roundness = 0.35;    ///< least ratio of the smaller to the larger principal curvature of its points
   double min_confidence = 0.5;    ///< least probability that it is a fruit (detail::fruit_probability)
-  double normal_noise = 0.0;      ///< standard deviation of the angle of a normal that is the sensor's alone (rad)
+  double normal_noise = 0.0;      ///< standard deviation of the angle of a normal due to the sensor alone (rad)
   double max_overlap = 0.30;      ///< deepest penetration of two bodies, as a share of the smaller radius
   FitParameters fit;              ///< fit of the ellipsoids
 
@@ -282,7 +282,7 @@ struct SplitParameters {
 struct GrowthAxisParameters {
   double shell = 0.45;      ///< points outside a fruit but within this share of its radius may be its calyx and pedicel
   double up_weight = 0.35;  ///< weight of the assumption that fruit hang below their stem, against the points
-  double stem_certainty = 10.0;  ///< 1 / variance (1/rad2) of the direction that stem points give, against the body's
+  double stem_certainty = 10.0;  ///< 1 / variance (1/rad2) of the direction of stem points, against the body's axis
 
   /// @throws FieldError for the first field that is out of its range
   void check() const { check_fields(*this); }
@@ -300,7 +300,7 @@ struct GrowthAxisParameters {
 struct MassParameters {
   double density = 980.0;       ///< density of the fruit (kg/m3); the default is for tomatoes, which barely float
   double density_error = 20.0;  ///< standard deviation of the density among fruit (kg/m3)
-  double shape_error = 0.01;    ///< standard deviation of a fruit's volume about its ellipsoid's, relative
+  double shape_error = 0.01;    ///< standard deviation of a fruit's volume from its ellipsoid's, relative
 
   /// @throws FieldError for the first field that is out of its range
   void check() const { check_fields(*this); }

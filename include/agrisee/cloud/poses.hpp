@@ -132,9 +132,9 @@ inline BodyAxis symmetry_axis(const EllipsoidFit& fit) {
 }
 
 /// Direction (unit, world) from a fruit's center towards its calyx. Fruit are round about their growth axis, so the
-/// axis of its body gives the line, as far as that is known. The direction along that line follows from the points just
-/// outside the body that belong to no fruit (calyx, pedicel; the nearer, the more they weigh) and from gravity, a weak
-/// prior; where the body is a sphere, these two give the whole direction.
+/// body's axis gives the line, weighted by its certainty. Its sense follows from unlabelled points just outside the
+/// body (calyx, pedicel; nearer ones weigh more) and, weakly, from gravity. If the body is a sphere, these two give the
+/// whole direction.
 /// @param cloud points (m, world)
 /// @param labels one per point; 0: the point belongs to no fruit
 /// @param body the fruit's body
@@ -169,7 +169,7 @@ Eigen::Vector3d growth_axis(const PointCloud<S>& cloud, const Labels& labels, co
   return axis.norm() > 1e-9 ? Eigen::Vector3d(axis.normalized()) : Eigen::Vector3d(Eigen::Vector3d::UnitZ());
 }
 
-/// The same for a fitted body; see symmetry_axis.
+/// growth_axis of a fitted body, with its symmetry_axis.
 template <typename S>
 Eigen::Vector3d growth_axis(const PointCloud<S>& cloud, const Labels& labels, const EllipsoidFit& fit,
                             const GrowthAxisParameters& parameters = {}) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// @file
-/// How ripe a fruit is by the measured colours of its surface. Colours are compared in CIELAB (CIE 15:2004; sRGB and
-/// D65 by IEC 61966-2-1). Defined in `agrisee::agrisee`.
+/// Ripeness of a fruit from the measured colours of its surface, in CIELAB (CIE 15:2004; sRGB and D65 by
+/// IEC 61966-2-1). Defined in `agrisee::agrisee`.
 #pragma once
 
 #include <agrisee/core/color.hpp>
@@ -16,17 +16,17 @@ namespace agrisee {
 
 /// Parameters of ripeness_of.
 struct RipenessParameters {
-  double ripe_hue = deg(70);  ///< surface of a smaller hue angle (rad) is ripe; in CIELAB red is at 0.6, yellow at 1.6,
-                              ///< green at 2.1
-  double hue_error = deg(8);  ///< standard deviation of a hue angle by white balance and shade (rad)
-  double min_chroma = 8.0;    ///< surface of less chroma (CIELAB) has no hue: it is left out of the share
-  double trim = 0.15;         ///< this share of the points, the brightest (highlights), and as many of the darkest
-                              ///< (shade), are left out of the mean color
-  double breakers = 0.01;     ///< from this share of ripe surface on a fruit is no longer green
-  double turning = 0.10;      ///< from here on it is of the class turning
-  double pink = 0.30;         ///< from here on pink
-  double light_red = 0.60;    ///< from here on light red
-  double red = 0.90;          ///< from here on red
+  double ripe_hue = deg(70);  ///< surface with a smaller hue angle (rad) is ripe; in CIELAB red is at 0.6, yellow at
+                              ///< 1.6, green at 2.1
+  double hue_error = deg(8);  ///< standard deviation of a hue angle due to white balance and shade (rad)
+  double min_chroma = 8.0;    ///< surface with less chroma (CIELAB) has no hue and is left out of the share
+  double trim = 0.15;         ///< share of the points, the brightest (highlights) and again the darkest (shade), that
+                              ///< is left out of the mean colour
+  double breakers = 0.01;     ///< ripe share from which a fruit is of the class breakers
+  double turning = 0.10;      ///< ripe share from which it is turning
+  double pink = 0.30;         ///< ripe share from which it is pink
+  double light_red = 0.60;    ///< ripe share from which it is light red
+  double red = 0.90;          ///< ripe share from which it is red
 
   /// @throws FieldError for the first field that is out of its range
   void check() const { check_fields(*this); }
@@ -58,15 +58,15 @@ double linear_light(double channel);
 /// The class of a fruit of which this share (0..1) of the surface is ripe.
 RipenessClass class_of(double ripe_share, const RipenessParameters& parameters = {});
 
-/// How ripe the surface with these colours is.
+/// The ripeness of a surface with these colours.
 ///
-/// Each point that has a hue is ripe to the degree to which that is surely below `ripe_hue` (a normal distribution of
-/// width `hue_error`). The error of the share has two parts: what has been seen may not be like the rest, as if the
-/// surface had 12 patches of which `seen` were drawn, and a common error of all hues by half of `hue_error`. The
-/// brightest and darkest points are left out of the mean color (`trim`).
-/// @param colors of points that are evenly spread over what was seen of the surface
+/// Each point with a hue counts as ripe with the probability that its true hue is below `ripe_hue` (a normal
+/// distribution with the standard deviation `hue_error`). The error of the share has two parts: the unseen surface may
+/// differ from the seen one, as if `seen` of 12 patches had been drawn at random, and all hues may be off together by
+/// half of `hue_error`. The brightest and darkest points are left out of the mean colour (`trim`).
+/// @param colors of points spread evenly over the part of the surface that was seen
 /// @param seen   share (0..1) of the surface that was seen
-/// @return empty for fewer than 8 colours, or if none has a hue
+/// @return empty if there are fewer than 8 colours, or none with a hue
 /// @throws FieldError
 std::optional<Ripeness> ripeness_of(const std::vector<Rgb>& colors, double seen,
                                     const RipenessParameters& parameters = {});

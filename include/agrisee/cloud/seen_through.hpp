@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// @file
-/// How the split asks for evidence of free space, without knowing what gives it (fuse/free_space.hpp does).
+/// The evidence of free space that segmentation uses. fuse/free_space.hpp and cloud/sight_lines.hpp compute it.
 #pragma once
 
 #include <functional>
@@ -9,15 +9,15 @@ namespace agrisee {
 
 struct Ellipsoid;
 
-/// What sight lines say of a place.
+/// The evidence of sight lines for a point in space.
 enum class Sight {
   unknown,  ///< none came near, or they ended before it
   surface,  ///< they end there
   through   ///< they go on behind it
 };
 
-/// The share (0 to 1) of a body's surface that sight lines have gone through: where the body, if it were there, would
-/// have stopped them. An empty function means that nothing is known.
+/// The share (0 to 1) of a body's surface that sight lines pass through, which the body would have stopped. An empty
+/// function means that nothing is known.
 using SeenThrough = std::function<double(const Ellipsoid&)>;
 
 }  // namespace agrisee

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// @file
-/// How much of a body sight lines went through, whatever gives the sight lines.
+/// The share of a body's surface that sight lines pass through, for any source of sight lines.
 #pragma once
 
 #include <agrisee/cloud/fit.hpp>
@@ -13,10 +13,10 @@
 namespace agrisee {
 
 /// Share (0..1) of a body's surface that more views looked through than saw.
-/// @param views what saw the body
-/// @param max_incidence only views that see a place of the surface at less than this angle to its normal count (rad)
-/// @param eye eye(view): where a view's sensor stood (m)
-/// @param look look(view, p): what a view says of the place p (m), a Sight
+/// @param views the views to compare
+/// @param max_incidence only views that see a point of the surface at less than this angle to its normal count (rad)
+/// @param eye eye(view): position of a view's sensor (m)
+/// @param look look(view, p): the Sight of a view at the point p (m)
 template <typename View, typename Eye, typename Look>
 double share_seen_through(const std::vector<View>& views, const Ellipsoid& body, double max_incidence, Eye&& eye,
                           Look&& look) {

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// @file
-/// Evidence of free space from the points of a cloud alone: a sight line from the sensor to a point passed through
-/// everything before it. Where a body would have stopped such lines, there is no body.
+/// Evidence of free space from the points of a cloud alone: the space between the sensor and each point is free. A body
+/// that would have stopped such sight lines cannot be there.
 ///
-/// The points that one sensor saw are laid on a grid of directions about it, each cell with the nearest point. Metres,
+/// The points of one sensor are sorted into a grid of directions about it; each cell keeps the nearest point. Metres,
 /// the frame of the cloud. Cost: linear in the points; a body is tested in constant time for each sensor.
 #pragma once
 
@@ -20,7 +20,7 @@
 
 namespace agrisee {
 
-/// What the sight lines from one sensor say.
+/// The sight lines of one sensor.
 class SightLines {
  public:
   /// @param cloud the points that the sensor saw (m)
@@ -59,10 +59,10 @@ class SightLines {
     }
   }
 
-  /// Where the sensor stood (m).
+  /// Position of the sensor (m).
   const Eigen::Vector3d& sensor() const { return sensor_; }
 
-  /// What is known of the place p (m).
+  /// The evidence for the point p (m).
   /// @param margin sight lines that end within this distance (m) of it end there
   Sight at(const Eigen::Vector3d& p, double margin) const {
     if (nearest_.empty()) return Sight::unknown;

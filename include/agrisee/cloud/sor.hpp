@@ -71,7 +71,7 @@ inline Indices within_deviation(const std::vector<double>& distances, const SorP
 
 }  // namespace detail
 
-/// The same distances without a ready-made search; several times as fast.
+/// The mean distances without a ready-made search; several times as fast.
 template <typename C>
 std::vector<double> mean_neighbor_distances(const C& cloud, int k, int threads = 1) {
   using S = scalar_t<C>;
@@ -102,7 +102,7 @@ Indices remove_statistical_outliers(const C& cloud, const SorParameters& paramet
   return detail::within_deviation(mean_neighbor_distances(cloud, parameters.mean_k, search, threads), parameters);
 }
 
-/// The same points without a ready-made search; several times as fast.
+/// remove_statistical_outliers without a ready-made search; several times as fast.
 /// @throws ParameterError for a bad parameter
 template <typename C>
 Indices remove_statistical_outliers(const C& cloud, const SorParameters& parameters = {}, int threads = 1) {

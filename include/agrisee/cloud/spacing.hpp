@@ -40,7 +40,7 @@ double estimate_spacing(const C& cloud, const Search& search, std::size_t sample
   return median(spacing);
 }
 
-/// The same with a search built for the call.
+/// estimate_spacing with a search built for the call.
 template <typename C>
 double estimate_spacing(const C& cloud) {
   using S = scalar_t<C>;

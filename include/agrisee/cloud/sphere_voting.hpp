@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// @file
-/// Finds where the centers of round bodies may lie: every point votes along its inward normal.
+/// Finds candidate centers of round bodies: every point votes along its inward normal.
 ///
 /// A point p with outward normal n lies on a sphere of radius r about p - r n. Every point votes for the centers of all
 /// radii in the expected range; the votes meet at the centers of spheres (a Hough transform, cf. Rabbani & van den
 /// Heuvel, 2005), even if little of each sphere is seen and spheres touch. Cost: linear in points times radii, and a
-/// sort of the votes; memory linear in the votes. Where a cloud has only grown, the votes of its new points tell which
-/// places to look at.
+/// sort of the votes; memory linear in the votes. If points were added to a cloud, their votes alone show which places
+/// to examine again.
 #pragma once
 
 #include <agrisee/core/cancellation.hpp>
@@ -183,9 +183,9 @@ inline std::vector<VotedCenter> thin_out(const std::vector<VoteSum>& sums, doubl
 /// @param radius_min smallest expected radius (m), positive
 /// @param radius_max largest expected radius (m), at least `radius_min`
 /// @param min_votes weaker maxima are left out
-/// @param fresh one a point, or empty: centers for which points with a nonzero value cast less than a tenth of
-///   `min_votes` are left out; this takes little time if few points are fresh
-/// @throws ParameterError; InputError if the cloud has no normals, or `fresh` has not one value a point; Cancelled
+/// @param fresh one per point, nonzero for new ones, or empty: centers for which new points cast less than a tenth of
+///   `min_votes` are left out, which is fast if few points are new
+/// @throws ParameterError; InputError if the cloud has no normals, or `fresh` has not one value per point; Cancelled
 template <typename S>
 std::vector<VotedCenter> vote_for_centers(const PointCloud<S>& cloud, double radius_min, double radius_max,
                                           double min_votes, const std::vector<char>& fresh = {}) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// @file
-/// From a cloud with normals to fruit (instance segmentation): region growing, DBSCAN on the residual and, unless only
+/// Instance segmentation of a cloud with normals into fruit: region growing, DBSCAN on the residual and, unless only
 /// these two stages of [1] (3.2.3, alg. 2) are wanted, bodies that compete for the points (bodies.hpp).
 ///
 /// With the two stages alone, each region or cluster becomes a label. With bodies, the regions, the clusters and the
@@ -21,7 +21,7 @@
 
 namespace agrisee {
 
-/// What the split found. `labels` count from 1 in the order of `found`.
+/// The segmentation of a cloud. `labels` count from 1 in the order of `found`.
 struct Split {
   Labels labels;                 ///< one per point: the fruit, 0 = none
   std::vector<FoundBody> found;  ///< one per fruit; without bodies only `found_by` is set
@@ -29,7 +29,7 @@ struct Split {
   std::size_t residual = 0;      ///< points that region growing left to DBSCAN
   int regions_found = 0;         ///< number of regions
   int clusters_found = 0;        ///< number of clusters that DBSCAN found in the residual
-  BodyCounts bodies;             ///< what became of the bodies that were proposed
+  BodyCounts bodies;             ///< numbers of proposed bodies by outcome
 };
 
 /// Parameters of the two stages for a certain cloud.
@@ -303,7 +303,7 @@ void split_by_bodies(const PointCloud<S>& cloud, const Segments& segments, const
 
 }  // namespace detail
 
-/// Split a cloud with normals (facing outwards) into fruit.
+/// Segment a cloud with outward normals into fruit.
 /// @param cloud points (m) with normals
 /// @param parameters see their struct
 /// @param seen_through evidence of free space for the competition, or empty
@@ -336,14 +336,14 @@ Split split(const PointCloud<S>& cloud, const SplitParameters& parameters = {}, 
   return out;
 }
 
-/// Find the bodies of a cloud that has grown, or changed a little, since the bodies `known` were found. These and the
-/// bodies for which the other points vote compete anew. Far quicker than `split`, and as good while the cloud grows
-/// view by view. Bodies keep their `found_by`. Points are labelled by the body on which they lie; no regions are grown.
+/// Update the bodies of a cloud that has grown, or changed a little, since the bodies `known` were found. These compete
+/// again with bodies for which the other points vote. Much faster than `split`, and as good while the cloud grows view
+/// by view. Bodies keep their `found_by`. Points are labelled by the body on which they lie; no regions are grown.
 /// @param cloud points (m) with normals
 /// @param known bodies found before
 /// @param parameters see their struct
 /// @param seen_through evidence of free space for the competition, or empty
-/// @param fresh one a point, nonzero for those that are new; empty: all
+/// @param fresh one per point, nonzero for new ones; empty: all are new
 /// @param masks evidence of a detector, or empty
 /// @throws ParameterError; InputError if the cloud has no normals; Cancelled
 template <typename S>

@@ -1,24 +1,24 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// @file
-/// How many round bodies were proposed in a cloud, and why some of them are no fruit.
+/// How many of the bodies proposed in a cloud were taken as fruit, and why the others were rejected.
 #pragma once
 
 #include <cstddef>
 
 namespace agrisee {
 
-/// What became of the proposals of bodies: each different one is counted once, by the first test that it fails. A body
+/// Numbers of proposed bodies by outcome. Each distinct body is counted once, by the first test that it fails; a body
 /// whose points went to a better one is not counted.
 struct BodyCounts {
   std::size_t taken = 0;         ///< reported as fruit
   std::size_t too_small = 0;     ///< below the expected radii
-  std::size_t too_large = 0;     ///< above the expected radii; flat parts, too
+  std::size_t too_large = 0;     ///< above the expected radii; this includes flat parts
   std::size_t inside_out = 0;    ///< the normals of its points face inwards
   std::size_t little_seen = 0;   ///< points cover too little of its surface (`split.bodies.min_coverage`)
-  std::size_t contradicted = 0;  ///< there are points inside it, or sight lines went through it
+  std::size_t contradicted = 0;  ///< points lie inside it, or sight lines pass through it
   std::size_t too_flat = 0;      ///< its points are flat or ridge-like: leaves and stems (`split.bodies.min_roundness`)
-  std::size_t doubtful = 0;      ///< too little speaks for a fruit (`split.bodies.min_confidence`)
-  std::size_t overlapping = 0;   ///< it goes too deep into a better body (`split.bodies.max_overlap`)
+  std::size_t doubtful = 0;      ///< probability of a fruit too low (`split.bodies.min_confidence`)
+  std::size_t overlapping = 0;   ///< it penetrates a better body too deeply (`split.bodies.max_overlap`)
   std::size_t not_fitted = 0;    ///< no ellipsoid fits its points
 
   /// Number of bodies that were not taken.

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// @file
-/// A colour as cameras and screens have it.
+/// The 8-bit sRGB colour of a pixel or a point.
 #pragma once
 
 #include <array>

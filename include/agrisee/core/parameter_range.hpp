@@ -70,7 +70,7 @@ class Range {
   /// From one limit to the other, both included.
   static constexpr Range between(Limit low, Limit high) { return at_least(low).up_to(high); }
 
-  /// The same, but nothing below this limit. A stricter lower limit stays.
+  /// This range without the numbers below a limit. A stricter lower limit stays.
   constexpr Range from(Limit low) const {
     Range range = *this;
     if (low.value > low_.value) {
@@ -79,22 +79,22 @@ class Range {
     }
     return range;
   }
-  /// The same, but at most this limit.
+  /// This range with the largest number `high`.
   constexpr Range up_to(Limit high) const {
     Range range = *this;
     range.high_ = high;
     return range;
   }
-  /// The same, but less than this limit.
+  /// This range, up to but not including `high`.
   constexpr Range below(Limit high) const {
     Range range = up_to(high);
     range.high_open_ = true;
     return range;
   }
 
-  /// The same for a length in metres: a number that would be in the range as millimetres is said to be so.
+  /// This range for a length in metres: messages point out a number that would be valid in millimetres.
   constexpr Range in_metres() const { return with_unit("lengths are in metres; ", "mm", 1e-3); }
-  /// The same for an angle in radians: a number that would be in the range as degrees is said to be so.
+  /// This range for an angle in radians: messages point out a number that would be valid in degrees.
   constexpr Range in_radians() const { return with_unit("angles are in radians; ", "degrees", 0.017453292519943295); }
 
   /// Whether a number is in the range. NaN and infinity never are.

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// @file
-/// How ripe a fruit is (cloud/ripeness.hpp finds it out). The functions are defined in `agrisee::agrisee`.
+/// The ripeness of a fruit, as ripeness_of (cloud/ripeness.hpp) estimates it. The functions are
+/// defined in `agrisee::agrisee`.
 #pragma once
 
 #include <agrisee/core/types.hpp>
@@ -30,16 +31,16 @@ const char* to_string(RipenessClass ripeness);
 /// The class of that name; empty for any other text.
 std::optional<RipenessClass> ripeness_named(std::string_view name);
 
-/// How ripe a fruit is.
+/// The ripeness of a fruit or a truss.
 struct Ripeness {
-  Eigen::Vector3d lab = Eigen::Vector3d::Zero();  ///< mean colour of the points that are used: L*, a*, b*
+  Eigen::Vector3d lab = Eigen::Vector3d::Zero();  ///< mean colour of the points used: L*, a*, b*
   double hue = 0.0;                            ///< its hue angle (rad) from red (a*) towards yellow (b*), -pi/2..3 pi/2
   double hue_error = 0.0;                      ///< its standard error (rad)
   double ripe_share = 0.0;                     ///< share (0..1) of the surface that is ripe
   double ripe_share_error = 0.0;               ///< its standard error
   RipenessClass grade = RipenessClass::green;  ///< the class of that share
-  double probability = 0.0;                    ///< that this is the class, by the error of the share
-  std::size_t points = 0;                      ///< number of coloured points that are used
+  double probability = 0.0;                    ///< of the class, given the error of the share
+  std::size_t points = 0;                      ///< number of coloured points used
 };
 
 }  // namespace agrisee

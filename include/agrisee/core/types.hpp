@@ -42,7 +42,7 @@ decltype(auto) at(V& v, Index i) {
   return v[static_cast<std::size_t>(i)];
 }
 
-/// d of [1]: distance (m) from the sensor to what it looks at, where nothing else is asked for.
+/// d of [1]: the default distance (m) from the sensor to its target.
 constexpr double kViewDistance = 0.38;
 
 }  // namespace agrisee

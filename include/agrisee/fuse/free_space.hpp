@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// @file
-/// What the sight lines of past views say about space: a place that the camera looked through holds no surface.
+/// Free space from the sight lines of past views: a point that the camera looked through is not on a surface.
 ///
-/// Each cell of a view's image keeps the measured depth. A sight line that ends well behind a place went through it. In
-/// a view in which nearly every pixel on a surface returns, a sight line without return went through, too. Metres,
-/// world. Cost: one projection a view.
+/// Each cell of a view's image keeps the measured depth. A sight line passes through a point if it ends well behind it.
+/// In a view in which nearly every pixel on a surface returns, a sight line without return counts as passing through
+/// as well. Metres, world. Cost: one projection per view.
 #pragma once
 
 #include <agrisee/cloud/seen_through.hpp>
@@ -17,7 +17,7 @@
 
 namespace agrisee::fuse {
 
-/// What `view` says of the point p (m, world): unknown outside the image, too.
+/// Whether `view` sees a surface at the point p (m, world), looks through it, or neither; unknown outside the image.
 inline Sight sight(const sensor::SurfaceImage& view, const Eigen::Vector3d& p, const FreeSpaceParameters& parameters) {
   double z = 0.0;
   const std::ptrdiff_t c = view.cell(p, &z);
@@ -29,10 +29,10 @@ inline Sight sight(const sensor::SurfaceImage& view, const Eigen::Vector3d& p, c
   return measured > z - margin ? Sight::surface : Sight::unknown;
 }
 
-/// True when all sight lines of `view` around a point of a surface went through it: the 3 x 3 cells about the point. At
-/// a surface's border, where a cell sees both sides, nothing is refuted. A surface that is seen at a slant returns
-/// little light, so a sight line without return counts only where the view would see the surface at less than
-/// `max_incidence`. Defined in `agrisee::agrisee`.
+/// True if all sight lines of `view` around a surface point pass through the surface: those of the 3 x 3 cells about
+/// it. At a surface's border, where cells see both sides, nothing is refuted. Slanted surface returns little light, so
+/// a sight line without return counts only if the view would see the surface at less than `max_incidence`. Defined in
+/// `agrisee::agrisee`.
 /// @param p the point (m, world)
 /// @param normal of the surface there (unit, world)
 bool refutes(const sensor::SurfaceImage& view, const Eigen::Vector3d& p, const Eigen::Vector3d& normal,
@@ -49,23 +49,23 @@ struct Returned {
     lost += other.lost;
     return *this;
   }
-  /// Share (0..1) of the points that are measured again; 1 as long as there are too few points to tell.
+  /// Share (0..1) of the points that are measured again; 1 if there are too few points to tell.
   double share() const {
     constexpr std::size_t kEnough = 50;
     return seen + lost < kEnough ? 1.0 : static_cast<double>(seen) / static_cast<double>(seen + lost);
   }
 };
 
-/// How many of some surface points of another view this one measures again. Points that it sees at more than
-/// `max_incidence` do not count, nor do those that something hides or that it looks through to something else. In
-/// sunlight whole patches of a view return nothing; this share tells such a view, where a missing return says nothing
-/// (SurfaceImage::fill), from one that looks past things. Defined in `agrisee::agrisee`.
+/// How many surface points of another view this one measures again. Points that it sees at more than `max_incidence`,
+/// occluded points, and points that it looks through do not count. In sunlight whole patches of a view return nothing.
+/// This share identifies such views, in which a missing return is no evidence (SurfaceImage::fill). Defined in
+/// `agrisee::agrisee`.
 /// @param known holds points with normals
 Returned returned(const sensor::SurfaceImage& view, const sensor::SurfaceImage& known,
                   const FreeSpaceParameters& parameters);
 
-/// Share (0..1) of a body's surface that more views looked through than saw. Only views count that see a place of the
-/// surface at less than `max_incidence`. Defined in `agrisee::agrisee`.
+/// Share (0..1) of a body's surface that more views looked through than saw. For each point of it only views count that
+/// see it at less than `max_incidence`. Defined in `agrisee::agrisee`.
 double seen_through(const std::vector<sensor::SurfaceImage>& views, const Ellipsoid& body,
                     const FreeSpaceParameters& parameters = {});
 

@@ -3,8 +3,8 @@
 /// Fuses the surfaces of a scan's views into one, and discards views that contradict the rest.
 ///
 /// A view whose frame does not belong to its pose puts surface where other views looked through, and looks through
-/// surface that other views saw (fuse/contradiction.hpp). Of views that contradict one another, the larger group that
-/// agrees is kept; so a wrong first view is found out, too. World frame, metres. Defined in `agrisee::agrisee`.
+/// surface that other views saw (fuse/contradiction.hpp). Of views that contradict one another, the larger consistent
+/// group is kept, so that even a wrong first view is detected. World frame, metres. Defined in `agrisee::agrisee`.
 #pragma once
 
 #include <agrisee/fuse/contradiction.hpp>
@@ -20,7 +20,7 @@ namespace agrisee::fuse {
 /// The fused surface of a scan, and what each of its views saw.
 class FusedViews : public Views {
  public:
-  /// @param scan_volume what lies outside is left out (world)
+  /// @param scan_volume points outside are ignored (world)
   /// @param parameters of surface, surfels, registration and free space
   /// @param threads number of threads; the result does not depend on it
   /// @throws ParameterError for those of surfels; for the others when they are first used

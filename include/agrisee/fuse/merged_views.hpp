@@ -11,10 +11,10 @@
 
 namespace agrisee::fuse {
 
-/// The raw points of a scan at a minimum separation: the first point of a place stays, nothing is averaged.
+/// The raw points of a scan at a minimum separation: the first point at a place is kept, nothing is averaged.
 class MergedViews : public Views {
  public:
-  /// @param scan_volume what lies outside is left out (world)
+  /// @param scan_volume points outside are ignored (world)
   /// @param separation least distance between points of the map (m), > 0
   /// @param filter outlier removal after every view; empty for none
   /// @param threads number of threads; the result does not depend on it

@@ -28,16 +28,16 @@ struct SurfelParameters {
   }
 };
 
-/// Parameters of the tests for free space: what a sight line went through is not there.
+/// Parameters of free space: nothing is where a sight line passed through.
 struct FreeSpaceParameters {
-  double margin = 0.006;   ///< a sight line went through a place if it ended at least this far behind it (m), and at
+  double margin = 0.006;   ///< a sight line passes through a point if it ends at least this far behind it (m), and at
                            ///< least three standard deviations of the cells' depths (SurfaceImage::noise)
   double min_fill = 0.85;  ///< cells without return count as evidence if surfaces return at least this share of pixels
   double max_incidence = deg(50);  ///< bodies are tested where their surface is seen at less than this angle (rad)
   int min_refuting = 2;            ///< a surfel is removed if this many views looked through it and at most half saw it
-  double max_contradiction = 0.45;  ///< a view is rejected if it contradicts more than this share of what others saw
-  double leaf_depth = 0.03;  ///< but views whose depths differ by less do not contradict (m): leaves read too deep, and
-                             ///< by how much depends on what stands behind them
+  double max_contradiction = 0.45;  ///< a view is discarded if it contradicts more than this share of what others saw
+  double leaf_depth = 0.03;  ///< smaller differences of depth between views (m) are no contradiction: leaves read too
+                             ///< deep, by an amount that depends on what is behind them
 
   /// @throws FieldError for the first field that is out of its range
   void check() const { check_fields(*this); }
@@ -54,13 +54,13 @@ struct FreeSpaceParameters {
   }
 };
 
-/// Parameters of what the masks of a detector say (fuse/masks.hpp).
+/// Parameters of the evidence from a detector's masks (fuse/masks.hpp).
 struct MaskParameters {
-  double max_score = 0.95;  ///< no score counts for more than this, none for less than 1 less this
-  double trust = 0.5;       ///< the log-odds of a score count by this factor: detectors are surer than they should be
-  double recall = 0.5;      ///< share of the fruit for which the detector has a mask, at least: surface without a mask
-                            ///< is fruit with 1 less this times the odds
-  double max_log_odds = 4;  ///< all masks together change the log-odds of a body by no more than this
+  double max_score = 0.95;  ///< scores are limited to this, and to 1 minus this from below
+  double trust = 0.5;       ///< factor on the log-odds of a score, because detectors are overconfident
+  double recall = 0.5;  ///< least share of the fruit for which the detector has a mask; a body without a mask has its
+                        ///< odds multiplied by 1 minus this
+  double max_log_odds = 4;  ///< largest change of a body's log-odds by all masks together
   double edge = 1.5;        ///< standard deviation of a mask's outline (pixels)
   bool alike = true;        ///< expect fruit whose outline is hidden to be as large as the others in sight
 
@@ -79,15 +79,14 @@ struct MaskParameters {
   }
 };
 
-/// Parameters of the color prior: what a simple rule on colors says where no detector has looked
-/// (fuse/color_prior.hpp).
+/// Parameters of the color prior, which replaces a detector by a simple rule on colors (fuse/color_prior.hpp).
 struct ColorPriorParameters {
-  bool enabled = false;      ///< whether colors speak for fruit and against all else
-  double hue_from = -1.1;    ///< a pixel has the color of fruit from this hue angle on (rad, CIELAB; red is at 0.6) ...
-  double hue_to = 1.1;       ///< ... to this one (rad)
-  double min_chroma = 15.0;  ///< and from this chroma on (CIELAB)
-  double score = 0.8;        ///< of a patch of such pixels, as of a detector's mask
-  double least_disc = 0.25;  ///< smaller patches than this share of the smallest expected fruit's disc are left out
+  bool enabled = false;      ///< treat patches of fruit color as masks
+  double hue_from = -1.1;    ///< smallest hue angle of fruit (rad, CIELAB; red is at 0.6)
+  double hue_to = 1.1;       ///< largest hue angle of fruit (rad)
+  double min_chroma = 15.0;  ///< smallest chroma of fruit (CIELAB)
+  double score = 0.8;        ///< score of a patch, like that of a detector's mask
+  double least_disc = 0.25;  ///< smallest patch, as a share of the disc of the smallest expected fruit
 
   /// @throws FieldError for the first field that is out of its range
   void check() const { check_fields(*this); }
@@ -109,8 +108,8 @@ struct FusionParameters {
   sensor::SurfaceParameters surface;              ///< how a surface is reconstructed from each frame
   SurfelParameters surfels;                       ///< how the surfaces are fused
   IcpParameters icp = IcpParameters::of_views();  ///< how each view is registered
-  FreeSpaceParameters free_space;                 ///< when a sight line counts as evidence that something is not there
-  bool register_views = true;  ///< register each view to what is fused so far (ICP) before it is fused
+  FreeSpaceParameters free_space;                 ///< when a sight line is evidence of free space
+  bool register_views = true;                     ///< register each view to the map (ICP) before it is fused
 };
 
 }  // namespace agrisee::fuse

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// @file
-/// Merges views by minimum separation: a new point is kept if no kept point is nearer than epsilon; the first wins,
-/// nothing is averaged (SEE++). Metres. Cost: a few cells a point.
+/// Merges views by minimum separation (SEE++): a new point is kept if no kept point is nearer than epsilon; nothing is
+/// averaged. Metres. Cost: a few cells per point.
 #pragma once
 
 #include <agrisee/neighbors/hash_grid.hpp>
@@ -18,7 +18,7 @@ class SeparatedCloud {
   /// The points kept so far, with their views.
   const Cloud& cloud() const { return cloud_; }
 
-  /// Offer a point of view `view`; true when it was kept. Points that are not finite are not.
+  /// Offer a point of view `view`; true if it is kept. Points that are not finite are never kept.
   bool add(const Eigen::Vector3f& p, int view) {
     if (!is_finite(p) || grid_.nearer(p, separation_)) return false;
     grid_.insert(p);

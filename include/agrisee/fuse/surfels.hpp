@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// @file
-/// Fuses the surfaces of many views into one: surfels at a minimum separation, each the weighted average of everything
-/// that was measured at its place (point-based fusion, cf. Keller et al., 3DV 2013).
+/// Fuses the surfaces of many views into one: surfels at a minimum separation, each the weighted average of all
+/// measurements at its place (point-based fusion, cf. Keller et al., 3DV 2013).
 ///
 /// A sample within the separation of a surfel whose normal agrees moves that surfel along its normal, weighted by
-/// inverse variance. Any other sample founds a new surfel. So the density stays even, however often a place is seen,
-/// and independent noise averages out. Metres, world. Cost: a few cells a sample; about 80 bytes of memory a surfel.
-/// Defined in `agrisee::agrisee`.
+/// inverse variance. Any other sample creates a new surfel. The density therefore stays even, however often a place is
+/// seen, and independent noise averages out. Metres, world. Cost: a few cells per sample; about 80 bytes of memory per
+/// surfel. Defined in `agrisee::agrisee`.
 #pragma once
 
 #include <agrisee/core/cloud.hpp>
@@ -23,12 +23,12 @@ struct Surfel {
   Eigen::Vector3f position;  ///< m, world
   Eigen::Vector3f normal;    ///< unit, towards the sensors that saw it
   float weight = 0.0f;       ///< sum of 1 / sigma^2 of its samples (1/m2)
-  int view = -1;             ///< the view that founded it
+  int view = -1;             ///< the view that created it
   int samples = 0;           ///< number of samples
   int seen_by = 0;           ///< number of views with a sample
   int last_view = -1;        ///< the last view with a sample
 
-  /// Standard deviation of the position along the normal (m), if all samples err independently.
+  /// Standard deviation of the position along the normal (m), if the errors of all samples are independent.
   float sigma() const { return 1.0f / std::sqrt(weight); }
 };
 
@@ -38,20 +38,20 @@ class SurfelMap {
   /// @throws ParameterError
   explicit SurfelMap(const SurfelParameters& parameters = {});
 
-  /// All surfels, in the order in which they were founded.
+  /// All surfels, in the order in which they were created.
   const std::vector<Surfel>& surfels() const { return surfels_; }
   /// Number of surfels.
   std::size_t size() const { return surfels_.size(); }
 
-  /// Take in a sample; one that is not finite is ignored.
+  /// Add a sample; one that is not finite is ignored.
   /// @param p position (m, world)
   /// @param n unit normal
   /// @param sigma standard deviation along the normal (m), > 0
-  /// @param view the view that the sample is of
-  /// @return true when the sample founded a new surfel
+  /// @param view the view of the sample
+  /// @return true if the sample created a new surfel
   bool add(const Eigen::Vector3f& p, const Eigen::Vector3f& n, float sigma, int view);
 
-  /// The surfels as a cloud: points, normals and founding views.
+  /// The surfels as a cloud: points, normals and the views that created them.
   Cloud cloud() const;
 
  private:
@@ -61,8 +61,8 @@ class SurfelMap {
   SurfelParameters parameters_;
   double inverse_cell_ = 1.0;
   std::vector<Surfel> surfels_;
-  CellTable table_;          // the last surfel founded in each cell
-  std::vector<Index> next_;  // the one founded there before, or -1
+  CellTable table_;          // the last surfel created in each cell
+  std::vector<Index> next_;  // the one created there before, or -1
 };
 
 }  // namespace agrisee::fuse

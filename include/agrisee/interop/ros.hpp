@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// @file
-/// ROS messages in place: `sensor_msgs/PointCloud2` as a cloud, `sensor_msgs/Image` with `CameraInfo` as a depth frame.
+/// Reads ROS messages in place: `sensor_msgs/PointCloud2` as a cloud, `sensor_msgs/Image` with `CameraInfo` as a depth
+/// frame.
 ///
-/// The message types are template parameters, so those of ROS 1 and of ROS 2 fit alike and nothing of ROS is included.
-/// A message is checked before it is read: whatever its sizes claim, nothing outside of its data is touched.
+/// The message types are template parameters, so both ROS 1 and ROS 2 are supported and no ROS header is included. A
+/// message is checked before it is read: even if its sizes are wrong, nothing outside its data is accessed.
 #pragma once
 
 #include <agrisee/core/cloud.hpp>
@@ -52,12 +53,12 @@ struct InRos1<Info, std::void_t<decltype(std::declval<const Info&>().K)>> : std:
 
 }  // namespace detail
 
-/// The points of a `sensor_msgs/PointCloud2` where they lie: a cloud (see core/traits.hpp) of scalar S whose fields x,
-/// y and z are all float32 or all float64, at any offsets, strides and byte order. Other fields are passed over. Points
-/// that are not finite (a sensor's pixels without return) stay where they are, as in every cloud of the library:
-/// indices are those of the message, row by row, and each stage leaves such points out.
+/// A view of the points of a `sensor_msgs/PointCloud2` as a cloud (see core/traits.hpp) of scalar S. Its fields x, y
+/// and z must all be float32 or all float64, at any offsets, strides and byte order; other fields are ignored. Points
+/// that are not finite (pixels without return) keep their places: indices are those of the message, row by row, and
+/// each stage skips such points.
 ///
-/// Holds a reference: the message has to live, unchanged, as long as the view.
+/// The view holds a reference: the message must outlive it unchanged.
 template <typename Message, typename S = float>
 class PointCloud2View {
  public:
@@ -102,9 +103,9 @@ class PointCloud2View {
   }
   explicit PointCloud2View(const Message&&) = delete;
 
-  /// Number of points, those that are not finite included.
+  /// Number of points, including those that are not finite.
   std::size_t size() const { return size_; }
-  /// Point i < size() (m, in the frame that the message's header names).
+  /// Point i < size() (m, in the frame of the message's header).
   Vector3<S> point(std::size_t i) const {
     const std::size_t start = gapless_ ? i * point_step_ : (i / width_) * row_step_ + (i % width_) * point_step_;
     return {read(start + offsets_[0]), read(start + offsets_[1]), read(start + offsets_[2])};
@@ -155,8 +156,8 @@ sensor::Intrinsics intrinsics_of(const Info& info, bool rectified = false) {
   return k;
 }
 
-/// The distortion of a `sensor_msgs/CameraInfo` by `plumb_bob` or `rational_polynomial`; none where all coefficients
-/// are 0. @throws InputError for another model, as of a fisheye lens
+/// The distortion of a `sensor_msgs/CameraInfo` with the model `plumb_bob` or `rational_polynomial`; none if all
+/// coefficients are 0. @throws InputError for other models, such as those of fisheye lenses
 template <typename Info>
 sensor::Distortion distortion_of(const Info& info) {
   const auto take = [&](const auto& coefficients) {
@@ -174,7 +175,7 @@ sensor::Distortion distortion_of(const Info& info) {
 }
 
 /// A depth image, `16UC1` (mm; 0 and 65535 = no return) or `32FC1` (m; 0, NaN and infinities = no return), as a frame
-/// in metres. The distortion that its CameraInfo states is taken out.
+/// in metres. The distortion stated in its CameraInfo is removed.
 /// @param image sensor_msgs/Image  @param info the CameraInfo that came with it
 /// @param rectified whether the image was rectified before, see intrinsics_of
 /// @throws InputError for another encoding, data shorter than the rows, a size that differs from the camera's, or an
@@ -216,10 +217,10 @@ sensor::DepthFrame depth_frame(const Image& image, const Info& info, bool rectif
 
 namespace agrisee {
 
-/// Clouds in messages.
+/// Traits of clouds in messages.
 template <typename Message, typename S>
 struct CloudTraits<interop::PointCloud2View<Message, S>> {
-  /// Of coordinates.
+  /// Type of a coordinate.
   using Scalar = S;
   /// Number of points.
   static std::size_t size(const interop::PointCloud2View<Message, S>& c) { return c.size(); }

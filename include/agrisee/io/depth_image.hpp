@@ -19,7 +19,7 @@ struct DepthImage {
   bool whole_numbers = false;  ///< the file holds integers: a PNG, or an NPY of an integer type
 };
 
-/// Metres per unit of an image, where nobody states it: 0.001 for whole numbers, 1 for floats.
+/// Metres per unit of an image if it is not stated: 0.001 for whole numbers, 1 for floats.
 inline double default_depth_scale(const DepthImage& image) { return image.whole_numbers ? 0.001 : 1.0; }
 
 /// Read a depth image. The first bytes say whether it is PNG (one channel of 16 bits) or NPY (two dimensions, rows by

@@ -10,10 +10,9 @@
 namespace agrisee::io {
 
 /// A small picture of a depth image: a PNG file of 8-bit gray levels. Level 0 is no return. Levels 1 to 255 are linear
-/// in 1/z, from `farthest` to `nearest`, so that near surfaces are resolved finely however far the background is:
-/// between 0.3 m and 3 m, a step is 3 mm at 0.5 m. The nearest and the farthest half
-/// percent of the pixels do not count, so that a few wrong returns do not widen the range; they have the levels of its
-/// ends.
+/// in 1/z, from `farthest` to `nearest`, so that near surfaces are resolved finely even if the background is far:
+/// between 0.3 m and 3 m, a step is 3 mm at 0.5 m. The nearest and the farthest half percent of the pixels get the
+/// levels of the range's ends, so that a few wrong returns do not widen it.
 struct DepthPicture {
   int width = 0;          ///< pixels per row
   int height = 0;         ///< rows

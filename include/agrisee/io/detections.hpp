@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// @file
-/// Reads what a detector found in an image, and adds it and the colours to a depth frame (docs/colour.md).
+/// Reads detections, and adds them and colours to a depth frame (docs/colour.md).
 #pragma once
 
 #include <agrisee/sensor/depth_frame.hpp>
@@ -10,15 +10,15 @@
 
 namespace agrisee::io {
 
-/// Files that belong to a depth image; an empty path: there is none.
+/// The files that belong to a depth image; an empty path means none.
 struct ChannelFiles {
   std::filesystem::path color;  ///< colour image
-  std::filesystem::path masks;  ///< label image; classes and scores from a file beside it, of the same name but .json
-                                ///< or .csv, where there is one
+  std::filesystem::path masks;  ///< label image; classes and scores come from a file of the same name with .json or
+                                ///< .csv beside it, if there is one
   std::filesystem::path boxes;  ///< boxes with classes and scores, JSON or CSV
 };
 
-/// Read detections from a table (CSV with a line of names) or a list of objects (JSON).
+/// Read detections from a table (CSV with a header line) or a list of objects (JSON).
 ///
 /// Columns or keys: `instance` (or `label`, `id`; in a table of boxes it may be missing: rows are counted from 1),
 /// `class` (default: a fruit without a name), `score` (or `confidence`; default 1), and a box as `u v width height` in
@@ -26,11 +26,11 @@ struct ChannelFiles {
 /// The classes leaf, stem, branch, other and background are no fruit, all others are.
 /// @param first the instance of the first detection if the file names none; those of the others follow
 /// @throws FileError, which names the line or key, for a file that cannot be read, an instance outside 1..65535 or
-/// listed twice, a score outside 0..1, or a box that is empty
+/// listed twice, a score outside 0..1, or an empty box
 std::vector<sensor::Detection> read_detections(const std::filesystem::path& path, std::size_t first = 1);
 
-/// Add the channels of some files to a depth frame. Boxes whose instance has no mask count beside the masks; a box and
-/// a mask of one instance are the same detection. Boxes that name no instance belong to none of the masks.
+/// Add the channels of some files to a depth frame. A box is used if its instance has no mask; otherwise both are the
+/// same detection. Boxes that name no instance belong to none of the masks.
 /// @throws FileError as the readers, and for an image of another size than the depth image
 void add_channels(sensor::DepthFrame& frame, const ChannelFiles& files);
 

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// @file
-/// Views that a real camera took: `views.yaml`, which names the camera's intrinsics, and of each view the file of its
-/// depth image, the pose that it was taken from and, optionally, colours and what a detector found (docs/formats.md
-/// describes it). World frame, metres.
+/// Views of a real camera in `views.yaml`: the camera's intrinsics and, for each view, the file of its depth image, its
+/// pose and, optionally, colours and detections (see docs/formats.md). World frame, metres.
 #pragma once
 
 #include <agrisee/io/detections.hpp>
@@ -22,7 +21,7 @@ struct RecordedView {
   std::filesystem::path depth;              ///< file of the depth image; a relative path: from the folder of views.yaml
   Pose world_T_optical = Pose::Identity();  ///< pose of the camera's optical frame (z forward, x right, y down)
   std::string place;                        ///< "<file>:<line>: views[<i>].depth", for messages
-  ChannelFiles channels = {};               ///< colours and masks; relative paths as that of `depth`
+  ChannelFiles channels = {};               ///< colours and masks; relative paths as for `depth`
 };
 
 /// The contents of views.yaml.
@@ -30,17 +29,17 @@ struct RecordedViews {
   std::filesystem::path folder;       ///< that of views.yaml
   Workcell workcell;                  ///< name, camera and base; an empty scan volume if the file states none
   std::optional<double> depth_scale;  ///< metres per unit of the depth images; none: default_depth_scale
-  sensor::Distortion distortion;      ///< of the images; read_frame takes it out
+  sensor::Distortion distortion;      ///< of the images; read_frame removes it
   std::vector<RecordedView> views;    ///< in the order in which they were taken
-  std::vector<std::string> warnings;  ///< of each rotation that was rounded and has been put right
+  std::vector<std::string> warnings;  ///< one for each rounded rotation that was made orthonormal
 };
 
-/// Read views.yaml. Images are not read yet, but have to exist.
+/// Read views.yaml. Images are not read yet, but must exist.
 /// @throws FileError "<path>:<line>: <key>: ..." for a missing or unknown key, a value out of range, a pose that is not
 ///   rigid to 1e-3, or an image that does not exist
 RecordedViews read_recorded_views(const std::filesystem::path& path);
 
-/// Read the depth image of one view with its other channels, rectified. Depths outside of the camera's range have no
+/// Read the depth image of one view with its other channels, rectified. Depths outside the camera's range become no
 /// return.
 /// @param recorded as read_recorded_views returns it
 /// @param view     number of the view, from 0
@@ -48,7 +47,7 @@ RecordedViews read_recorded_views(const std::filesystem::path& path);
 ///   whose depths have a median below 0.02 m or above 50 m, since their scale must be wrong
 sensor::DepthFrame read_frame(const RecordedViews& recorded, std::size_t view);
 
-/// The smallest box (m, world) that holds every point of a frame, as a scan volume where none is known.
+/// The smallest box (m, world) that contains all points of a frame, for use as a scan volume if none is known.
 Aabb extent_of(const sensor::DepthFrame& frame, const Pose& world_T_optical);
 
 /// Write views.yaml, atomically; the paths of the depth images are written as they are.

@@ -18,14 +18,14 @@ struct RunInfo {
   std::string scene;               ///< name of the scene, or file of a ready cloud
   std::string version;             ///< version of AgriSEE
   std::string time;                ///< when the result was made, see utc_now; empty: not written
-  std::string frame_id = "world";  ///< name of the frame in which the result is
+  std::string frame_id = "world";  ///< name of the frame of the result
   std::uint64_t seed = 0;          ///< seed of all random numbers
   int threads = 1;                 ///< number of threads; the result does not depend on it
   std::string noise = "none";      ///< noise model of the simulated sensor
   std::string preset = "default";  ///< see Parameters::preset
   std::string planner;             ///< see Parameters::planner
   std::string parameters_json;     ///< all parameters as a JSON object; empty means {}
-  std::string detector;            ///< the simulated detector; empty: there was none
+  std::string detector;            ///< the simulated detector; empty: none
 };
 
 /// The time now, in UTC, as ISO 8601 writes it: "2026-03-21T13:07:55Z". Where the environment variable
@@ -52,12 +52,10 @@ void write_views(const std::filesystem::path& path, const std::vector<View>& vie
 /// Write fruits.json: a list with an object per fruit (docs/formats.md).
 ///
 /// - Always: `id`, `points`, `found_by`, `position_world` and `position_cluster` (see Fruit::position),
-/// `centroid_world`,
-///   `centroid_cluster`, `sigma_world`, `orientation_world`.
+///   `centroid_world`, `centroid_cluster`, `sigma_world`, `orientation_world`.
 /// - With a fitted body: `center_world` (m), `radii` (m), `body_orientation_world`, `center_covariance_world` (m2,
-/// three
-///   rows), `rms` (m), `completeness`, `confidence`, `volume` and `volume_error` (m3), `mass` and `mass_error` (kg);
-///   the errors are standard errors.
+///   three rows), `rms` (m), `completeness`, `confidence`, `volume` and `volume_error` (m3), `mass` and `mass_error`
+///   (kg); the errors are standard errors.
 /// - With a picking plan: `picking_order` (from 1), `picking_after` (ids of the fruit that are in the way and must be
 ///   picked first), `reachable` and `picking_reason` (see PickingReason); unless the reason is `no_body`, also
 ///   `approach_direction_world` (unit vector from the pre-grasp position to the centre of the fruit),
@@ -66,20 +64,19 @@ void write_views(const std::filesystem::path& path, const std::vector<View>& vie
 /// @throws InputError for a fruit that is not finite  @throws FileError when it cannot be written
 void write_fruits(const std::filesystem::path& path, const std::vector<Fruit>& fruits);
 
-/// What write_fruits writes. @throws InputError for a fruit that is not finite
+/// The text that write_fruits writes. @throws InputError for a fruit that is not finite
 std::string fruits_to_json(const std::vector<Fruit>& fruits);
 
-/// Write fruits.csv: the values of fruits.json as a table with a row per fruit. Where there is no body or no picking
-/// plan, its cells are empty. Only the upper triangle of the covariance is written; the ids in `picking_after` are
-/// separated by spaces.
+/// Write fruits.csv: the values of fruits.json as a table with a row per fruit. Missing values, such as those of a body
+/// or picking plan that does not exist, are empty. Only the upper triangle of the covariance is written; the ids in
+/// `picking_after` are separated by spaces.
 /// @throws FileError when it cannot be written
 void write_fruits_csv(const std::filesystem::path& path, const std::vector<Fruit>& fruits);
 
 /// Write run.json: how the scan was made, why it stopped, and how many views and points it has (docs/formats.md).
 /// `views_discarded` counts the views that were discarded because their pose was wrong. `completeness` holds the
 /// planner's estimates of the shares of the fruit's surface that have been seen (`seen`) and that the arm can observe
-/// at all
-/// (`observable`). `cluster_origin_world` is the origin of the cluster frame {R}.
+/// at all (`observable`). `cluster_origin_world` is the origin of the cluster frame {R}.
 /// @throws InputError when `parameters_json` is not JSON  @throws FileError when it cannot be written
 void write_run(const std::filesystem::path& path, const ScanResult& result, const RunInfo& info);
 
@@ -90,9 +87,9 @@ void write_run(const std::filesystem::path& path, const ScanResult& result, cons
 void write_result(const std::filesystem::path& folder, const ScanResult& result, const RunInfo& info);
 
 /// Read views.csv. Columns may be in any order; unknown columns are skipped. Only `view`, `x`, `y` and `z` are
-/// required: where there are no others, rotations are the identity, and the rest is zero or absent.
-/// @throws FileError for a missing column, also of a group of which a part is there (such as `qx` without `qw`), or a
-///   cell that is not a number
+/// required: if the others are missing, rotations are the identity, and the rest is zero or absent.
+/// @throws FileError for a missing column, for a group with some columns missing (such as `qx` without `qw`), or a cell
+///   that is not a number
 std::vector<View> read_views(const std::filesystem::path& path);
 
 /// Read fruits.json. Unknown keys are skipped. A fruit has a body if it has the keys `center_world` and `radii`, and a

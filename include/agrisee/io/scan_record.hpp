@@ -4,7 +4,7 @@
 /// scan, and `views/0000.view` and so on, the frames as they were taken. To resume, the recorded frames are given to a
 /// new Pipeline. Files are written atomically and flushed to the disk.
 ///
-/// A view file consists of a line `agrisee view 1` (1 is the version of the format), a line of JSON (`scan`, `view`,
+/// A view file contains a line `agrisee view 1` (1 is the version of the format), a line of JSON (`scan`, `view`,
 /// `asked`, `reported`, `joints`, `intrinsics`), the depths (m), and the Fingerprint of everything before it (8 bytes).
 /// The depths are stored row by row, in runs: the number of pixels with depth 0 to skip and the number of depths that
 /// follow (uint32 each), then these depths (float32). All numbers are little-endian.

@@ -7,10 +7,10 @@
 /// each ellipsoid; those with no point nearby are unseen surface, and each stands for an area. In addition, voxels near
 /// the ellipsoids that no sight line has reached stand for fruit that may be hidden there. A view shows a sample when
 /// the sample lies in the image and within the sensor's range, faces the sensor, and no ellipsoid or other point of the
-/// cloud hides it. Each view that should have shown a sample and did not lowers its area, since the prediction seems to
-/// be wrong there. A body that is less likely a fruit than not counts by twice its probability, so that a view of one
-/// of which little shows is worth the move. What the last views showed of what was expected of them tells how far
-/// expectations can be relied on. World frame, metres; gains in m2 of fruit surface.
+/// cloud hides it. Each view that should have shown a sample but did not lowers its area, because the prediction seems
+/// to be wrong there. A body with a fruit probability below one half is weighted by twice that probability, so that a
+/// view of a body that hardly shows is worth the move. The share of the expected surface that the last views really
+/// showed is the reliability of further expectations. World frame, metres; gains in m2 of fruit surface.
 #pragma once
 
 #include <agrisee/cloud/bodies.hpp>
@@ -44,14 +44,14 @@ class ExpectedSurface {
   /// Unseen fruit surface (m2) that a view is expected to show.
   double gain(const Pose& world_T_optical) const;
 
-  /// Share (0..1) of what the last views were expected to show that they did show; older views count less.
+  /// Share (0..1) of the surface expected of the last views that they did show; older views count less.
   double reliability() const;
 
   /// How complete the scan is.
   /// @param can_be_seen one per sample: not zero when some reachable view shows it
   Completeness completeness(const std::vector<char>& can_be_seen) const;
 
-  /// The fruit found so far, and what may be fruit.
+  /// The fruit found so far, and the bodies that may be fruit.
   const std::vector<FoundBody>& bodies() const { return bodies_; }
   /// Surface (m2) of all fruit found so far, seen or not.
   double area() const { return area_; }

@@ -5,10 +5,10 @@
 ///
 /// Candidate views look at points spread over the extent of the fruit, from directions spread over the sphere and from
 /// various distances; those out of reach are dropped. A candidate's score is its ExpectedSurface::gain divided by the
-/// time for dwelling and moving. The reach of the best candidates is asked again from the arm's present joints, and
+/// time for dwelling and moving. The reach of the best candidates is computed again from the arm's present joints, and
 /// directions close to theirs are tried as well. The scan ends when the best view promises less than `min_gain` of the
-/// fruit surface known so far; where views show less than they promise, as among leaves, promises count less
-/// (ExpectedSurface::reliability). World frame, metres, seconds.
+/// fruit surface known so far. Promises are scaled by ExpectedSurface::reliability, because views among leaves show
+/// less than they promise. World frame, metres, seconds.
 #pragma once
 
 #include <agrisee/plan/expected_surface.hpp>
@@ -21,9 +21,9 @@ class GainPlanner : public Planner {
  public:
   /// @param sensor intrinsics and range of the camera
   /// @param volume to be scanned (world)
-  /// @param robot where the robot's base stands (m, world); the first view looks from there
+  /// @param robot position of the robot's base (m, world); the first view looks from there
   /// @param split how the cloud is segmented into fruit
-  /// @param free_space how sight lines are read
+  /// @param free_space how sight lines are interpreted
   /// @param parameters see their struct
   /// @throws ParameterError
   GainPlanner(const sensor::DepthCamera& sensor, const Aabb& volume, const Eigen::Vector3d& robot,

@@ -17,7 +17,7 @@ struct ExpectedSurfaceParameters {
   double voxel = 0.015;            ///< edge of the voxels of unknown space (m)
   double neighborhood = 0.06;      ///< unknown space counts if it is at most this far from a body's surface (m)
   double unknown_weight = 0.08;  ///< fruit surface expected behind the face of an unknown voxel, as a share of the face
-  double least_confidence = 0.1;  ///< a body that is a fruit with at least this probability is worth a look
+  double least_confidence = 0.1;  ///< least probability of a fruit for a body that the planner looks at
   double missed_factor = 0.35;  ///< a sample's area is multiplied by this for every view that should have shown it but
                                 ///< did not
 
@@ -49,8 +49,7 @@ struct GainPlannerParameters {
   double dwell = 1.5;               ///< time that a view takes besides the move (s): settling, exposure, computing
   int lookahead = 6;         ///< number of views planned ahead, so that the nearest of them is taken first; 1: only one
   double patience = 0.5;     ///< the nearest is taken first only if it scores at least this share of the best
-  double min_gain = 0.0015;  ///< the scan ends when the best view can be relied on for less than this share of the
-                             ///< known surface
+  double min_gain = 0.0015;  ///< the scan ends when the best view promises less than this share of the known surface
   ExpectedSurfaceParameters expected;  ///< what a view is expected to show
 
   /// @throws FieldError for the first field that is out of its range

@@ -31,8 +31,8 @@ struct ReachableView {
   Pose world_T_optical = Pose::Identity();           ///< pose of the sensor
   Eigen::Vector3d target = Eigen::Vector3d::Zero();  ///< the point looked at, on the optical axis (m)
   std::optional<Joints> joints;                      ///< joint angles (rad); empty when the arm does not report them
-  double move_time = 0.0;                            ///< time of the move from the present joints (s)
-  double gain = 0.0;                                 ///< what the planner expects of it, in the planner's own unit
+  double move_time = 0.0;                            ///< duration of the move from the present joints (s)
+  double gain = 0.0;                                 ///< what the planner expects to gain, in the planner's own unit
 };
 
 /// Answers a request with the view that the arm reaches soonest from its present joints `current` (rad), or with
@@ -41,14 +41,14 @@ using Reach = std::function<std::optional<ReachableView>(const ViewRequest&, con
 
 /// The state of a scan that a planner may read after each view: the merged cloud, and the views that made it.
 struct Progress {
-  const Cloud& cloud;                               ///< merged so far: points, normals where known, views
+  const Cloud& cloud;                               ///< merged so far: points, views, and normals if known
   const std::vector<sensor::SurfaceImage>& images;  ///< surface image of each view; empty unless surfaces are fused
   const std::vector<View>& views;                   ///< taken so far
   const std::vector<Eigen::Vector3f>& added;        ///< points that the last view added (m)
   const std::vector<Eigen::Vector3f>& observed;     ///< all points that the last view showed (m)
-  const Indices* kept = nullptr;  ///< points that the filter kept which ran after the last view, as indices into the
-                                  ///< points from before the view followed by `added`; null when no filter ran
-  const MaskEvidence* masks = nullptr;  ///< what a detector says of the views so far; null where none has looked
+  const Indices* kept = nullptr;  ///< points kept by the filter after the last view, as indices into the points from
+                                  ///< before the view followed by `added`; null if no filter ran
+  const MaskEvidence* masks = nullptr;  ///< evidence from the masks of the views so far; null without a detector
 };
 
 /// Decides where to look next.

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// @file
-/// A depth image: what a depth camera measures in one shot, with the colours and what a detector found in them.
+/// A depth image, with optional colours and detections.
 #pragma once
 
 #include <agrisee/core/color.hpp>
@@ -19,9 +19,9 @@ struct DepthFrame {
   Intrinsics intrinsics;                      ///< of the image
   std::vector<float> depth;                   ///< z (m) of each pixel, row by row; 0, negative or not finite: no return
   std::vector<Rgb> color = {};                ///< of each pixel, or empty
-  std::vector<std::uint16_t> instances = {};  ///< the detection whose mask holds each pixel, 0 = none; or empty
+  std::vector<std::uint16_t> instances = {};  ///< the detection whose mask contains each pixel, 0 = none; or empty
   std::vector<Detection> detections = {};  ///< one per instance; an instance that is not listed is a fruit with score 1
-  bool detected = false;                   ///< whether a detector looked at this frame, found something or not
+  bool detected = false;                   ///< a detector has looked at this frame, even if it found nothing
 
   /// Depth z (m) of the pixel in column u and row v.
   float at(int u, int v) const { return depth[intrinsics.index(u, v)]; }
@@ -53,8 +53,8 @@ inline std::optional<double> median_depth(const DepthFrame& frame) {
   return double(median(depths));
 }
 
-/// Refuse a depth image that cannot be in metres: no depth camera sees a scene most of which is farther than 50 m or
-/// nearer than 1 mm. A frame without returns passes.
+/// Check that a depth image can be in metres: one with a median depth above 50 m or below 1 mm cannot. A frame without
+/// returns passes.
 /// @throws InputError that names the median depth and the likely cause
 inline void check_depth_unit(const DepthFrame& frame) {
   const std::optional<double> depth = median_depth(frame);

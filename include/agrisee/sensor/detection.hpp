@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// @file
-/// What a detector found in one image: an instance with a class, a score, and a box where it has no mask.
+/// The detections of an image: each is an instance with a class, a score, and a box if it has no mask.
 #pragma once
 
 #include <agrisee/core/error.hpp>
@@ -20,11 +20,11 @@ struct PixelBox {
 
 /// An instance that a detector found in one image.
 struct Detection {
-  int instance = 0;             ///< its number in the label image, from 1 to 65535; its own number where it has a box
-  double score = 1.0;           ///< the detector's, 0..1
-  bool fruit = true;            ///< whether its class is a fruit; else it speaks against one
-  std::string name;             ///< of its class, as the detector calls it; may be empty
-  std::optional<PixelBox> box;  ///< about it, where the detector gave one
+  int instance = 0;             ///< number in the label image, 1 to 65535; a box without a mask has its own number
+  double score = 1.0;           ///< the detector's confidence, 0..1
+  bool fruit = true;            ///< whether the class is a fruit; other classes count against a fruit
+  std::string name;             ///< the detector's name of the class; may be empty
+  std::optional<PixelBox> box;  ///< bounding box, if the detector gave one
 };
 
 }  // namespace agrisee::sensor

@@ -6,11 +6,9 @@
 /// along the ray. The steps:
 /// 1. Crop: only pixels inside the scan volume count.
 /// 2. Blocks: the image is divided into blocks of b x b pixels, of about the wanted spacing. Each block keeps the mean
-/// of
-///    those of its pixels that agree with its median.
-/// 3. Fit: a paraboloid is fitted around each block, over a window that is the wider the noisier the blocks are.
-/// Weights
-///    leave out what lies beyond a depth edge (iteratively reweighted least squares with Tukey's biweight). The fit's
+///    of those of its pixels that agree with its median.
+/// 3. Fit: a paraboloid is fitted around each block, over a window that grows with the noise of the blocks. Weights
+///    exclude surface beyond a depth edge (iteratively reweighted least squares with Tukey's biweight). The fit's
 ///    value, slope and variance at the block are the surface's depth, normal and uncertainty there.
 /// 4. Sample: each fit gives one surface point, or several along the slope where the surface is steep.
 ///
@@ -26,7 +24,7 @@ namespace agrisee::sensor {
 /// The surface of a depth image inside `volume`.
 ///
 /// Pixels outside the volume, invalid pixels and cells without support give no surface points. `depth` of the result
-/// has also what lies outside the volume, as evidence of free space.
+/// also covers surface outside the volume, as evidence of free space.
 /// @param frame the measured image
 /// @param world_T_optical pose of the sensor when the frame was taken
 /// @param volume the scan volume (m, world)

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// @file
-/// Takes a lens's distortion out of a depth frame, so that it is that of a pinhole camera.
+/// Removes lens distortion from a depth frame: the result is that of a pinhole camera.
 #pragma once
 
 #include <agrisee/core/error.hpp>
@@ -25,14 +25,14 @@ struct Distortion {
   bool any() const {
     return std::any_of(k.begin(), k.end(), [](double x) { return x != 0.0; });
   }
-  /// Where the lens shows a point, both at z = 1.
+  /// The distorted image of the point p, both at z = 1.
   Eigen::Vector2d distorted(const Eigen::Vector2d& p) const {
     const double r2 = p.squaredNorm(), xy = 2.0 * p.x() * p.y(), radial = stretch(r2);
     return {p.x() * radial + k[2] * xy + k[3] * (r2 + 2.0 * p.x() * p.x()),
             p.y() * radial + k[3] * xy + k[2] * (r2 + 2.0 * p.y() * p.y())};
   }
-  /// The point that the lens shows at `p`, both at z = 1: the inverse of distorted(), by fixed-point steps. Empty where
-  /// they find none: the lens shows nothing there, or folds the image.
+  /// The inverse of distorted(), by fixed-point iteration; both at z = 1. Empty where it finds none: the lens shows
+  /// nothing there, or folds the image.
   std::optional<Eigen::Vector2d> undistorted(const Eigen::Vector2d& p) const {
     Eigen::Vector2d out = p;
     for (int i = 0; i < 200; ++i) {
@@ -49,8 +49,8 @@ struct Distortion {
   }
 };
 
-/// A distortion from a list of 4, 5 or 8 coefficients, or an empty one: none.
-/// @throws InputError for other lengths, as of a fisheye lens, and for coefficients that are not finite
+/// A distortion from a list of 4, 5 or 8 coefficients; an empty list means none.
+/// @throws InputError for other lengths, such as those of fisheye models, and for coefficients that are not finite
 template <typename List>
 Distortion distortion_from(const List& coefficients) {
   const std::size_t n = coefficients.size();
@@ -63,7 +63,8 @@ Distortion distortion_from(const List& coefficients) {
   return out;
 }
 
-/// @throws InputError if two points of the image would be seen in one pixel, as with wrong coefficients
+/// Check that the distortion is one-to-one in the image, which wrong coefficients often violate.
+/// @throws InputError if two points of the image would be seen in one pixel
 inline void check(const Distortion& lens, const Intrinsics& k) {
   const Eigen::Vector3d a = k.ray(-0.5, -0.5), b = k.ray(k.width - 0.5, k.height - 0.5);
   const double farthest = Eigen::Vector2d(std::max(-a.x(), b.x()), std::max(-a.y(), b.y())).norm();
@@ -78,10 +79,10 @@ inline void check(const Distortion& lens, const Intrinsics& k) {
   }
 }
 
-/// The frame that a pinhole camera of the same intrinsics would have taken: each pixel takes the values of the nearest
-/// pixel of `frame`; depths are not mixed, as that would bridge the edges of things. Pixels that the lens did not see
-/// have no return. A box of a detection becomes the one through the middles of its sides.
-/// @param frame  as the camera took it, z along the optical axis; its channels are distorted alike
+/// The frame that a pinhole camera with the same intrinsics would have taken. Each pixel takes the values of the
+/// nearest pixel of `frame`; depths are not interpolated, as that would bridge depth edges. Pixels outside the original
+/// image have no return. The box of a detection becomes the one through the rectified midpoints of its sides.
+/// @param frame  as the camera took it, z along the optical axis; all channels have the same distortion
 /// @param lens   distortion of the camera
 /// @throws InputError for a frame that is not consistent, or a distortion that folds the image
 inline DepthFrame rectified(const DepthFrame& frame, const Distortion& lens) {

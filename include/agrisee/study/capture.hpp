@@ -36,18 +36,18 @@ struct Capture {
 Capture capture(const TracedScene& scene, const sensor::DepthCamera& sensor, const Pose& world_T_optical,
                 const NoiseModel& noise, std::uint64_t seed, std::uint64_t view, int threads = 1);
 
-/// What looks at a view beside the depth camera.
+/// The simulated color camera and detector of a view.
 struct ImageOptions {
-  bool color = false;                               ///< a colour camera
-  std::optional<DetectorParameters> detector = {};  ///< a detector
-  ColorParameters light = {};                       ///< of the colour camera
+  bool color = false;                               ///< add colours
+  std::optional<DetectorParameters> detector = {};  ///< add the masks of this detector
+  ColorParameters light = {};                       ///< light and errors of the colours
 
-  /// Whether anything does.
+  /// Whether anything is added.
   bool any() const { return color || detector; }
 };
 
-/// Add to a frame the colours of a view and what a detector finds in it. Its depths stay as they are. What is added
-/// depends only on the scene, the pose, the seed and the number of the view.
+/// Add colours and detections to a frame. Its depths stay as they are. The additions depend only on the scene, the
+/// pose, the seed and the number of the view.
 /// @param frame its intrinsics are read
 /// @param scene what the camera sees
 /// @param sensor its largest range is how far the camera sees

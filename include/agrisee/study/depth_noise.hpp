@@ -16,13 +16,13 @@
 
 namespace agrisee::study {
 
-/// What a camera without errors would see. All images are row by row.
+/// The images of a camera without errors, row by row.
 struct TrueImage {
   std::vector<float> range;            ///< of each pixel along its ray (m); 0 = the ray hits nothing
   std::vector<float> incidence;        ///< angle between ray and surface normal (rad) of each pixel that hits something
-  std::vector<std::uint32_t> object;   ///< index of the object that each pixel hits; may be empty: no object is known
-  std::vector<ObjectClass> materials;  ///< what the objects are made of, by index
-  std::vector<float> behind;  ///< from the surface on along the ray to what light does not enter (m); empty: far away
+  std::vector<std::uint32_t> object;   ///< index of the object that each pixel hits; empty: unknown
+  std::vector<ObjectClass> materials;  ///< materials of the objects, by index
+  std::vector<float> behind;  ///< distance along the ray from the surface to the next opaque one (m); empty: far away
 };
 
 /// The pose that the robot reports for a sensor whose true pose is `world_T_optical`. The error is a normally
@@ -35,19 +35,20 @@ Pose reported_pose(const Pose& world_T_optical, const NoiseModel& model, std::ui
 ///
 /// - Stereo: surfaces narrower than NoiseParameters::thin are not seen, and the nearer surface covers up to `smear`
 ///   pixels beyond its edge.
-/// - Light enters translucent objects and returns from some depth, but not from behind the next solid surface.
+/// - Light enters translucent objects and returns from some depth, but not from behind the next opaque surface.
 /// - Flying pixels. A pixel lies at a depth edge if its depth z differs by more than NoiseParameters::edge from that of
 ///   one of its four neighbours, or, with a larger `edge_width`, if a surface that is so much nearer lies within that
 ///   many pixels along its row or column. The share `flying` of these pixels measures a range that is uniformly
 ///   distributed between the two surfaces. Such a pixel always returns something, whatever the incidence, because its
-///   beam falls on both surfaces. With `skirt`, a pixel with nothing beside it flies up to that far behind its surface.
-/// - Lost returns: by incidence, one by one, in patches, and where a fruit mirrors the beam.
-/// - White noise, waves and bias are added, each in proportion to its standard deviation at that range.
+///   beam falls on both surfaces. With `skirt`, a pixel at an edge with nothing beyond it measures up to that far
+///   behind its surface.
+/// - Lost returns: by incidence, at random, in patches, and where fruit reflects the beam.
+/// - White noise, correlated noise and bias are added, each with its standard deviation at that range.
 ///
-/// What belongs to the sensor or to an object (NoiseParameters::waves, translucency) is drawn from the seed alone and
-/// is the same in every view.
+/// Errors that belong to the sensor or to an object (NoiseParameters::waves, translucency) depend on the seed alone and
+/// are the same in every view.
 /// @param intrinsics of the camera
-/// @param truth what it sees
+/// @param truth the images without errors
 /// @param max_incidence beyond this angle all returns are lost, except those of flying pixels (rad)
 /// @param model the noise model
 /// @param seed, view select the random numbers

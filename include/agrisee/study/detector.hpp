@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// @file
-/// A simulated detector: masks of the fruit in an image, with the errors that detectors make.
+/// A simulated detector: masks of the fruit in an image, with typical errors.
 ///
-/// What is published of detectors of tomatoes in greenhouses: a recall of 0.86 to 0.91 at a precision of 0.93 to 0.94
-/// (Gao et al., Traitement du Signal 39(1), 2022, doi 10.18280/ts.390130; YOLO v5 without and with their changes, the
-/// precision by its F1 of 0.92). `typical` is made to match that. All other figures are assumed.
+/// Published detectors of greenhouse tomatoes reach a recall of 0.86 to 0.91 at a precision of 0.93 to 0.94 (Gao et
+/// al., Traitement du Signal 39(1), 2022, doi 10.18280/ts.390130; YOLO v5 without and with their changes, the precision
+/// from its F1 of 0.92). `typical` matches these rates. All other figures are assumed.
 #pragma once
 
 #include <agrisee/core/parameter_range.hpp>
@@ -17,19 +17,19 @@
 
 namespace agrisee::study {
 
-/// How often and how far a detector errs. The defaults are those of a perfect one. Lengths in pixels.
+/// The errors of a detector. The defaults are those of a perfect one. Lengths in pixels.
 struct DetectorParameters {
-  double miss = 0.0;          ///< share of the fruit that it misses of those that show whole
-  double miss_hidden = 0.0;   ///< the same of those of which next to nothing shows; between them in proportion
-  int least_pixels = 30;      ///< a fruit of which fewer pixels show never has a mask
-  double inventions = 0.0;    ///< false masks of an image that shows ten fruit, in proportion to their number; each has
-                              ///< the shape of a true one and lies on something else
-  double merge = 0.0;         ///< share of the pairs of masks that touch which become one mask
-  double shift = 0.0;         ///< standard deviation of how far a mask is off, across and down (pixels)
-  double erosion = 0.0;       ///< masks are too small by so much all around, on average (pixels); below 0: too large
-  double edge = 0.0;          ///< standard deviation of the edge about that, in waves along it (pixels)
-  double alike = 0.0;         ///< share of the misses and inventions that are the same in all views of a scene
-  double score = 1.0;         ///< mean score of true masks; of fruit half hidden less by one `score_spread`
+  double miss = 0.0;          ///< share of fully visible fruit that is missed
+  double miss_hidden = 0.0;   ///< share of almost entirely hidden fruit that is missed; linear in between
+  int least_pixels = 30;      ///< fruit with fewer visible pixels never has a mask
+  double inventions = 0.0;    ///< false masks per ten fruit in the image; each has the shape of a true mask and lies on
+                              ///< something else
+  double merge = 0.0;         ///< share of the pairs of touching masks that become one mask
+  double shift = 0.0;         ///< standard deviation of a mask's displacement, across and down (pixels)
+  double erosion = 0.0;       ///< mean erosion of masks all around (pixels); negative: dilation
+  double edge = 0.0;          ///< standard deviation of the edge about that, varying slowly along it (pixels)
+  double alike = 0.0;         ///< share of the misses and false masks that are the same in all views of a scene
+  double score = 1.0;         ///< mean score of true masks; one `score_spread` less for fruit half hidden
   double score_spread = 0.0;  ///< standard deviation of scores, true and false
   double false_score = 0.5;   ///< mean score of false masks
   double least_score = 0.25;  ///< masks with a lower score are not reported
@@ -62,11 +62,11 @@ constexpr std::array<const char*, 3> kDetectorNames{"perfect", "typical", "poor"
 /// The figures of a detector. @throws FieldError for a name that is not one of kDetectorNames
 DetectorParameters detector_named(const std::string& name);
 
-/// Let a detector look at a view: sets `instances`, `detections` and `detected` of its frame. A later mask never takes
-/// pixels of one with a larger score.
+/// Simulate a detector in a view: sets `instances`, `detections` and `detected` of its frame. Where masks overlap, the
+/// larger score wins.
 /// @param frame of the view; its intrinsics are read
 /// @param scene what the camera sees
-/// @param rays those of the frame's pixels
+/// @param rays of the frame's pixels
 /// @param world_T_optical pose of the camera
 /// @param parameters of the detector
 /// @param seed, view select the random numbers, independently of those of the cameras

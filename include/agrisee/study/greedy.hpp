@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// @file
-/// The greedy order of views for someone who knows the truth: each view is the one that covers most of what is still
+/// The greedy order of views, given the truth: each view is the one that covers most of the surface that is still
 /// uncovered.
 ///
 /// Coverage is submodular, so n such views cover at least 1 - 1/e of what the best n views could (Nemhauser, Wolsey and
@@ -91,7 +91,7 @@ GreedyOrder greedy_order(const Observability& observed, const Samples& samples,
 /// The greedy order as a scan of a workcell begins: with the most frontal view of the scan volume's center.
 /// @param observed what each view sees of the samples
 /// @param samples of the fruit's surface
-/// @param cell its scan volume and the place of the robot's base say what is frontal
+/// @param cell its scan volume and the position of the robot's base define the frontal direction
 /// @param radius a sample is covered if an observable sample within this distance (m) is seen
 /// @throws InputError as greedy_order() does, and if there are no views; ParameterError for a radius that is not
 ///   positive

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// @file
-/// A planner that knows the truth. With it a study shows how good a scan can be when the choice of views is not what
-/// limits it. It does not use what the scan has seen. World frame, metres, radians.
+/// A planner that knows the truth, for comparison: it shows how good a scan can be if the choice of views is not the
+/// limit. It does not use the results of the scan. World frame, metres, radians.
 #pragma once
 
 #include <agrisee/plan/planner.hpp>
@@ -19,7 +19,7 @@ namespace agrisee::study {
 /// An `observe` without a preceding `next` changes nothing.
 class GreedyPlanner : public plan::Planner {
  public:
-  /// @param observed what is seen from where; shared, so that many planners can use one
+  /// @param observed which views see which samples; shared, so that many planners can use one
   /// @param samples the samples that `observed` refers to
   /// @param volume scan volume (m, world); the first view is the most frontal one of its center
   /// @param robot where the robot's base stands (m, world); the frontal direction is horizontal, from there to the

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// @file
-/// What can be seen at all: the part of the fruit's surface that the sensor can observe from any posture that the arm
-/// can take outside keep-out spaces. World frame, metres, radians. Cost: about a second for seven fruit and 450 poses
-/// on one core, nearly all of it ray casting.
+/// The observable part of the fruit's surface: what the sensor can see from any posture of the arm outside keep-out
+/// spaces. World frame, metres, radians. Cost: about a second for seven fruit and 450 poses on one core, nearly all of
+/// it ray casting.
 #pragma once
 
 #include <agrisee/core/parameter_range.hpp>

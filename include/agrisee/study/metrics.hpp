@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// @file
-/// How good a result is: the figures of [1], "Experiments" (precision, recall, counting error, object precision and
-/// recall, mIoU) as shares of 0..1, and the errors of each fruit. evaluate() computes them (evaluate.hpp).
-/// World frame, metres, radians.
+/// The metrics of a result: those of [1], "Experiments" (precision, recall, counting error, object precision and
+/// recall, mIoU) as shares of 0..1, and the errors of each fruit. evaluate() computes them (evaluate.hpp). World frame,
+/// metres, radians.
 #pragma once
 
 #include <agrisee/core/parameter_range.hpp>
@@ -18,7 +18,7 @@ namespace agrisee::study {
 /// Thresholds of the metrics.
 struct MetricParameters {
   double threshold = 0.005;  ///< a point lies on a surface, and a sample is covered, within this distance (m)
-  double strict = 0.002;     ///< the same for the second, stricter precision (m)
+  double strict = 0.002;     ///< distance for the second, stricter precision (m)
   double min_iou = 0.5;      ///< a detection is true from this surface IoU on
 
   /// The values of [1].
@@ -36,7 +36,7 @@ struct MetricParameters {
   }
 };
 
-/// How well one fruit was found. An error is present if the fruit was matched to an instance that has the quantity.
+/// Metrics of one fruit. An error is present if the fruit was matched to an instance that has the quantity.
 struct FruitMetrics {
   int id = 0;                                 ///< of the true fruit
   int instance = 0;                           ///< the instance matched to it; 0 = none
@@ -44,14 +44,14 @@ struct FruitMetrics {
   double surface_iou = 0.0;                   ///< with the matched instance
   double point_iou = 0.0;                     ///< with the instance that the matching by point IoU gives it
   double recall = 0.0;                        ///< share of its surface within `threshold` of a labelled point
-  double recall_obs = 0.0;                    ///< the same share of its observable surface
+  double recall_obs = 0.0;                    ///< `recall` of its observable surface
   double scanned = 0.0;                       ///< share of its surface within `threshold` of any raw point
   double observable = 0.0;                    ///< share of its surface that can be observed
   std::optional<double> centroid_error;       ///< centroid, from the mean of its observable surface (m)
-  std::optional<double> centroid_error_seen;  ///< the same, from the mean of the surface that the views saw (m)
+  std::optional<double> centroid_error_seen;  ///< centroid, from the mean of the surface that the views saw (m)
   std::optional<double> center_error;         ///< centre of the fitted body, from the volume centroid (m)
-  /// The same error in standard deviations: (e^T C^-1 e / 3)^1/2 with the body's covariance C; 1 in the root mean
-  /// square over many fruit if the covariances are honest. None where the body states no covariance.
+  /// `center_error` in standard deviations: (e^T C^-1 e / 3)^1/2 with the body's covariance C; 1 in the root mean
+  /// square over many fruit if the covariances are right. None if the body has no covariance.
   std::optional<double> center_error_normalised;
   std::optional<double> radius_error;        ///< cube root of the product of the semi-axes, fitted minus true (m)
   std::optional<double> semi_axis_error;     ///< largest difference between semi-axes ordered by size (m)
@@ -81,16 +81,16 @@ struct FruitMetrics {
   }
 };
 
-/// How good a result is. A share of nothing is 0, so that an empty result never looks good.
+/// Metrics of a result. A share of nothing is 0, so that an empty result never looks good.
 struct Metrics {
   double precision = 0.0;             ///< share of the labelled points within `threshold` of a fruit's surface
-  double precision_strict = 0.0;      ///< the same within `strict`
+  double precision_strict = 0.0;      ///< `precision` within `strict`
   double precision_all = 0.0;         ///< share of all cloud points within `threshold` of a fruit's surface
-  double precision_all_strict = 0.0;  ///< the same within `strict`
+  double precision_all_strict = 0.0;  ///< `precision_all` within `strict`
   double recall = 0.0;                ///< share of the fruit's surface within `threshold` of a labelled point
-  double recall_obs = 0.0;            ///< the same share of the observable surface
+  double recall_obs = 0.0;            ///< `recall` of the observable surface
   double scanned = 0.0;               ///< share of the fruit's surface within `threshold` of any raw point
-  double scanned_obs = 0.0;           ///< the same share of the observable surface
+  double scanned_obs = 0.0;           ///< `scanned` of the observable surface
   double f1 = 0.0;                    ///< harmonic mean of `precision` and `recall`
   double observable = 0.0;            ///< share of the fruit's surface that can be observed
   int n_real = 0;                     ///< number of true fruit

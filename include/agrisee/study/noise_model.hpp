@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// @file
-/// The noise models of the simulated depth cameras, and the figures behind them. docs/sensors.md compares the figures
-/// with those of real cameras. Ranges are in metres along the ray, angles in radians.
+/// The noise models of the simulated depth cameras, and their figures. docs/sensors.md compares these with real
+/// cameras. Ranges are in metres along the ray, angles in radians.
 #pragma once
 
 #include <agrisee/core/error.hpp>
@@ -14,7 +14,7 @@
 
 namespace agrisee::study {
 
-/// The light that falls on the scene. Sunlight holds much of the infrared that a camera looks for.
+/// The light on the scene. Sunlight contains much infrared light, which disturbs depth cameras.
 enum class Light { shade, sun };
 
 /// Selects the noise of a simulated sensor.
@@ -25,15 +25,15 @@ struct NoiseModel {
     gaussian,    ///< independent errors along the ray with the standard deviation `sigma`
     l515_white,  ///< errors of the size that Intel publishes for the L515, independent from pixel to pixel
     rough,       ///< a worse sensor: correlated noise, range bias, many flying pixels, and a wrong pose
-    l515,        ///< Intel RealSense L515: waves, leaves that read too deep, holes where a fruit mirrors the beam
-    azure,       ///< Microsoft Azure Kinect: as l515, with wide skirts behind every rim
+    l515,        ///< Intel RealSense L515: correlated noise, leaves that read too deep, holes where fruit face the beam
+    azure,       ///< Microsoft Azure Kinect: like l515, with more flying pixels behind edges
     d405         ///< Intel RealSense D405, a stereo camera: errors grow with the square of the range, edges smear
   };
   Kind kind = Kind::none;      ///< the model
   double sigma = 0.0;          ///< standard deviation (m); only `gaussian` reads it
-  Light light = Light::shade;  ///< only `l515`, `azure` and `d405` may have `sun`
+  Light light = Light::shade;  ///< `sun` only with `l515`, `azure` and `d405`
 
-  /// @throws ParameterError if `sigma` is negative or not finite, or if a model that knows no light has `sun`
+  /// @throws ParameterError if `sigma` is negative or not finite, or if another model has `sun`
   void check() const;
 };
 
@@ -49,40 +49,40 @@ struct RangeError {
   bool zero() const { return constant == 0.0 && linear == 0.0 && quadratic == 0.0; }
 };
 
-/// A smooth random error along the ray. Two pixels at an angle of a have the correlation exp(-0.75 (a / spacing)^2).
+/// Correlated noise along the ray: two pixels at an angle of a have the correlation exp(-0.75 (a / spacing)^2).
 struct Waves {
-  RangeError error;      ///< its standard deviation
-  double spacing = 0.1;  ///< how far the waves reach (rad)
-  double fixed = 0.5;    ///< share of the variance that belongs to the sensor: it is the same in every view
+  RangeError error;      ///< standard deviation
+  double spacing = 0.1;  ///< correlation angle (rad)
+  double fixed = 0.5;    ///< share of the variance that is fixed to the sensor, the same in every view
 };
 
-/// How much too deep a material reads, because light enters it.
+/// By how much a material reads too deep, because light enters it.
 struct Translucency {
   double depth = 0.0;   ///< mean over objects (m)
   double spread = 0.0;  ///< standard deviation from object to object (m)
 };
 
-/// The figures behind a noise model. The defaults describe a sensor without errors.
+/// The figures of a noise model. The defaults describe a sensor without errors.
 struct NoiseParameters {
-  RangeError white;            ///< independent from pixel to pixel
+  RangeError white;            ///< noise of each pixel, see `correlation`
   double correlation = 0.0;    ///< distance at which the correlation of that noise falls to 1/e (pixels); 0 = white
-  std::array<Waves, 2> waves;  ///< fine ones and wide ones
-  double bias = 0.0;           ///< standard deviation of an error that all ranges of one view share (m)
+  std::array<Waves, 2> waves;  ///< fine and wide correlated noise
+  double bias = 0.0;           ///< standard deviation of an error common to all ranges of one view (m)
 
   double flying = 0.0;  ///< share of the pixels at depth edges that measure between the two surfaces
   double edge = 0.010;  ///< smallest step in depth z between neighbouring pixels that counts as an edge (m)
-  int edge_width = 1;   ///< pixels fly up to so many pixels behind an edge, fewer of them with each pixel
-  double skirt = 0.0;   ///< how far behind a rim its pixels may fly if nothing stands behind it (m)
-  int smear = 0;        ///< the nearer surface covers up to so many pixels beyond its edge (pixels); stereo
-  int thin = 0;         ///< what is narrower is not measured (pixels); stereo
+  int edge_width = 1;   ///< flying pixels occur up to this many pixels from an edge, fewer with each pixel
+  double skirt = 0.0;   ///< how far flying pixels lie behind an edge with nothing beyond it, at most (m)
+  int smear = 0;        ///< the nearer surface covers up to this many pixels beyond its edge (pixels); stereo
+  int thin = 0;         ///< narrower surfaces are not measured (pixels); stereo
 
   double loss_begin = 0.5 * kPi;  ///< angle of incidence above which some returns are lost (rad)
   double loss_end = 0.5 * kPi;    ///< angle of incidence from which all returns are lost (rad)
-  double loss = 0.0;              ///< share of the pixels that are lost one by one, whatever they see
+  double loss = 0.0;              ///< share of the pixels that are lost at random
   double patches_least = 0.0;     ///< least share of a view that is lost in patches
   double patches_most = 0.0;      ///< largest share of a view that is lost in patches
-  double patch_spacing = 0.05;    ///< how far a patch reaches (rad), see Waves
-  double mirror = 0.0;  ///< a fruit sends nothing back where the incidence is smaller (rad): it mirrors the beam
+  double patch_spacing = 0.05;    ///< size of the patches (rad), as the correlation angle of Waves
+  double mirror = 0.0;  ///< fruit returns nothing below this angle of incidence (rad), where it reflects the beam
 
   std::array<Translucency, 4> translucency;  ///< by ObjectClass
   double unit = 0.0;                         ///< step of the depths z (m); 0 = none
@@ -90,7 +90,7 @@ struct NoiseParameters {
   double position = 0.0;  ///< standard deviation of the reported position along each axis (m)
   double rotation = 0.0;  ///< standard deviation of the reported rotation about each axis (rad)
 
-  /// True if the noise depends on what the objects are made of.
+  /// True if the noise depends on the materials of the objects.
   bool knows_materials() const;
 };
 
@@ -98,7 +98,7 @@ struct NoiseParameters {
 /// @throws ParameterError as NoiseModel::check() does
 NoiseParameters noise_parameters(const NoiseModel& model);
 
-/// How users write the models.
+/// The names of the models, for help texts.
 constexpr const char* kNoiseNames = "none, gaussian:SIGMA (metres, 0 or more), l515, azure, d405, l515-white or rough";
 
 /// Reads a model from text: one of kNoiseNames; `l515`, `azure` and `d405` may be followed by `:shade` or `:sun`.

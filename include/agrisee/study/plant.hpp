@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// @file
-/// Generates plants with foliage, and with objects that are no fruit, beside trusses of bare fruit (study/truss.hpp).
-/// Each comes with its ground truth and a workcell to scan it in. World frame: z points up, and the robot stands at the
+/// Generates plants with foliage and objects that are not fruit; study/truss.hpp generates trusses of bare fruit. Each
+/// plant has its ground truth and a workcell to scan it in. World frame: z points up, and the robot stands at the
 /// origin and looks along +y. Metres. A plant usually takes about a second.
 #pragma once
 
@@ -14,20 +14,20 @@
 
 namespace agrisee::study {
 
-/// What can grow on a plant. `tomato`, `cherry` and `beefsteak` are trusses of tomatoes, `pepper` are bell peppers with
+/// The kinds of plants. `tomato`, `cherry` and `beefsteak` have trusses of tomatoes, `pepper` has bell peppers with
 /// three or four lobes.
 constexpr std::array<const char*, 6> kPlantKinds = {"tomato", "cherry", "pepper", "beefsteak", "pear", "strawberry"};
 
 /// Describes the plant to generate. The defaults are those of a tomato plant, see of().
 struct PlantParameters {
   std::string kind = "tomato";     ///< one of kPlantKinds
-  int total = 7;                   ///< number of fruit of all trusses
+  int total = 7;                   ///< number of fruit on all trusses together
   int trusses = 1;                 ///< number of trusses, which hang side by side; for peppers and pears, of main stems
   std::uint64_t seed = 1;          ///< equal parameters with equal seeds give equal plants
   double radius_shoulder = 0.036;  ///< half width of the first and largest fruit of a truss (m)
   double radius_tip = 0.010;       ///< half width of its last and smallest fruit (m)
-  double foliage = 0.2;            ///< share that leaves hide of the fruit surface seen from frontal_eye()
-  int leaves_behind = 4;           ///< leaves that hide nothing from there; fewer if there is no room
+  double foliage = 0.2;            ///< share of the fruit surface seen from frontal_eye() that leaves hide
+  int leaves_behind = 4;           ///< number of leaves that hide nothing from there; fewer if there is no room
   bool trunk = false;              ///< whether a trunk with a fork and burls stands behind the plant
   int posts = 0;                   ///< number of posts beside the plant
   int wires = 0;                   ///< number of horizontal wires behind the plant

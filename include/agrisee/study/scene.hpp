@@ -17,11 +17,11 @@ enum class ObjectClass { fruit, stem, leaf, other };
 /// One object of a scene.
 struct Object {
   int id = 0;                            ///< positive and unique for a fruit, 0 for everything else
-  ObjectClass cls = ObjectClass::other;  ///< what it is
+  ObjectClass cls = ObjectClass::other;  ///< class of the object
   Mesh mesh;                             ///< its surface (m, world)
-  /// What it is made of, if that is not what it is: light enters a leaf, a fruit may mirror it.
+  /// Its material, if not that of its class: light enters a leaf, fruit may reflect it.
   std::optional<ObjectClass> material = std::nullopt;
-  std::optional<double> ripeness = std::nullopt;  ///< of a fruit: the share (0..1) of its surface that has turned
+  std::optional<double> ripeness = std::nullopt;  ///< of a fruit: ripe share (0..1) of its surface
   std::optional<Rgb> color = std::nullopt;        ///< of its surface; empty: by class, and that of a fruit by ripeness
 };
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// @file
-/// How ripe the fruit of a scene are in truth, and how well a result says so. Shares are those of the surface that has
-/// turned, 0..1; their classes are those of the United States Standards for Grades of Fresh Tomatoes, 7 CFR 51.1860.
+/// The true ripeness of the fruit of a scene, and how well a result agrees with it. Shares are of ripe surface, 0..1;
+/// the classes are those of the United States Standards for Grades of Fresh Tomatoes, 7 CFR 51.1860.
 #pragma once
 
 #include <agrisee/core/random.hpp>
@@ -19,40 +19,40 @@ namespace agrisee::study {
 /// The share in the middle of a class: 0 for green.
 double middle_share(RipenessClass ripeness);
 
-/// Draw how ripe the fruit of a truss are, from the oldest, at the top, to the youngest. A truss is somewhere between
-/// green and red; each fruit is on average half a class behind the one above it. Within its class a share is drawn from
-/// the inner two thirds: at a border two graders differ.
+/// Draw the ripeness of the fruit of a truss, from the oldest, at the top, to the youngest. A truss is somewhere
+/// between green and red; each fruit is on average half a class behind the one above it. Within its class a share is
+/// drawn from the inner two thirds, because near a border graders disagree.
 /// @param fruits their number  @param rng random numbers
 /// @return the share of each
 std::vector<double> draw_ripeness(std::size_t fruits, Rng& rng);
 
-/// Give the fruit of a scene the ripeness that draw_ripeness draws, truss by truss, with random numbers of its own.
+/// Set the ripeness of the fruit of a scene by draw_ripeness, truss by truss, with separate random numbers.
 /// @param scene, truth with the same fruit in the same order
 /// @param trusses the number of fruit of each truss
 /// @param seed of the random numbers
 void ripen(Scene& scene, GroundTruth& truth, const std::vector<std::size_t>& trusses, std::uint64_t seed);
 
-/// How well the ripeness of one fruit was found.
+/// The true ripeness of one fruit, and that of the result.
 struct RipenessMetrics {
   int id = 0;                                  ///< of the true fruit
-  double real_share = 0.0;                     ///< its share
-  RipenessClass real = RipenessClass::green;   ///< its class
-  double found_share = 0.0;                    ///< of the fruit that was found for it
-  RipenessClass found = RipenessClass::green;  ///< the same, its class
-  double probability = 0.0;                    ///< what the result gives this class
+  double real_share = 0.0;                     ///< true ripe share
+  RipenessClass real = RipenessClass::green;   ///< true class
+  double found_share = 0.0;                    ///< ripe share of the fruit that was found for it
+  RipenessClass found = RipenessClass::green;  ///< class of the fruit that was found for it
+  double probability = 0.0;                    ///< of that class, according to the result
 
-  /// By how many classes it is off.
+  /// Number of classes between the true class and the one found.
   int off() const { return std::abs(static_cast<int>(found) - static_cast<int>(real)); }
 };
 
-/// Judge the ripeness of the fruit that were found.
+/// Compare the ripeness of the fruit found with the truth.
 /// @param truth fruit whose ripeness is not known are left out
 /// @param metrics of the result: which fruit was found for which; true detections count
 /// @param found the fruit of the result; those without a ripeness are left out
 std::vector<RipenessMetrics> judge_ripeness(const GroundTruth& truth, const Metrics& metrics,
                                             const std::vector<Fruit>& found);
 
-/// The figures of several fruit.
+/// Summary over several fruit.
 struct RipenessSummary {
   int judged = 0;            ///< number of fruit
   double right = 0.0;        ///< share of these with the right class
@@ -60,7 +60,7 @@ struct RipenessSummary {
   double share_error = 0.0;  ///< mean magnitude of the error of the share
 };
 
-/// Sum up the figures of fruit.
+/// Summarise the metrics of several fruit.
 RipenessSummary summarize(const std::vector<RipenessMetrics>& fruits);
 
 }  // namespace agrisee::study

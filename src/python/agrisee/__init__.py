@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """AgriSEE: finds fruit in the clouds of a robot's depth camera.
 
-Metres, radians and seconds; poses are 4 x 4 matrices named a_T_b; optical frames look along z, with x right and y down.
+Units are metres, radians and seconds; poses are 4 x 4 matrices named a_T_b; optical frames have z forward, x right, y
+down.
 """
 from ._agrisee import (
     Body,
