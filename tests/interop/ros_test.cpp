@@ -324,7 +324,7 @@ TEST_CASE("a malformed image or camera is refused") {
   refuses([](I&, C& c) { c.k[5] = std::nan(""); }, "camera matrix");
   refuses([](I&, C& c) { c.d[4] = std::nan(""); }, "not finite");
   refuses([](I&, C& c) { c.d[0] = -1e6; }, "folds the image");
-  refuses([](I&, C& c) { c.d.resize(3, 1.0); }, "4, 5 or 8 coefficients");
+  refuses([](I&, C& c) { c.d.assign(3, 1.0); }, "4, 5 or 8 coefficients");
   refuses(
       [](I&, C& c) {
         c.d[4] = 1e-3;
