@@ -160,6 +160,16 @@ class Robot {
     m.data.resize(std::size_t{m.step} * m.height);
     return m;
   }
+  /// A label image as of a detector that finds every fruit.
+  sensor_msgs::msg::Image labels_of_fruit() const {
+    auto m = image("8UC1", 1);
+    for (std::size_t fruit = kTwoFruit.size(); fruit-- > 0;) {
+      const sensor::DepthFrame alone = render({kTwoFruit[fruit]}, camera_, world_T_optical_);
+      for (std::size_t i = 0; i < alone.depth.size(); ++i)
+        if (sensor::DepthFrame::valid(alone.depth[i])) m.data[i] = static_cast<std::uint8_t>(fruit + 1);
+    }
+    return m;
+  }
   /// The depth image and its camera info, as from where the sensor stands.
   void look() {
     const sensor::DepthFrame frame = render(kTwoFruit, camera_, world_T_optical_);

@@ -158,6 +158,27 @@ TEST_CASE("a frame waits for its colours and labels and is taken with them") {
   CHECK(Robot::said("the frame goes without"));
 }
 
+TEST_CASE("fruit whose colours are seen have a ripeness") {
+  Robot robot({{"channels.color", true}, {"channels.labels", true}});
+  const Ear<visualization_msgs::msg::MarkerArray> markers("/agrisee/fruit_markers", latched());
+  REQUIRE(robot.bring_up() == "active");
+  robot.call("start");
+  while (robot.status_says("moving")) {
+    robot.go();
+    auto color = robot.image("bgr8", 3);
+    for (std::size_t i = 0; i < color.data.size(); ++i) color.data[i] = std::array<std::uint8_t, 3>{35, 40, 190}[i % 3];
+    robot.color.say(color);
+    robot.labels.say(robot.labels_of_fruit());
+    robot.look();
+  }
+  CHECK(robot.status_says("done, "));
+  REQUIRE(robot.fruits.last->poses.size() == 2);
+  std::vector<std::string> texts;
+  for (const auto& marker : markers.last->markers)
+    if (marker.ns == "ids") texts.push_back(marker.text);
+  CHECK(texts == std::vector<std::string>{"1, red", "2, red"});
+}
+
 TEST_CASE("what cannot be used is left out with a message") {
   Robot robot;
   REQUIRE(robot.bring_up() == "active");
