@@ -85,7 +85,8 @@ class Ros2 {
 };
 
 /// Parameters are read when it is configured. While it is active it listens and serves; deactivated, it stops the scan
-/// and keeps what was seen; cleaned up, it forgets.
+/// and keeps what was seen; cleaned up, it forgets. All callbacks are of the node's default group, so that none runs
+/// beside another whatever executor spins it.
 class ScanNode : public rclcpp_lifecycle::LifecycleNode {
  public:
   using Core = NodeCore<Ros2>;
