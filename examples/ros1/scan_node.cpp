@@ -41,7 +41,8 @@ class Ros1 {
 
   template <typename Message>
   void advertise(const char* topic, const Message&, bool latched) {
-    publishers_[topic] = handle_.advertise<Message>(topic, 1, latched);
+    constexpr std::uint32_t kQueue = std::is_same_v<Message, String> ? 10 : 1;  // every status is for people to read
+    publishers_[topic] = handle_.advertise<Message>(topic, kQueue, latched);
   }
 
   double now() const { return stamp().toSec(); }
