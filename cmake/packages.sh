@@ -14,6 +14,7 @@ declare -A groups=(
   [ros]="libroscpp-dev libtf2-ros-dev libtf2-msgs-dev libgeometry-msgs-dev libsensor-msgs-dev libstd-msgs-dev libstd-srvs-dev \
 libtrajectory-msgs-dev libvisualization-msgs-dev python3-roslaunch python3-rosmaster rosout python3-rosservice \
 ros-robot-state-publisher rviz"
+  [ros2]="python3-rosidl rosidl-generator-c-cpp librosidl-runtime-c-cpp-dev librosidl-typesupport-interface-dev python3-empy python3-lark python3-yaml"
   [cluster]="slurm-wlm munge parallel"
   [shells]="zsh fish"
   [python]="pybind11-dev python3-numpy python3-pytest mypy"

@@ -128,7 +128,7 @@ class MarkerMaker {
     all.action = Marker::DELETEALL;
   }
 
-  /// Bodies, pose frames, ids and pre-grasp arrows of fruit.
+  /// Bodies, pose frames, ids (with the ripeness, where it is known) and pre-grasp arrows of fruit.
   void fruits(const std::vector<Fruit>& fruits) {
     for (const Fruit& f : fruits) {
       const io::Rgb color = io::fruit_color(f.id);
@@ -148,7 +148,7 @@ class MarkerMaker {
       label.translation() = center + Eigen::Vector3d(0.0, 0.0, 1.3 * radius);
       if (arrow_drawn) label.translation() = f.picking->world_T_pre_grasp.translation() - 0.015 * f.picking->direction;
       add("ids", Marker::TEXT_VIEW_FACING, label, Eigen::Vector3d(0.0, 0.0, 0.025), {20, 20, 20}, 1.0).text =
-          std::to_string(f.id);
+          std::to_string(f.id) + (f.ripeness ? std::string(", ") + to_string(f.ripeness->grade) : "");
       if (arrow_drawn) {
         Marker& arrow =
             add("picking", Marker::ARROW, Pose::Identity(), Eigen::Vector3d(0.003, 0.008, 0.012), color, 0.9);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Messages of both ROS generations: structs of our own with the same members and, where ROS 1 is installed, the real
-// ones.
+// Messages of both ROS generations: structs of our own with the same members, the real ones where ROS 1 is installed,
+// and those that rosidl makes for ROS 2 (tests/ros2).
 #include <agrisee/interop/ros.hpp>
 #include <agrisee/process.hpp>
 
@@ -13,6 +13,11 @@
 #include <sensor_msgs/CameraInfo.h>
 #include <sensor_msgs/Image.h>
 #include <sensor_msgs/PointCloud2.h>
+#endif
+#ifdef AGRISEE_HAS_ROS2
+#include <sensor_msgs/msg/camera_info.hpp>
+#include <sensor_msgs/msg/image.hpp>
+#include <sensor_msgs/msg/point_cloud2.hpp>
 #endif
 
 using namespace agrisee;
@@ -146,12 +151,14 @@ void processes_alike() {
 
 template <typename Info>
 struct Names;
-template <>
-struct Names<mock::CameraInfo> {
-  static auto& K(mock::CameraInfo& m) { return m.k; }
-  static auto& P(mock::CameraInfo& m) { return m.p; }
-  static auto& D(mock::CameraInfo& m) { return m.d; }
+template <typename Info>
+struct Names2 {
+  static auto& K(Info& m) { return m.k; }
+  static auto& P(Info& m) { return m.p; }
+  static auto& D(Info& m) { return m.d; }
 };
+template <>
+struct Names<mock::CameraInfo> : Names2<mock::CameraInfo> {};
 template <typename Info>
 struct Names1 {
   static auto& K(Info& m) { return m.K; }
@@ -163,6 +170,10 @@ struct Names<mock::CameraInfo1> : Names1<mock::CameraInfo1> {};
 #ifdef AGRISEE_HAS_ROS1
 template <>
 struct Names<sensor_msgs::CameraInfo> : Names1<sensor_msgs::CameraInfo> {};
+#endif
+#ifdef AGRISEE_HAS_ROS2
+template <>
+struct Names<sensor_msgs::msg::CameraInfo> : Names2<sensor_msgs::msg::CameraInfo> {};
 #endif
 
 template <typename Info>
@@ -245,12 +256,18 @@ TEST_CASE("a PointCloud2 is a cloud, whatever its layout") {
 #ifdef AGRISEE_HAS_ROS1
   reads_every_layout<sensor_msgs::PointCloud2>();
 #endif
+#ifdef AGRISEE_HAS_ROS2
+  reads_every_layout<sensor_msgs::msg::PointCloud2>();
+#endif
 }
 
 TEST_CASE("a PointCloud2 is processed as our own cloud is") {
   processes_alike<mock::PointCloud2>();
 #ifdef AGRISEE_HAS_ROS1
   processes_alike<sensor_msgs::PointCloud2>();
+#endif
+#ifdef AGRISEE_HAS_ROS2
+  processes_alike<sensor_msgs::msg::PointCloud2>();
 #endif
 }
 
@@ -302,6 +319,9 @@ TEST_CASE("depth images in metres and millimetres are frames") {
   reads_frames<mock::Image, mock::CameraInfo1>();
 #ifdef AGRISEE_HAS_ROS1
   reads_frames<sensor_msgs::Image, sensor_msgs::CameraInfo>();
+#endif
+#ifdef AGRISEE_HAS_ROS2
+  reads_frames<sensor_msgs::msg::Image, sensor_msgs::msg::CameraInfo>();
 #endif
 }
 

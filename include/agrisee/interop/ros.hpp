@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// Reads ROS messages in place: `sensor_msgs/PointCloud2` as a cloud, `sensor_msgs/Image` with `CameraInfo` as a depth
-/// frame.
+/// frame, with the colours and the labels of a detector from further images.
 ///
 /// The message types are template parameters, so both ROS 1 and ROS 2 are supported and no ROS header is included. A
 /// message is checked before it is read: even if its sizes are wrong, nothing outside its data is accessed.
@@ -15,6 +15,7 @@
 #include <array>
 #include <cstring>
 #include <limits>
+#include <set>
 #include <string>
 #include <type_traits>
 
@@ -174,41 +175,115 @@ sensor::Distortion distortion_of(const Info& info) {
     return take(info.d);
 }
 
+/// Images registered to a depth image and of its size, each where there is one.
+template <typename Image>
+struct Channels {
+  const Image* color = nullptr;   ///< `rgb8` or `bgr8`, with or without a fourth byte (`rgba8`, `bgra8`)
+  const Image* labels = nullptr;  ///< `16UC1` or `8UC1` (also called `mono16`, `mono8`): the detection whose mask holds
+                                  ///< each pixel, 0 = none
+  double score = 1.0;             ///< the detector's for each of them, 0..1; all are fruit
+};
+
+namespace detail {
+
+/// f(pixel, bytes) for every pixel of an image, row by row. @throws InputError for data shorter than the rows
+template <typename Image, typename F>
+void for_each_pixel(const Image& image, std::size_t bytes, F&& f) {
+  const std::size_t width = image.width, height = image.height, step = image.step;
+  check_message(step >= width * bytes, "Image",
+                "step " + std::to_string(step) + " is below the row's " + std::to_string(width * bytes));
+  check_message(image.data.size() >= step * height, "Image",
+                "data hold " + std::to_string(image.data.size()) + " bytes, step * height says more");
+  for (std::size_t v = 0; v < height; ++v)
+    for (std::size_t u = 0; u < width; ++u) f(v * width + u, image.data.data() + v * step + u * bytes);
+}
+
+/// Whether the 16 or 32 bit numbers of an image are in reverse order.
+template <typename Image>
+bool swapped(const Image& image) {
+  return static_cast<bool>(image.is_bigendian) != host_is_big_endian();
+}
+
+/// @throws InputError unless the image is as large as the frame
+template <typename Image>
+void check_registered(const Image& image, const sensor::Intrinsics& k, const std::string& name) {
+  check_message(
+      image.width == static_cast<std::uint32_t>(k.width) && image.height == static_cast<std::uint32_t>(k.height),
+      "Image",
+      name + ": " + std::to_string(image.width) + " x " + std::to_string(image.height) +
+          " pixels, but the depth image has " + std::to_string(k.width) + " x " + std::to_string(k.height) +
+          ": register it to the depth image");
+}
+
+template <typename Image>
+void add_color(sensor::DepthFrame& frame, const Image& image) {
+  check_registered(image, frame.intrinsics, "color");
+  const std::string encoding(image.encoding);
+  const bool four = encoding == "rgba8" || encoding == "bgra8";
+  check_message(four || encoding == "rgb8" || encoding == "bgr8", "Image",
+                "color: the encoding has to be rgb8 or bgr8, got '" + encoding + "'");
+  const std::size_t red = encoding[0] == 'r' ? 0 : 2;
+  frame.color.resize(frame.intrinsics.size());
+  for_each_pixel(image, four ? 4 : 3, [&](std::size_t i, const std::uint8_t* at) {
+    frame.color[i] = {at[red], at[1], at[2 - red]};
+  });
+}
+
+template <typename Image>
+void add_labels(sensor::DepthFrame& frame, const Image& image, double score) {
+  check_registered(image, frame.intrinsics, "labels");
+  check_message(score >= 0.0 && score <= 1.0, "Image", "labels: the score is outside of 0..1");
+  const std::string encoding(image.encoding);
+  const bool wide = encoding == "16UC1" || encoding == "mono16";
+  check_message(wide || encoding == "8UC1" || encoding == "mono8", "Image",
+                "labels: the encoding has to be 16UC1 or 8UC1, got '" + encoding + "'");
+  const bool swap = swapped(image);
+  frame.instances.resize(frame.intrinsics.size());
+  for_each_pixel(image, wide ? 2 : 1, [&](std::size_t i, const std::uint8_t* at) {
+    frame.instances[i] = wide ? read_number<std::uint16_t>(at, swap) : *at;
+  });
+  for (const std::uint16_t instance : std::set<std::uint16_t>(frame.instances.begin(), frame.instances.end())) {
+    if (instance == 0) continue;
+    frame.detections.emplace_back();
+    frame.detections.back().instance = instance;
+    frame.detections.back().score = score;
+  }
+  frame.detected = true;
+}
+
+}  // namespace detail
+
 /// A depth image, `16UC1` (mm; 0 and 65535 = no return) or `32FC1` (m; 0, NaN and infinities = no return), as a frame
-/// in metres. The distortion stated in its CameraInfo is removed.
+/// in metres, with the colours and labels registered to it. The distortion that its CameraInfo states is removed from
+/// all of them.
 /// @param image sensor_msgs/Image  @param info the CameraInfo that came with it
 /// @param rectified whether the image was rectified before, see intrinsics_of
+/// @param channels images that belong to it; a label image without labels says that a detector found nothing
 /// @throws InputError for another encoding, data shorter than the rows, a size that differs from the camera's, or an
 /// unusable camera
 template <typename Image, typename Info>
-sensor::DepthFrame depth_frame(const Image& image, const Info& info, bool rectified = false) {
+sensor::DepthFrame depth_frame(const Image& image, const Info& info, bool rectified = false,
+                               const Channels<Image>& channels = {}) {
   const auto check = [](bool ok, const std::string& text) { detail::check_message(ok, "Image", text); };
   sensor::DepthFrame frame;
   frame.intrinsics = intrinsics_of(info, rectified);
   check(image.width == info.width && image.height == info.height,
         std::to_string(image.width) + " x " + std::to_string(image.height) + " pixels, but CameraInfo says " +
             std::to_string(info.width) + " x " + std::to_string(info.height));
-  const bool millimetres = image.encoding == "16UC1";
+  const bool millimetres = image.encoding == "16UC1", swap = detail::swapped(image);
   check(millimetres || image.encoding == "32FC1",
         "encoding has to be 16UC1 or 32FC1, got '" + std::string(image.encoding) + "'");
-  const std::size_t width = image.width, height = image.height, step = image.step, bytes = millimetres ? 2 : 4;
-  check(step >= width * bytes, "step " + std::to_string(step) + " is below the row's " + std::to_string(width * bytes));
-  check(image.data.size() >= step * height,
-        "data hold " + std::to_string(image.data.size()) + " bytes, step * height says more");
-  const bool swap = static_cast<bool>(image.is_bigendian) != detail::host_is_big_endian();
-  frame.depth.resize(width * height);
-  for (std::size_t v = 0; v < height; ++v) {
-    const std::uint8_t* row = image.data.data() + v * step;
-    float* out = frame.depth.data() + v * width;
-    for (std::size_t u = 0; u < width; ++u) {
-      if (!millimetres) {
-        out[u] = detail::read_number<float>(row + 4 * u, swap);
-        continue;
-      }
-      const auto z = detail::read_number<std::uint16_t>(row + 2 * u, swap);
-      out[u] = z == 0xFFFF ? 0.0f : 0.001f * static_cast<float>(z);
+  frame.depth.resize(frame.intrinsics.size());
+  detail::for_each_pixel(image, millimetres ? 2 : 4, [&](std::size_t i, const std::uint8_t* at) {
+    if (!millimetres) {
+      frame.depth[i] = detail::read_number<float>(at, swap);
+      return;
     }
-  }
+    const auto z = detail::read_number<std::uint16_t>(at, swap);
+    frame.depth[i] = z == 0xFFFF ? 0.0f : 0.001f * static_cast<float>(z);
+  });
+  if (channels.color) detail::add_color(frame, *channels.color);
+  if (channels.labels) detail::add_labels(frame, *channels.labels, channels.score);
   if (!rectified) return sensor::rectified(frame, distortion_of(info));
   return frame;
 }

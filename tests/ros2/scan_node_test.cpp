@@ -1,0 +1,271 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The ROS 2 node as it is, with message types by rosidl and a stand-in for rclcpp and tf2 (stand_in/graph.hpp).
+#include "catch.hpp"
+#include "robot.hpp"
+#include "support/says.hpp"
+
+using namespace agrisee;
+using test::Ear;
+using test::latched;
+using test::Mouth;
+using test::Robot;
+
+TEST_CASE("the node leads a scan from the service to the fruit, by images or by points") {
+  for (const bool by_points : {false, true}) {
+    Robot robot;
+    REQUIRE(robot.bring_up() == "active");
+    CHECK(robot.status_says("idle, 0 views"));
+    REQUIRE(robot.call("start").success);
+    CHECK(robot.call("start").message == "a scan is going on");
+    int goals = 0;
+    while (robot.status_says("moving")) {
+      REQUIRE(++goals <= 3);
+      REQUIRE(robot.joint_goal.last->points.size() == 1);
+      CHECK(robot.joint_goal.last->joint_names.size() == 6);
+      CHECK(robot.joint_goal.last->points[0].positions.size() == 6);
+      const auto& time = robot.joint_goal.last->points[0].time_from_start;
+      CHECK(time.sec + 1e-9 * time.nanosec >= 0.1);
+      robot.go();
+      by_points ? robot.look_by_points() : robot.look();
+    }
+    CHECK(robot.status_says("done, "));
+    CHECK(goals >= 2);
+    CHECK(robot.joint_goal.last->points.empty());  // the arm holds
+    REQUIRE(robot.fruits.last->poses.size() == 2);
+    CHECK(robot.fruits.last->header.frame_id == "world");
+    for (const auto& pose : robot.fruits.last->poses) {
+      const Eigen::Vector3d at(pose.position.x, pose.position.y, pose.position.z);
+      CHECK(std::any_of(test::kTwoFruit.begin(), test::kTwoFruit.end(),
+                        [&](const Sphere& s) { return (s.center - at).norm() < 0.003; }));
+    }
+    // Whoever comes late hears the result, but no old goal.
+    const Ear<sensor_msgs::msg::PointCloud2> cloud("/agrisee/cloud", latched());
+    const Ear<visualization_msgs::msg::MarkerArray> markers("/agrisee/fruit_markers", latched());
+    const Ear<trajectory_msgs::msg::JointTrajectory> goal("/agrisee/joint_goal");
+    REQUIRE(cloud.last);
+    CHECK(cloud.last->fields.back().name == "instance");
+    CHECK(interop::PointCloud2View(*cloud.last).size() > 500);
+    REQUIRE(markers.last);
+    CHECK(markers.last->markers.size() > 2);
+    CHECK(goal.count == 0);
+    CHECK_FALSE(Robot::said("Left out"));
+  }
+}
+
+TEST_CASE("services stop, reset and skip views, and refuse what makes no sense") {
+  Robot robot;
+  CHECK(robot.call("start").message == "the node is not active");
+  REQUIRE(robot.bring_up() == "active");
+  CHECK(robot.call("stop").message == "no scan is going on");
+  CHECK(robot.call("skip_view").message == "no view was asked for");
+  REQUIRE(robot.call("start").success);
+  const Pose first = *robot.goal();
+  REQUIRE(robot.call("skip_view").success);
+  CHECK((robot.goal()->matrix() - first.matrix()).norm() > 1e-3);
+  CHECK(robot.joint_goal.count >= 2);
+  robot.go();
+  robot.look();
+  REQUIRE(robot.call("stop").success);
+  CHECK(robot.status_says("paused, 1 views"));
+  CHECK(robot.joint_goal.last->points.empty());
+  robot.look();  // nobody asked for it
+  CHECK(robot.status_says("paused, 1 views"));
+  REQUIRE(robot.call("start").success);
+  CHECK(robot.status_says("moving, 1 views"));
+  REQUIRE(robot.call("reset").success);
+  CHECK(robot.status_says("idle, 0 views"));
+}
+
+TEST_CASE("a node that is deactivated holds the arm, keeps what was seen and goes on") {
+  Robot robot;
+  REQUIRE(robot.bring_up() == "active");
+  robot.call("start");
+  robot.go();
+  robot.look();
+  REQUIRE(robot.status_says("moving, 1 views"));
+  REQUIRE(robot.node->deactivate().label() == "inactive");
+  CHECK(robot.joint_goal.last->points.empty());
+  CHECK(robot.depth.listeners() == 0);
+  const int heard = robot.status.count;
+  stand_in::fire_timers();
+  CHECK_FALSE(robot.call("start").success);
+  CHECK(robot.status.count == heard);
+  REQUIRE(robot.node->activate().label() == "active");
+  CHECK(robot.status_says("paused, 1 views"));
+  REQUIRE(robot.call("start").success);
+  CHECK(robot.status_says("moving, 1 views"));
+  REQUIRE(robot.node->shutdown().label() == "finalized");
+  CHECK(robot.joint_goal.last->points.empty());
+}
+
+TEST_CASE("topics have the quality of service that sensors and late listeners need") {
+  Robot robot({{"channels.color", true}});
+  REQUIRE(robot.bring_up() == "active");
+  // Best effort is heard, as is a driver that is reliable.
+  CHECK(robot.depth.listeners() == 1);
+  CHECK(Mouth<sensor_msgs::msg::Image>("/depth/image", rclcpp::QoS(5)).listeners() == 1);
+  CHECK(robot.info.listeners() == 1);
+  CHECK(robot.points.listeners() == 1);
+  CHECK(robot.joint_states.listeners() == 1);
+  CHECK(robot.color.listeners() == 1);
+  CHECK(robot.labels.listeners() == 0);  // not asked for
+  for (const char* topic : {"joint_goal", "chosen_view", "candidate_views", "view_markers", "cloud", "fruits", "bodies",
+                            "fruit_markers", "pre_grasps", "status"}) {
+    INFO(topic);
+    const auto& writers = stand_in::graph().topics.at(std::string("/agrisee/") + topic).writers;
+    REQUIRE_FALSE(writers.empty());
+    const auto writer = writers.back().lock();
+    REQUIRE(writer);
+    CHECK(writer->qos.reliable);
+    CHECK(writer->qos.depth == 1);
+    CHECK(writer->qos.transient_local == (std::string(topic) != "joint_goal"));
+  }
+  const auto& images = stand_in::graph().topics.at("/depth/image").readers;
+  REQUIRE(images.back().lock());
+  CHECK(images.back().lock()->qos.depth == 1);
+}
+
+TEST_CASE("a frame waits for its colours and labels and is taken with them") {
+  Robot robot({{"channels.color", true}, {"channels.labels", true}, {"channels.score", 0.9}});
+  REQUIRE(robot.bring_up() == "active");
+  robot.call("start");
+  robot.go();
+  robot.look();
+  const auto color = robot.image("bgr8", 3), labels = robot.image("16UC1", 2);
+  CHECK(robot.status_says("moving, 0 views"));
+  robot.color.say(color);
+  CHECK(robot.status_says("moving, 0 views"));
+  Robot::pass(0.4);
+  robot.labels.say(labels);
+  CHECK(robot.status_says("moving, 1 views"));
+  CHECK_FALSE(Robot::said("go without"));
+  CHECK_FALSE(Robot::said("Left out"));
+  // What does not fit is told, and the view is not lost.
+  robot.go();
+  robot.look();
+  robot.color.say(robot.image("mono8", 1));
+  robot.labels.say(robot.image("8UC1", 1));
+  CHECK(robot.status_says("moving, 1 views"));
+  CHECK(Robot::said("Left out: Image: color: the encoding has to be rgb8 or bgr8, got 'mono8'"));
+  // A detector that is silent does not hold it up.
+  Robot::pass(0.1);
+  for (int i = 0; i < 3; ++i) {
+    robot.tell_joints();
+    robot.look();
+    Robot::pass(0.6);
+  }
+  CHECK(robot.status_says("moving, 2 views"));
+  CHECK(Robot::said("the frame goes without"));
+}
+
+TEST_CASE("fruit whose colours are seen have a ripeness") {
+  Robot robot({{"channels.color", true}, {"channels.labels", true}});
+  const Ear<visualization_msgs::msg::MarkerArray> markers("/agrisee/fruit_markers", latched());
+  REQUIRE(robot.bring_up() == "active");
+  robot.call("start");
+  while (robot.status_says("moving")) {
+    robot.go();
+    auto color = robot.image("bgr8", 3);
+    for (std::size_t i = 0; i < color.data.size(); ++i) color.data[i] = std::array<std::uint8_t, 3>{35, 40, 190}[i % 3];
+    robot.color.say(color);
+    robot.labels.say(robot.labels_of_fruit());
+    robot.look();
+  }
+  CHECK(robot.status_says("done, "));
+  REQUIRE(robot.fruits.last->poses.size() == 2);
+  std::vector<std::string> texts;
+  for (const auto& marker : markers.last->markers)
+    if (marker.ns == "ids") texts.push_back(marker.text);
+  CHECK(texts == std::vector<std::string>{"1, red", "2, red"});
+}
+
+TEST_CASE("what cannot be used is left out with a message") {
+  Robot robot;
+  REQUIRE(robot.bring_up() == "active");
+  robot.call("start");
+  robot.go();
+  auto bad = robot.image("rgb8", 3);
+  robot.depth.say(bad);  // no camera info yet
+  CHECK_FALSE(Robot::said("Left out"));
+  robot.info.say(robot.camera_info());
+  robot.depth.say(bad);
+  CHECK(Robot::said("Left out: Image: encoding has to be 16UC1 or 32FC1, got 'rgb8'"));
+  robot.lost = true;
+  robot.look();
+  CHECK(Robot::said("Left out: no transform from camera to world"));
+  auto early = robot.image("32FC1", 4);
+  early.header.stamp = rclcpp::Time(std::int64_t{1000});  // of a clock that has just begun
+  robot.lost = false;
+  robot.depth.say(early);
+  CHECK(robot.status_says("moving, 0 views"));
+  robot.look();
+  CHECK(robot.status_says("moving, 1 views"));
+}
+
+TEST_CASE("a view that is not reached in time is followed by another") {
+  Robot robot({{"arrival.move_timeout", 20}});  // a whole number for a real one
+  REQUIRE(robot.bring_up() == "active");
+  robot.call("start");
+  const Pose first = *robot.goal();
+  Robot::pass(19.0);
+  stand_in::fire_timers();
+  CHECK((robot.goal()->matrix() - first.matrix()).norm() < 1e-12);
+  Robot::pass(2.0);
+  stand_in::fire_timers();
+  CHECK((robot.goal()->matrix() - first.matrix()).norm() > 1e-3);
+  CHECK(Robot::said("[warn] The view was not reached in time"));
+}
+
+TEST_CASE("autostart waits for joints, and for somebody who moves the arm") {
+  Robot robot({{"autostart", true}});
+  REQUIRE(robot.bring_up() == "active");
+  stand_in::fire_timers();
+  CHECK(robot.status_says("idle"));
+  sensor_msgs::msg::JointState state;
+  state.header.stamp = Robot::stamp();
+  state.name.assign(robot::kJointNames.begin(), robot::kJointNames.end());
+  state.position.assign(Workcell().start.data(), Workcell().start.data() + 6);
+  robot.joint_states.say(state);
+  stand_in::fire_timers();
+  CHECK(robot.status_says("moving"));
+}
+
+TEST_CASE("bad parameters keep the node unconfigured and are named") {
+  const auto refused = [](const std::vector<rclcpp::Parameter>& parameters, const char* text) {
+    Robot robot(parameters);
+    INFO(text);
+    CHECK(robot.bring_up() == "unconfigured");
+    CHECK(Robot::said(std::string("[error] ") + text));
+  };
+  refused({{"workcell", ""}}, "parameter 'workcell' has to name a scene file");
+  refused({{"workcell", "/nowhere/cell.yaml"}}, "/nowhere/cell.yaml");
+  refused({{"max_view", 3}}, "unknown parameter 'max_view'");
+  refused({{"arrival.setle", 3.0}}, "unknown parameter 'arrival.setle'");
+  refused({{"max_views", 3.5}}, "parameter 'max_views' has to be a whole number");
+  refused({{"max_views", std::int64_t{1} << 40}}, "parameter 'max_views' has to be a whole number of 32 bits");
+  refused({{"rectified", 1}}, "parameter 'rectified' has to be true or false");
+  refused({{"world_frame", 1}}, "parameter 'world_frame' has to be a text");
+  refused({{"speed", "fast"}}, "parameter 'speed' has to be a number");
+  refused({{"speed", 2.0}}, "speed must be above 0 and at most 1, got 2");
+  refused({{"seed", -1}}, "seed must be zero or more, got -1");
+  refused({{"channels.score", 3}}, "channels.score must be from 0 to 1, got 3");
+  refused({{"split.bodies.radius_min", 0.0}}, "split.bodies.radius_min must be");
+  refused({{"preset", "other"}}, "preset must be");
+}
+
+TEST_CASE("a node that was refused or cleaned up can be set right and configured again") {
+  Robot robot({{"speed", 2.0}, {"use_sim_time", true}, {"qos_overrides./tf.subscription.depth", 10}});
+  REQUIRE(robot.bring_up() == "unconfigured");
+  robot.node->set_parameter({"speed", 0.5});
+  REQUIRE(robot.bring_up() == "active");
+  const bool fused = robot.node->get_parameter("fuse_surfaces").get_parameter_value().get<bool>();
+  CHECK(fused);
+  REQUIRE(robot.node->deactivate().label() == "inactive");
+  REQUIRE(robot.node->cleanup().label() == "unconfigured");
+  CHECK_FALSE(robot.node->has_parameter("fuse_surfaces"));  // it had the value of the preset
+  CHECK(robot.node->has_parameter("speed"));
+  const auto sets = robot.node->get_parameter("max_views").get_parameter_value();
+  CHECK(sets.get<std::int64_t>() == 3);
+  REQUIRE(robot.bring_up() == "active");
+  CHECK(robot.status_says("idle, 0 views"));
+}
