@@ -48,6 +48,13 @@ double measured_share(const sensor::SurfaceImage& image, const fuse::FreeSpacePa
   return image.depth.empty() || image.fill >= free_space.min_fill ? 1.0 : std::max(kLeast, image.fill);
 }
 
+/// Whether the last view has become part of the map with at least some points. A view that was discarded, or a frame
+/// without returns, says nothing of what its pose can show.
+bool shows_anything(const Progress& progress) {
+  return !progress.views.empty() && !progress.views.back().discarded && progress.views.back().points_in > 0 &&
+         (progress.images.empty() || !progress.images.back().depth.empty());
+}
+
 /// A coarse depth image of obstacles, seen from one view.
 class ObstacleImage {
  public:
@@ -107,7 +114,8 @@ void ExpectedSurface::update(const Progress& progress, const SplitParameters& sp
   for (; images_read_ < progress.images.size(); ++images_read_) mark_known(progress.images[images_read_], free_space);
   const Labels labels = find_fruit(progress, split_parameters, free_space);
   collect_samples(progress.cloud);
-  weigh(promised, progress.cloud, progress.images.empty() ? 1.0 : measured_share(progress.images.back(), free_space));
+  if (shows_anything(progress))
+    weigh(promised, progress.cloud, progress.images.empty() ? 1.0 : measured_share(progress.images.back(), free_space));
   PointCloud<float> rest;
   for (std::size_t i = 0; i < progress.cloud.size(); ++i)
     if (labels[i] == 0) rest.points.push_back(progress.cloud.points[i]);

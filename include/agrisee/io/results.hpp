@@ -61,6 +61,7 @@ void write_views(const std::filesystem::path& path, const std::vector<View>& vie
 ///   `approach_direction_world` (unit vector from the pre-grasp position to the centre of the fruit),
 ///   `pre_grasp_position_world` (m), `pre_grasp_orientation_world` (of the tool, z along the approach direction) and,
 ///   if the arm is known, `pre_grasp_joints` (rad).
+/// - Where they are known: `truss` (see FoundTruss) and `ripeness` (see Ripeness).
 /// @throws InputError for a fruit that is not finite  @throws FileError when it cannot be written
 void write_fruits(const std::filesystem::path& path, const std::vector<Fruit>& fruits);
 
