@@ -238,6 +238,23 @@ class DensityMap {
     return in;
   }
 
+  /// Add one to `in` for each of the counted points of a that is within r of p.
+  void mark_within(const Block& a, const Vector3<S>& p, std::vector<int>& in) const {
+    const S r_sq = radius_ * radius_;
+    const Vector3<S> outside = (a.min - p).cwiseMax(p - a.max).cwiseMax(S(0));
+    if (outside.squaredNorm() > r_sq * (S(1) + S(16) * std::numeric_limits<S>::epsilon())) return;
+    const S* x = a.xyz[0].data();
+    const S* y = a.xyz[1].data();
+    const S* z = a.xyz[2].data();
+    const S px = p.x(), py = p.y(), pz = p.z();
+    int* out = in.data();
+    const std::size_t n = in.size();
+    for (std::size_t i = 0; i < n; ++i) {
+      const S dx = px - x[i], dy = py - y[i], dz = pz - z[i];
+      out[i] += agrisee::detail::sum_of_squares(dx, dy, dz) <= r_sq ? 1 : 0;
+    }
+  }
+
   /// Bring the counts up to date with the points that were appended since the last time, and mark the points that have
   /// one of them within r.
   void count(int threads) {
@@ -246,22 +263,28 @@ class DensityMap {
     for (Block& b : blocks_) b.counted = b.size();
   }
 
+  /// Points that are new are compared with all others, and the others with those that are new: one by one, since that
+  /// compares a whole block with each.
   void recount(Block& a) {
     for (Index id : a.ids) near_new_[static_cast<std::size_t>(id)] = 0;
-    bool affected = false;
-    for (Index n : a.near) affected = affected || blocks_[static_cast<std::size_t>(n)].fresh();
-    if (!affected) return;
-    for (std::size_t i = 0; i < a.size(); ++i) {
-      const Vector3<S> p = a.point(i);
-      const bool is_new = i >= a.counted;
+    for (std::size_t i = a.counted; i < a.size(); ++i) {
       int in = 0;
-      for (Index n : a.near) {
-        const Block& b = blocks_[static_cast<std::size_t>(n)];
-        if (is_new || b.fresh()) in += count_within(b, is_new ? 0 : b.counted, p);
-      }
-      result_.counts[static_cast<std::size_t>(a.ids[i])] += in;
-      near_new_[static_cast<std::size_t>(a.ids[i])] = in > 0;
+      for (Index n : a.near) in += count_within(blocks_[static_cast<std::size_t>(n)], 0, a.point(i));
+      add(a.ids[i], in);
     }
+    if (a.counted == 0) return;
+    std::vector<int> in;
+    for (Index n : a.near) {
+      const Block& b = blocks_[static_cast<std::size_t>(n)];
+      if (b.fresh() && in.empty()) in.resize(a.counted);
+      for (std::size_t j = b.counted; j < b.size(); ++j) mark_within(a, b.point(j), in);
+    }
+    for (std::size_t i = 0; i < in.size(); ++i) add(a.ids[i], in[i]);
+  }
+
+  void add(Index id, int in) {
+    result_.counts[static_cast<std::size_t>(id)] += in;
+    near_new_[static_cast<std::size_t>(id)] = in > 0;
   }
 
   /// Classify the points from added_ before the end on, and those near them.

@@ -35,13 +35,14 @@ struct FrameScratch {
 namespace detail {
 
 /// Indices of the k points nearest to q in no particular order, or of all points if there are fewer. Of points at equal
-/// distances those with lower indices are taken. The k-th is expected about `radius` away: for hundreds of neighbors,
+/// distances those with lower indices are taken. The k-th is expected about `expected` away: for hundreds of neighbors,
 /// selecting from all points in a ball is several times faster than a heap.
 template <typename S, typename Search>
-const Indices& k_nearest(const Search& search, const Vector3<S>& q, std::size_t k, S radius, FrameScratch<S>& scratch) {
+const Indices& k_nearest(const Search& search, const Vector3<S>& q, std::size_t k, S expected,
+                         FrameScratch<S>& scratch) {
   Neighbors<S>& found = scratch.neighbors;
   Indices& ids = scratch.ids;
-  for (const S reach : {S(1.25) * radius, S(2) * radius}) {
+  for (const S reach : {S(1.1) * expected, S(1.5) * expected, S(2.2) * expected}) {
     found.clear();
     search.visit(q, reach, [&](Index i, S d_sq) { found.push_back({i, d_sq}); });
     if (found.size() >= k) break;
@@ -102,11 +103,14 @@ inline bool faces_inwards(const Observation& seen, const Eigen::Vector3d& p, con
 /// @param seen the last view
 /// @param parameters k, radius, upsilon and psi are used
 /// @param scratch memory to use again
+/// @param density number of points within `radius`, if known: then the right neighborhood is searched at once; the
+///   result does not depend on it but for rounding
 /// @return empty if the point is not finite or the sensor is at its place
 template <typename C, typename Search>
 std::optional<Frontier> frontier_frame(const C& cloud, const Search& search, Index index,
                                        const Eigen::Vector3d& seen_from, const Observation& seen,
-                                       const Parameters& parameters, FrameScratch<scalar_t<C>>& scratch) {
+                                       const Parameters& parameters, FrameScratch<scalar_t<C>>& scratch,
+                                       int density = 0) {
   using S = scalar_t<C>;
   const Vector3<S> q = point(cloud, static_cast<std::size_t>(index));
   Frontier f;
@@ -117,8 +121,11 @@ std::optional<Frontier> frontier_frame(const C& cloud, const Search& search, Ind
   if (!is_finite(q) || !std::isfinite(range) || !(range > 0.0)) return std::nullopt;
   sight /= range;
 
-  const PrincipalAxes<S> pca = principal_axes(
-      cloud, detail::k_nearest<S>(search, q, parameters.k(), static_cast<S>(parameters.radius), scratch));
+  // On a surface, the number of points within a distance grows with its square.
+  const double share = density > 0 ? static_cast<double>(parameters.k()) / density : 1.0;
+  const auto expected = static_cast<S>(parameters.radius * std::sqrt(std::min(share, 16.0)));
+  const PrincipalAxes<S> pca =
+      principal_axes(cloud, detail::k_nearest<S>(search, q, parameters.k(), expected, scratch));
   const Eigen::Vector3d mean = pca.mean.template cast<double>();
   const Eigen::Matrix3d axes =
       detail::frame_axes({mean, pca.variance.template cast<double>(), pca.axes.template cast<double>()}, sight);

@@ -17,12 +17,10 @@
 #include <agrisee/core/parallel.hpp>
 #include <agrisee/core/stop_reason.hpp>
 #include <agrisee/neighbors/grid.hpp>
+#include <agrisee/see/candidates.hpp>
 #include <agrisee/see/density.hpp>
-#include <agrisee/see/occlusion.hpp>
 #include <agrisee/see/selector.hpp>
 #include <agrisee/see/view_controller.hpp>
-
-#include <map>
 
 namespace agrisee::see {
 
@@ -33,11 +31,7 @@ class Explorer {
   /// @param threads the results do not depend on it
   /// @throws FieldError if a parameter is out of its range
   explicit Explorer(const Parameters& parameters, int threads = 1)
-      : parameters_(parameters),
-        threads_(threads),
-        map_(parameters),
-        near_(static_cast<float>(2.0 * parameters.upsilon)),
-        sparse_(near_) {}
+      : parameters_(parameters), threads_(threads), map_(parameters), occluders_(parameters.upsilon) {}
 
   /// Merge the points of a view.
   /// @param cloud points of the view, any cloud type (m, world); may be empty
@@ -79,7 +73,7 @@ class Explorer {
     }
     states_.resize(kept.size());
     unreachable_.resize(kept.size());
-    std::map<Index, Candidate> candidates;
+    Candidates candidates;
     for (auto& [i, c] : candidates_) {
       const Index j = renumbered[static_cast<std::size_t>(i)];
       if (j < 0) {
@@ -87,14 +81,14 @@ class Explorer {
         continue;
       }
       c.frame.index = c.view.frontier = j;
+      c.depth_step = -1;
       candidates.emplace(j, c);
     }
     candidates_.swap(candidates);
     if (target_) target_ = renumbered[static_cast<std::size_t>(*target_)];
     if (target_ && *target_ < 0) target_.reset();
     changed_.reset();
-    near_ = sparse_ = HashGrid<float>(static_cast<float>(2.0 * parameters_.upsilon));
-    bounds_ = Aabb();
+    occluders_ = Occluders(parameters_.upsilon);
     sum_.setZero();
     index_points(0);
   }
@@ -107,9 +101,9 @@ class Explorer {
     check_input(sensor.allFinite(), "see::Explorer::next_view: the sensor's position is not finite");
     if (observed_) {
       observed_ = false;
+      ++step_;
       update_frontiers();
       control();
-      ++step_;
     }
     if (views_taken() >= parameters_.max_views) return stop(StopReason::max_views);
     auto chosen = choose(sensor);
@@ -146,7 +140,10 @@ class Explorer {
   /// Whether the line of sight from a view's frontier to a position (m, world) is free.
   bool sees(const ViewProposal& view, const Eigen::Vector3d& position) const {
     const auto found = candidates_.find(view.frontier);
-    return found != candidates_.end() && visible(found->second.frame, position);
+    if (found == candidates_.end()) return false;
+    const Frontier& f = found->second.frame;
+    const double depth = surface_depth<float>(occluders_, f, parameters_.upsilon);
+    return is_visible<float>(occluders_, f.point, depth, position, parameters_, occluders_.bounds());
   }
 
   /// The sensor will look at the view's frontier from another position (m, world), because it cannot reach the view's.
@@ -182,32 +179,23 @@ class Explorer {
   }
 
  private:
-  struct Candidate {
-    Frontier frame;  // as of when the point became a frontier
-    ViewProposal view;
-    Index node = -1;  // in the graph
-    int step = -1;    // the last step in which the arcs out of its node were updated
-  };
-
-  /// Update bounds, sum and searches with the points from index `begin` on.
+  /// Update sum and searches with the points from index `begin` on.
   void index_points(std::size_t begin) {
-    const auto upsilon = static_cast<float>(parameters_.upsilon);
     for (std::size_t i = begin; i < map_.size(); ++i) {
       const Eigen::Vector3f& p = cloud().points[i];
-      bounds_.extend(p.cast<double>());
       sum_ += p.cast<double>();
-      near_.insert(p);
-      if (!sparse_.nearer(p, upsilon)) sparse_.insert(p);
+      occluders_.insert(p);
     }
+    search_.reset();
+  }
+
+  const Grid<float>& search() {
+    if (!search_) search_.emplace(cloud(), static_cast<float>(0.5 * parameters_.radius));
+    return *search_;
   }
 
   const Eigen::Vector3d& first_sensor(Index i) const {
     return sensors_[static_cast<std::size_t>(cloud().views[static_cast<std::size_t>(i)])];
-  }
-
-  bool visible(const Frontier& f, const Eigen::Vector3d& position) const {
-    const double start = surface_depth<float>(near_, f, parameters_.upsilon);
-    return is_visible<float>(near_, f.point, start, position, parameters_, bounds_);
   }
 
   /// Frames and views for the points that became frontiers; points that are no longer frontiers are dropped.
@@ -221,22 +209,34 @@ class Explorer {
       if (!is && found != candidates_.end()) remove(found);
     }
     if (added.empty()) return;
-    const Grid<float> search(cloud(), static_cast<float>(0.5 * parameters_.radius));
-    std::vector<std::optional<Frontier>> frames(added.size());
-    parallel_chunks(added.size(), threads_, 64, [&](std::size_t begin, std::size_t end) {
-      FrameScratch<float> scratch;
-      for (std::size_t j = begin; j < end; ++j)
-        frames[j] = frontier_frame(cloud(), search, added[j], first_sensor(added[j]), seen_, parameters_, scratch);
-    });
+    const std::vector<std::optional<Frontier>> frames = frames_of(added);
     for (std::size_t j = 0; j < added.size(); ++j) {
       unreachable_[static_cast<std::size_t>(added[j])] = 0;
       if (!frames[j]) {
         map_.give_up(added[j]);
         continue;
       }
-      candidates_.emplace(added[j],
-                          Candidate{*frames[j], propose(*frames[j], parameters_.view_distance), graph_.add(), -1});
+      Candidate c;
+      c.frame = *frames[j];
+      c.view = propose(c.frame, parameters_.view_distance);
+      c.node = graph_.add();
+      candidates_.emplace(added[j], c);
     }
+  }
+
+  /// Frames of points; empty where there is none.
+  std::vector<std::optional<Frontier>> frames_of(const Indices& points) {
+    const Grid<float>& grid = search();
+    std::vector<std::optional<Frontier>> frames(points.size());
+    parallel_chunks(points.size(), threads_, 16, [&](std::size_t begin, std::size_t end) {
+      FrameScratch<float> scratch;
+      for (std::size_t j = begin; j < end; ++j) {
+        const int density = map_.counts()[static_cast<std::size_t>(points[j])];
+        frames[j] =
+            frontier_frame(cloud(), grid, points[j], first_sensor(points[j]), seen_, parameters_, scratch, density);
+      }
+    });
+    return frames;
   }
 
   /// Decide what becomes of the frontier that the last view was taken for, if it is still one.
@@ -252,44 +252,34 @@ class Explorer {
     if (!showed_something ||
         control_view(c.frame, seen_.centroid(), first_sensor(t), parameters_.view_distance,
                      states_[static_cast<std::size_t>(t)], c.view) == ControllerAction::nothing_helps)
-      give_up(t);
-    else if (parameters_.adjusted_first && valid(c.frame))
-      changed_ = t;
+      return give_up(t);
+    if (parameters_.adjusted_first) changed_ = t;
   }
 
   /// Move the views nearest to the sensor whose frontiers they do not see, give up those frontiers that cannot be seen
   /// at all, and update the graph for the views nearest to the sensor.
   void update_views(const Eigen::Vector3d& sensor) {
-    Indices near = nearest(sensor);
-    std::vector<char> sees_own(near.size(), 1);
+    const auto most = static_cast<std::size_t>(parameters_.max_updates);
+    const std::vector<Candidate*> updated = nearest_views(places(), sensor, most);
+    std::vector<char> seen(updated.size(), 1);
     parallel_for(
-        near.size(), threads_,
+        updated.size(), threads_,
         [&](std::size_t j) {
-          Candidate& c = candidates_.at(near[j]);
-          const double start = surface_depth<float>(near_, c.frame, parameters_.upsilon);
-          if (is_visible<float>(near_, c.frame.point, start, c.view.position, parameters_, bounds_)) return;
-          c.view = propose_around(sparse_, c.frame, start, first_sensor(near[j]), parameters_);
-          sees_own[j] = is_visible<float>(near_, c.frame.point, start, c.view.position, parameters_, bounds_);
+          Candidate& c = *updated[j];
+          measure_depth(c, occluders_, parameters_, step_);
+          if (sees_own(c, occluders_, parameters_)) return;
+          c.view = propose_around(occluders_.sparse(), c.frame, c.depth, first_sensor(c.frame.index), parameters_);
+          seen[j] = sees_own(c, occluders_, parameters_);
         },
         1);
-    for (std::size_t j = 0; j < near.size(); ++j)
-      if (!sees_own[j]) give_up(near[j]);
-    near = nearest(sensor);
-    std::vector<Indices> arcs(near.size());
-    parallel_for(
-        near.size(), threads_,
-        [&](std::size_t j) {
-          const Candidate& from = candidates_.at(near[j]);
-          for (Index i : nearest(from.view.position)) {
-            const Candidate& to = candidates_.at(i);
-            if (i != near[j] && visible(to.frame, from.view.position)) arcs[j].push_back(to.node);
-          }
-        },
-        1);
+    for (std::size_t j = 0; j < updated.size(); ++j)
+      if (!seen[j]) give_up(updated[j]->frame.index);
+    const std::vector<Place> all = places();
+    const std::vector<Candidate*> near = nearest_views(all, sensor, most);
+    std::vector<Indices> arcs = arcs_from(near, all, occluders_, parameters_, step_, threads_);
     for (std::size_t j = 0; j < near.size(); ++j) {
-      Candidate& c = candidates_.at(near[j]);
-      graph_.connect(c.node, std::move(arcs[j]));
-      c.step = step_;
+      graph_.connect(near[j]->node, std::move(arcs[j]));
+      near[j]->step = step_;
     }
   }
 
@@ -297,16 +287,12 @@ class Explorer {
     return !parameters_.outward_normals_only || points_outward(f, sum_ / static_cast<double>(map_.size()));
   }
 
-  /// The valid frontiers whose views are nearest to a position, nearest first, at most max_updates of them.
-  Indices nearest(const Eigen::Vector3d& position) const {
-    std::vector<std::pair<double, Index>> views;
-    for (const auto& [i, c] : candidates_)
-      if (valid(c.frame)) views.emplace_back((c.view.position - position).squaredNorm(), i);
-    const auto n = std::min(views.size(), static_cast<std::size_t>(parameters_.max_updates));
-    const auto end = views.begin() + static_cast<std::ptrdiff_t>(n);
-    std::partial_sort(views.begin(), end, views.end());
-    Indices out;
-    for (std::size_t j = 0; j < n; ++j) out.push_back(views[j].second);
+  /// The views of the valid frontiers, in the order of these.
+  std::vector<Place> places() {
+    std::vector<Place> out;
+    out.reserve(candidates_.size());
+    for (auto& [i, c] : candidates_)
+      if (valid(c.frame)) out.push_back({c.view.position, &c});
     return out;
   }
 
@@ -321,12 +307,13 @@ class Explorer {
       options.push_back({c.node, (c.view.position - sensor).norm()});
       frontiers.push_back(i);
     }
-    if (changed_ && candidates_.find(*changed_) != candidates_.end()) return changed_;
+    const auto changed = changed_ ? candidates_.find(*changed_) : candidates_.end();
+    if (changed != candidates_.end() && valid(changed->second.frame)) return changed_;
     const auto chosen = select_view(options, graph_);
     return chosen ? std::optional(frontiers[*chosen]) : std::nullopt;
   }
 
-  void remove(std::map<Index, Candidate>::iterator c) {
+  void remove(Candidates::iterator c) {
     graph_.remove(c->second.node);
     candidates_.erase(c);
   }
@@ -348,13 +335,12 @@ class Explorer {
   Parameters parameters_;
   int threads_;
   DensityMap<float> map_;
-  HashGrid<float> near_;                           // search over the points, in cells of 2 upsilon
-  HashGrid<float> sparse_;                         // some of the points, no two nearer than upsilon: the occluders
-  Aabb bounds_;                                    // of all points
+  Occluders occluders_;                            // the points, for lines of sight
+  std::optional<Grid<float>> search_;              // the points, for frames; made when needed
   Eigen::Vector3d sum_ = Eigen::Vector3d::Zero();  // of all points
   std::vector<Eigen::Vector3d> sensors_;           // position of each view
   Observation seen_;                               // the last view
-  std::map<Index, Candidate> candidates_;          // by index of the point
+  Candidates candidates_;
   VisibilityGraph graph_;
   std::vector<ControllerState> states_;  // per point
   std::vector<char> unreachable_;        // per point: whether it was given up because its view cannot be reached
