@@ -158,7 +158,7 @@ TEST_CASE("parameters: k, separation, checks", "[see]") {
   int fields = 0;
   Parameters p;
   Parameters::fields(p, [&](const char*, auto&, const auto&...) { ++fields; });
-  REQUIRE(fields == 10);
+  REQUIRE(fields == 11);
 }
 
 TEMPLATE_TEST_CASE("classification equals brute force", "[see]", float, double) {

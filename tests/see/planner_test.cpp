@@ -191,27 +191,76 @@ TEST_CASE("a view that shows nothing, or nothing near any frontier, makes its fr
   REQUIRE_NOTHROW(frame_of(planner, first->frontier));
 }
 
-TEST_CASE("the frame of a frontier is estimated once, when the point becomes one", "[see]") {
-  Explorer planner(Parameters::published());
+namespace {
+
+/// Frames of the strip's frontiers, before and after a slope was seen beside it. That changes their neighbors.
+std::vector<std::pair<Frontier, Frontier>> frames_beside_a_slope(const Parameters& parameters) {
+  Explorer planner(parameters);
   planner.observe(kStrip, kStart);
   planner.next_view(kStart);
   const auto before = planner.frontiers();
-  REQUIRE(before.size() > 50);
-  // A slope beside the strip changes the neighbors, and with them what a new estimate would be.
   Points slope;
   for (const auto& p : test::rectangle(0.1, 0.13, -0.06, 0.06, 20000, 2))
     slope.push_back(p + Eigen::Vector3f(0.0f, 0.0f, p.x() - 0.1f));
   planner.observe(slope, kStart);
   planner.next_view(kStart);
-  std::size_t same = 0;
+  std::vector<std::pair<Frontier, Frontier>> out;
   for (const Frontier& f : before)
     for (const Frontier& g : planner.frontiers())
-      if (f.index == g.index) {
-        REQUIRE(f.normal == g.normal);
-        REQUIRE(f.direction == g.direction);
-        ++same;
-      }
-  REQUIRE(same > 20);
+      if (f.index == g.index) out.emplace_back(f, g);
+  REQUIRE(out.size() > 20);
+  return out;
+}
+
+}  // namespace
+
+TEST_CASE("without renewal the frame of a frontier is estimated once, when the point becomes one", "[see]") {
+  Parameters parameters = Parameters::published();
+  parameters.renew_frames = false;
+  for (const auto& [f, g] : frames_beside_a_slope(parameters)) {
+    REQUIRE(f.normal == g.normal);
+    REQUIRE(f.direction == g.direction);
+  }
+}
+
+TEST_CASE("frames are renewed for as many views as are updated", "[see]") {
+  Parameters parameters = Parameters::published();
+  const auto renewed = [&] {
+    std::size_t n = 0;
+    for (const auto& [f, g] : frames_beside_a_slope(parameters)) n += f.direction == g.direction ? 0u : 1u;
+    return n;
+  };
+  parameters.max_updates = 1000;
+  REQUIRE(renewed() > 10);
+  parameters.max_updates = 1;
+  REQUIRE(renewed() <= 1);
+}
+
+TEST_CASE("a renewed frame takes the proposed view along, but not one that the controller has moved", "[see]") {
+  Parameters parameters = Parameters::published();
+  parameters.max_updates = 1000;
+  Explorer planner(parameters);
+  planner.observe(kStrip, kStart);
+  REQUIRE(planner.next_view(kStart));
+  const Frontier f = stubborn(planner);
+  const ViewProposal first = propose(f, 0.38);
+  planner.take(first);
+  Points shown = kStrip;
+  for (const auto& p : beside(f, 0.03f)) shown.push_back(p);
+  planner.observe(beside(f, 0.03f), shown, first.position);
+  const auto second = planner.next_view(first.position);
+  REQUIRE(second);
+  REQUIRE(second->frontier == f.index);
+  const Frontier renewed = frame_of(planner, f.index);
+  REQUIRE(renewed.point == f.point);
+  REQUIRE((second->position - propose(renewed, 0.38).position).norm() > 0.01);
+  planner.refuse(*second);
+  // What comes next was not moved: its view follows from its frame, or leads around what hides it.
+  const auto third = planner.next_view(first.position);
+  REQUIRE(third);
+  const Frontier g = frame_of(planner, third->frontier);
+  REQUIRE((third->position - g.point).norm() == Approx(0.38));
+  REQUIRE((third->position - g.point).dot(g.normal) > 0.0);
 }
 
 TEST_CASE("a planner that is shown the same over and over ends", "[see]") {

@@ -18,10 +18,12 @@ namespace agrisee::see {
 
 /// A frontier and its view.
 struct Candidate {
-  Frontier frame;       ///< as of when the point became a frontier
+  Frontier frame;       ///< as of when the point became a frontier, or of when it was renewed
   ViewProposal view;    ///< proposed for it
   Index node = -1;      ///< in the visibility graph
   int step = -1;        ///< the last step in which the arcs out of its node were updated
+  int frame_step = -1;  ///< the step in which the frame was estimated
+  bool moved = false;   ///< whether the view controller has moved the view
   double depth = 0.0;   ///< surface_depth() at the frontier (m)
   int depth_step = -1;  ///< the step that `depth` belongs to
 };

@@ -31,9 +31,11 @@ struct Parameters {
   double upsilon = 0.005;                ///< radius about a sight line that must be free of points (m)
   int max_views = 20;                    ///< largest number of views
   bool adjusted_first = true;         ///< a view that was adjusted or switched comes next; off: it competes as in SEE++
+  bool renew_frames = true;           ///< frames of updated views are estimated anew; off: once, as in SEE++
   bool outward_normals_only = false;  ///< only frontiers whose normals point away from the cloud's mean ([1], eq. 2)
 
-  /// SEE++ as published: its own rule for the separation. Density, distances and tau are those of [1].
+  /// SEE++ as published: its own rule for the separation. Density, distances and tau are those of [1]. Two things are
+  /// not as published: `adjusted_first` and `renew_frames` are on.
   static Parameters published() {
     Parameters p;
     p.separation = std::cbrt(3.0 * p.radius / (2.0 * kPi * p.rho));
@@ -83,6 +85,7 @@ struct Parameters {
     f("upsilon", p.upsilon, Range::positive().from({p.psi / 1e5, "psi / 100000"}));
     f("max_views", p.max_views, Range::at_least(1));
     f("adjusted_first", p.adjusted_first);
+    f("renew_frames", p.renew_frames);
     f("outward_normals_only", p.outward_normals_only);
   }
 };

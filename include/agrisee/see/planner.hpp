@@ -11,7 +11,7 @@
 /// explorer.stop_reason();                                          // why there is no further view
 /// ```
 /// It knows nothing of the robot: `reachable` says which proposals can be reached. It ends after `max_views` views at
-/// the latest. Cost per step: one frame for each new frontier, and tau^2 lines of sight.
+/// the latest. Cost per step: one frame for each new frontier and each of the tau nearest, and tau^2 lines of sight.
 #pragma once
 
 #include <agrisee/core/parallel.hpp>
@@ -220,6 +220,7 @@ class Explorer {
       c.frame = *frames[j];
       c.view = propose(c.frame, parameters_.view_distance);
       c.node = graph_.add();
+      c.frame_step = step_;
       candidates_.emplace(added[j], c);
     }
   }
@@ -253,14 +254,16 @@ class Explorer {
         control_view(c.frame, seen_.centroid(), first_sensor(t), parameters_.view_distance,
                      states_[static_cast<std::size_t>(t)], c.view) == ControllerAction::nothing_helps)
       return give_up(t);
+    c.moved = true;
     if (parameters_.adjusted_first) changed_ = t;
   }
 
-  /// Move the views nearest to the sensor whose frontiers they do not see, give up those frontiers that cannot be seen
-  /// at all, and update the graph for the views nearest to the sensor.
+  /// Renew the frames of the views nearest to the sensor, move those views that do not see their frontiers, give up
+  /// those frontiers that cannot be seen at all, and update the graph for the views nearest to the sensor.
   void update_views(const Eigen::Vector3d& sensor) {
     const auto most = static_cast<std::size_t>(parameters_.max_updates);
     const std::vector<Candidate*> updated = nearest_views(places(), sensor, most);
+    if (parameters_.renew_frames) renew(updated);
     std::vector<char> seen(updated.size(), 1);
     parallel_for(
         updated.size(), threads_,
@@ -280,6 +283,24 @@ class Explorer {
     for (std::size_t j = 0; j < near.size(); ++j) {
       graph_.connect(near[j]->node, std::move(arcs[j]));
       near[j]->step = step_;
+    }
+  }
+
+  /// Estimate the frames of candidates anew, as the points around them are now. Views go with the normals, except for
+  /// those that the controller has moved. SEE++ estimates a frame once, when the point becomes a frontier. Then few
+  /// points beyond the edge are known, and the normal leans towards what had been seen.
+  void renew(const std::vector<Candidate*>& candidates) {
+    Indices points;
+    for (const Candidate* c : candidates)
+      if (c->frame_step != step_) points.push_back(c->frame.index);
+    const std::vector<std::optional<Frontier>> frames = frames_of(points);
+    for (std::size_t j = 0; j < points.size(); ++j) {
+      Candidate& c = candidates_.at(points[j]);
+      c.frame_step = step_;
+      if (!frames[j]) continue;
+      c.frame = *frames[j];
+      c.depth_step = -1;
+      if (!c.moved) c.view = propose(c.frame, parameters_.view_distance);
     }
   }
 

@@ -681,6 +681,7 @@ class SeeParameters:
     upsilon: float
     max_views: int
     adjusted_first: bool
+    renew_frames: bool
     outward_normals_only: bool
     __hash__: ClassVar[None]  # type: ignore[assignment]
     def to_dict(self) -> Dict[str, Any]: ...
