@@ -91,7 +91,7 @@ TEST_CASE("arcs lead to the frontiers that a view sees, among those of the tau v
   }
   for (int y = -20; y <= 20; ++y)
     for (int z = 0; z <= 100; ++z) occluders.insert({0.0f, 0.004f * float(y), 0.004f * float(z)});
-  Parameters parameters;
+  see::Parameters parameters;
   for (const int threads : {1, 2}) {
     REQUIRE(arcs_from(all, places, occluders, parameters, threads, threads) ==
             std::vector<Indices>{{1}, {0}, {3}, {2}});
@@ -105,7 +105,7 @@ TEST_CASE("arcs lead to the frontiers that a view sees, among those of the tau v
 TEST_CASE("a frontier's depth is measured once a step", "[see]") {
   Candidate c = above(0.0, 0.0, 0);
   Occluders occluders(0.005);
-  const Parameters parameters;
+  const see::Parameters parameters;
   occluders.insert({0.0f, 0.0f, 0.0f});
   measure_depth(c, occluders, parameters, 1);
   REQUIRE(c.depth == Approx(0.01));
