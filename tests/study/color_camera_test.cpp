@@ -38,13 +38,12 @@ Capture look(const TracedScene& traced, const ImageOptions& options, std::uint64
 }
 
 /// The hue angle (rad, CIELAB) of linear light.
-double hue_of(const Eigen::Vector3d& light) {
+double hue_of_light(const Eigen::Vector3d& light) {
   Rgb rgb{};
   for (std::size_t c = 0; c < 3; ++c)
     rgb[c] = static_cast<std::uint8_t>(
         std::lround(255.0 * (1.055 * std::pow(light[static_cast<Eigen::Index>(c)], 1.0 / 2.4) - 0.055)));
-  const Eigen::Vector3d lab = to_lab(rgb);
-  return std::atan2(lab.z(), lab.y());
+  return hue_of(to_lab(rgb));
 }
 
 /// The colours of the pixels that see one object.
@@ -65,7 +64,7 @@ TEST_CASE("the share of a fruit's surface that has turned is that of the scene")
     Rng rng(5);
     for (int i = 0; i < 4000; ++i) {
       const Eigen::Vector3d p = Eigen::Vector3d(0.0, 0.4, 0.2) + 0.035 * rng.direction();
-      ripe += hue_of(surface_color(traced.looks()[0], 0, p)) < deg(70);
+      ripe += hue_of_light(surface_color(traced.looks()[0], 0, p)) < deg(70);
       all += 1.0;
     }
     CHECK(ripe / all == Approx(share).margin(0.035));
