@@ -233,10 +233,17 @@ std::string fruits(const Data& data) {
 
 std::string curves(const Data& data) {
   return table(data, [](Columns& c, const CellRecord& r, const Row&) {
-    for (std::size_t i = 0; i < std::max(r.recall_after.size(), r.true_after.size()); ++i) {
+    const std::size_t views =
+        std::max({r.whole_after.size(), r.scanned_after.size(), r.recall_after.size(), r.true_after.size()});
+    const auto share = [](const std::vector<double>& after, std::size_t i) {
+      return i < after.size() ? Value(after[i]) : std::nullopt;
+    };
+    for (std::size_t i = 0; i < views; ++i) {
       cell_columns(c, r);
       c.number("view", static_cast<double>(i + 1));
-      c.percent("recall_observable_pct", i < r.recall_after.size() ? Value(r.recall_after[i]) : std::nullopt);
+      c.percent("scanned_pct", share(r.whole_after, i));
+      c.percent("scanned_observable_pct", share(r.scanned_after, i));
+      c.percent("recall_observable_pct", share(r.recall_after, i));
       c("true_detections", i < r.true_after.size() ? Value(r.true_after[i]) : std::nullopt, 0);
       c.end_row();
     }

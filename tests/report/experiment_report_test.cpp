@@ -189,6 +189,7 @@ TEST_CASE("means, worst rows and repeatability are what they are by hand") {
   const auto curves = read_table(folder / "report/curves.csv");
   REQUIRE(curves.size() == 12);
   CHECK(curves[1].at("view") == "2");
+  CHECK(curves[1].at("scanned_observable_pct") == "95");
   CHECK(curves[1].at("recall_observable_pct") == "95");
   const auto scenes = read_table(folder / "report/scenes.csv");
   REQUIRE(scenes.size() == 1);
