@@ -175,6 +175,12 @@ std::vector<SightLines> sight_lines(const Cloud& cloud, const CloudOrigin& origi
   return lines;
 }
 
+/// Sight lines that end within this share of a body's radius from its surface end there.
+constexpr double kSightMargin = 0.12;
+
+/// Whether one viewpoint is given for all points.
+bool has_one_viewpoint(const CloudOrigin& origin) { return origin.viewpoint && origin.sensors.empty(); }
+
 /// Evidence of free space from the points of a cloud; empty where no body asks for it, or no sensor's place is known.
 /// @param noise standard deviation (m) of the points about their own surface
 SeenThrough free_space_of(const Cloud& cloud, const Parameters& parameters, const CloudOrigin& origin, double noise) {
@@ -183,8 +189,19 @@ SeenThrough free_space_of(const Cloud& cloud, const Parameters& parameters, cons
   if (lines.empty()) return {};
   const double least = std::max(parameters.free_space.margin, 3.0 * noise);
   return [lines = std::move(lines), least](const Ellipsoid& body) {
-    constexpr double kMargin = 0.12, kMaxIncidence = deg(70);  // of the radius; a single view sees much at a slant
-    return seen_through(lines, body, kMaxIncidence, std::max(least, kMargin * body.mean_radius()));
+    constexpr double kMaxIncidence = deg(70);  // a single view sees much at a slant
+    return seen_through(lines, body, kMaxIncidence, std::max(least, kSightMargin * body.mean_radius()));
+  };
+}
+
+/// Evidence of what one sensor saw where a body should be; empty where no body asks for it, or several sensors saw the
+/// cloud.
+/// @param cloud all points, outliers too: they occlude
+/// @param noise standard deviation (m) of the points about their own surface
+SeenOn seen_on_of(const Cloud& cloud, const Parameters& parameters, const CloudOrigin& origin, double noise) {
+  if (!parameters.split.fit_bodies || !has_one_viewpoint(origin) || cloud.empty()) return {};
+  return [lines = SightLines(cloud, *origin.viewpoint), noise](const Ellipsoid& body) {
+    return seen_on(lines, body, std::max(3.0 * noise, kSightMargin * body.mean_radius()));
   };
 }
 
@@ -218,9 +235,6 @@ void doubt(const std::string& what, bool small, const CloudOrigin& origin, std::
 /// From this share of the largest expected radius on, a curved surface tells where it was seen from; small bumps do
 /// not.
 constexpr double kMedium = 0.33;
-
-/// Whether one viewpoint is given for all points.
-bool has_one_viewpoint(const CloudOrigin& origin) { return origin.viewpoint && origin.sensors.empty(); }
 
 /// Doubt one viewpoint from which many points would be hidden behind others. Those of single views, real ones and such
 /// with much noise included, hide less than 1 % of their points, those of three views and more at least 6 %.
@@ -349,7 +363,7 @@ ScanResult process(Cloud&& cloud, const Parameters& parameters, const CloudOrigi
     const MaskEvidence masks = fuse::mask_evidence(views, bodies, parameters.masks, origin.mask_order);
     return split(result.cloud, fitted.split,
                  seen_through ? seen_through : free_space_of(result.cloud, parameters, origin, noise.points), threads,
-                 masks);
+                 masks, seen_through ? SeenOn() : seen_on_of(result.raw, parameters, origin, noise.points));
   });
   result.bodies = found.bodies;
 

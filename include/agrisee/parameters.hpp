@@ -118,10 +118,12 @@ struct Parameters {
     surfels.agreement = scale * fuse::SurfelParameters().agreement;
   }
 
-  /// The segmentation parameters of a scan: several views saw each body, so a lower probability is accepted.
+  /// The segmentation parameters of a scan: several views saw each body, so a lower probability is accepted, and
+  /// sizes need no comparison.
   SplitParameters scan_split() const {
     SplitParameters out = split;
     out.bodies.min_confidence = std::min(out.bodies.min_confidence, scan_confidence);
+    out.bodies.alike = 0.0;
     return out;
   }
 

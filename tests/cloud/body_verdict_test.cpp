@@ -82,6 +82,7 @@ TEST_CASE("whatever speaks against a fruit lowers its probability") {
   CHECK(with([](Verdict& v) { v.normal_spread = 0.4, v.clutter = 3.0, v.support = 60; }) < 0.05);  // a tuft of leaves
   CHECK(with([](Verdict& v) { v.inside = 0.1; }) < believed);
   CHECK(with([](Verdict& v) { v.seen_through = 0.1; }) < believed);
+  CHECK(with([](Verdict& v) { v.seen_on = 0.5; }) < with([](Verdict& v) { v.seen_on = 1.0; }));
   CHECK(with([](Verdict& v) { v.roundness = 0.35; }) < believed);
   CHECK(with([](Verdict& v) { v.support = 20; }) < believed);
   CHECK(fruit_probability(Verdict(), fit_of(0.0), BodyParameters()) == 0.0);
@@ -101,4 +102,16 @@ TEST_CASE("the spread of normals that the sensor accounts for does not speak aga
   noisy.normal_noise = 0.5;  // more than there is
   rest.normal_spread = 0.0;
   CHECK(fruit_probability(v, fit, noisy) == Approx(fruit_probability(rest, fit, BodyParameters())));
+}
+
+TEST_CASE("where the sensor's errors are larger than the tolerance they widen it, up to a limit") {
+  BodyParameters parameters;
+  const double usual = parameters.near(0.035);
+  CHECK(usual == Approx(0.08 * 0.035));
+  parameters.fit.sensor_noise = 0.003;  // less than the tolerance admits
+  CHECK(parameters.near(0.035) == usual);
+  parameters.fit.sensor_noise = 0.006;
+  CHECK(parameters.near(0.035) == Approx(0.0036));
+  parameters.fit.sensor_noise = 0.1;
+  CHECK(parameters.near(0.035) == Approx(0.12 * 0.035));
 }

@@ -15,7 +15,41 @@ Cloud wall() {
   return cloud;
 }
 
+const Ellipsoid kFruit(Sphere{{0.0, 0.4, 0.0}, 0.03});
+
+/// What the origin sees of kFruit where `shows` admits its points, before a wall if there is one.
+template <typename Shows>
+Cloud front_of_fruit(Shows&& shows, bool before_wall) {
+  Cloud cloud = before_wall ? wall() : Cloud();
+  for (double x = -0.03; x <= 0.03; x += 0.0015)
+    for (double z = -0.03; z <= 0.03; z += 0.0015) {
+      const double rest = 0.03 * 0.03 - x * x - z * z;
+      if (rest > 0.0 && shows(x, z)) cloud.points.push_back(Eigen::Vector3d(x, 0.4 - std::sqrt(rest), z).cast<float>());
+    }
+  return cloud;
+}
+
+/// What the origin sees on kFruit in these points.
+double seen_on_fruit(const Cloud& cloud) { return seen_on(SightLines(cloud, Eigen::Vector3d::Zero()), kFruit, 0.004); }
+
 }  // namespace
+
+TEST_CASE("a fruit fills its disc, a strip of it does not, whatever is beside it") {
+  const auto all = [](double, double) { return true; };
+  const auto strip = [](double x, double) { return std::abs(x) < 0.009; };
+  CHECK(seen_on_fruit(front_of_fruit(all, true)) > 0.95);
+  CHECK(seen_on_fruit(front_of_fruit(all, false)) > 0.95);
+  CHECK(seen_on_fruit(front_of_fruit(strip, true)) == Approx(0.45).margin(0.12));
+  CHECK(seen_on_fruit(front_of_fruit(strip, false)) == Approx(0.45).margin(0.12));
+}
+
+TEST_CASE("what occludes a fruit does not speak against it") {
+  Cloud half = front_of_fruit([](double x, double) { return x < 0.0; }, true);
+  CHECK(seen_on_fruit(half) == Approx(0.5).margin(0.12));
+  for (int i = 0; i <= 26; ++i)  // a leaf before the other half
+    for (int j = -26; j <= 26; ++j) half.points.emplace_back(0.0011f * float(i), 0.3f, 0.0011f * float(j));
+  CHECK(seen_on_fruit(half) > 0.85);
+}
 
 TEST_CASE("sight lines pass what is before a wall, end at it, and say nothing of what is behind or beside it") {
   const SightLines lines(wall(), Eigen::Vector3d::Zero());

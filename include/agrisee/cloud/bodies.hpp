@@ -10,6 +10,7 @@
 /// most limits are shares of the body's radius. Cost: linear in the points near each candidate.
 #pragma once
 
+#include <agrisee/cloud/alike_sizes.hpp>
 #include <agrisee/cloud/body_verdict.hpp>
 #include <agrisee/cloud/fit.hpp>
 #include <agrisee/cloud/mask_evidence.hpp>
@@ -63,11 +64,12 @@ template <typename S>
 class Competition {
  public:
   Competition(const PointCloud<S>& cloud, const BodyParameters& parameters, const SeenThrough& seen_through,
-              const MaskEvidence& masks)
+              const MaskEvidence& masks, const SeenOn& seen_on)
       : cloud_(cloud),
         parameters_(parameters),
         seen_through_(seen_through),
         masks_(masks),
+        seen_on_(seen_on),
         grid_(cloud, static_cast<S>(parameters.cell())),
         taken_(cloud.size(), 0) {}
 
@@ -107,6 +109,25 @@ class Competition {
       take_points(best->fit.body);
       judge_anew(best->fit.body);
     }
+  }
+
+  /// Keep the entries as they are, for decide_by_size().
+  void remember() { entered_ = entries_; }
+
+  /// Hold the competition once more, now that the sizes of the fruit are known.
+  /// @param found what was found; receives what is found now
+  void decide_by_size(std::vector<FoundBody>& found) {
+    for (const FoundBody& f : found) sizes_.push_back({f.fit.body, f.confidence});
+    found.clear();
+    counts_.taken = counts_.overlapping = 0;
+    std::fill(taken_.begin(), taken_.end(), 0);
+    entries_ = entered_;
+    for (Entry& e : entries_) {
+      throw_if_cancelled();
+      e.prior = prior_of(e.fit.body);
+      assess(e);
+    }
+    decide(found);
   }
 
   /// Let the masks that no body explains propose bodies for what is left. @param found receives those that are taken
@@ -153,8 +174,12 @@ class Competition {
     return kThrough * std::max(0.0, through - kUnsure) + kInside * v.inside;
   }
 
-  /// What the masks say of a body; 0 without any.
-  double prior_of(const Ellipsoid& body) const { return masks_.log_odds ? masks_.log_odds(body) : 0.0; }
+  /// What the masks, and the sizes of the other fruit, say of a body.
+  double prior_of(const Ellipsoid& body) const {
+    const double by_size =
+        sizes_.empty() ? 0.0 : alike_log_odds(sizes_, body, parameters_.radius_min, parameters_.radius_max);
+    return (masks_.log_odds ? masks_.log_odds(body) : 0.0) + parameters_.alike * by_size;
+  }
 
   /// Fit a body that a mask proposed to its points, where these cover half of it: from there on they say more of it
   /// than its outline.
@@ -219,7 +244,7 @@ class Competition {
   /// @return the count of the first test that it fails; null when it is alive
   std::size_t BodyCounts::*assess(Entry& e) const {
     const bool right_size = plausible(e.fit.body, parameters_);
-    e.verdict = judge(cloud_, grid_, taken_, e.fit.body, parameters_, seen_through_);
+    e.verdict = judge(cloud_, grid_, taken_, e.fit.body, parameters_, seen_through_, seen_on_);
     e.confidence = fruit_probability(e.verdict, e.fit, parameters_, e.prior);
     if (e.mask_log_odds) {  // little of it may show: the depths under the masks have decided
       e.confidence = 1.0 / (1.0 + std::exp(against_masks(e.fit.body, e.verdict) - *e.mask_log_odds));
@@ -301,9 +326,12 @@ class Competition {
   const BodyParameters& parameters_;
   const SeenThrough& seen_through_;
   const MaskEvidence& masks_;
+  const SeenOn& seen_on_;
   Grid<S> grid_;
   std::vector<char> taken_;  // whether a point belongs to a body that has won
   std::vector<Entry> entries_;
+  std::vector<Entry> entered_;    // as they were before the first body won
+  std::vector<KnownSize> sizes_;  // of the fruit found then
   BodyCounts counts_;
   Indices near_;  // scratch of refine()
 };
@@ -318,18 +346,22 @@ class Competition {
 /// @param seen_through evidence of free space, or empty
 /// @param counts if not null, receives the numbers of candidates by outcome
 /// @param masks evidence of a detector, or empty
+/// @param seen_on evidence of the sensor of a single view, or empty
 /// @return the bodies that won, best first; assign_to_bodies gives them their points
 /// @throws ParameterError; InputError if the cloud has no normals
 template <typename S>
 std::vector<FoundBody> find_bodies(const PointCloud<S>& cloud, const std::vector<BodyCandidate>& candidates,
                                    const BodyParameters& parameters = {}, const SeenThrough& seen_through = {},
-                                   BodyCounts* counts = nullptr, const MaskEvidence& masks = {}) {
+                                   BodyCounts* counts = nullptr, const MaskEvidence& masks = {},
+                                   const SeenOn& seen_on = {}) {
   parameters.check();
   check_input(cloud.normals.size() == cloud.points.size(), "find_bodies: the cloud has no normals");
-  detail::Competition<S> competition(cloud, parameters, seen_through, masks);
+  detail::Competition<S> competition(cloud, parameters, seen_through, masks, seen_on);
   competition.enter(candidates);
   std::vector<FoundBody> found;
+  if (parameters.alike > 0.0) competition.remember();
   competition.decide(found);
+  if (parameters.alike > 0.0) competition.decide_by_size(found);
   if (masks.remaining) competition.fill_gaps(found);
   competition.close();
   if (counts) *counts = competition.counts();

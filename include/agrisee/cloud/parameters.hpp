@@ -205,14 +205,19 @@ struct BodyParameters {
   double min_roundness = 0.35;    ///< least ratio of the smaller to the larger principal curvature of its points
   double min_confidence = 0.5;    ///< least probability that it is a fruit (detail::fruit_probability)
   double normal_noise = 0.0;      ///< standard deviation of the angle of a normal due to the sensor alone (rad)
+  double alike = 0.7;             ///< how much it counts that the fruit of a single cloud are alike in size (0..1)
   double max_overlap = 0.30;      ///< deepest penetration of two bodies, as a share of the smaller radius
   FitParameters fit;              ///< fit of the ellipsoids
 
   /// Whether a body of mean radius r (m) could be a fruit. The expected range is widened by 15 percent at both ends.
   bool plausible(double r) const { return r >= 0.85 * radius_min && r <= 1.15 * radius_max; }
 
-  /// Points within this distance (m) from the surface of a body of mean radius r (m) may belong to it.
-  double near(double r) const { return std::max(tolerance * r, min_tolerance); }
+  /// Points within this distance (m) from the surface of a body of mean radius r (m) may belong to it. Where the
+  /// sensor's errors are larger than `tolerance`, they widen it, up to a limit.
+  double near(double r) const {
+    constexpr double kNoise = 0.6, kWidest = 0.12;
+    return std::max({tolerance * r, min_tolerance, std::min(kNoise * fit.sensor_noise, kWidest * r)});
+  }
 
   /// Cell size (m) of a grid in which the points about bodies of all expected radii are looked up.
   double cell() const { return 0.3 * std::sqrt(radius_min * radius_max); }
@@ -233,6 +238,7 @@ struct BodyParameters {
     f("min_roundness", p.min_roundness, Range::between(0.0, 1.0));
     f("min_confidence", p.min_confidence, Range::between(0.0, 1.0));
     f("normal_noise", p.normal_noise, Range::not_negative().in_radians());
+    f("alike", p.alike, Range::between(0.0, 1.0));
     f("max_overlap", p.max_overlap, Range::not_negative());
     f("fit", p.fit);
   }

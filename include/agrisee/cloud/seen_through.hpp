@@ -20,4 +20,9 @@ enum class Sight {
 /// function means that nothing is known.
 using SeenThrough = std::function<double(const Ellipsoid&)>;
 
+/// Of the directions in which the sensor of a single view would see a body, except those in which something nearer
+/// occludes it: the share (0 to 1) in which a surface was measured where the body's is. An empty function means that
+/// nothing is known.
+using SeenOn = std::function<double(const Ellipsoid&)>;
+
 }  // namespace agrisee

@@ -16,6 +16,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <vector>
 
 namespace agrisee {
@@ -74,9 +75,7 @@ class SightLines {
     bool ends = false;
     for (int y = v - 1; y <= v + 1; ++y)
       for (int x = u - 1; x <= u + 1; ++x) {
-        if (x < 0 || y < 0 || x >= width_ || y >= height_) continue;
-        const double seen = double(
-            nearest_[static_cast<std::size_t>(y) * static_cast<std::size_t>(width_) + static_cast<std::size_t>(x)]);
+        const double seen = range_of(x, y);
         if (std::isinf(seen)) continue;
         if (seen < range - margin) return Sight::unknown;
         ends |= seen <= range + margin;
@@ -84,6 +83,28 @@ class SightLines {
       }
     if (ends) return Sight::surface;
     return behind >= kEnough ? Sight::through : Sight::unknown;
+  }
+
+  /// Range (m) of the nearest point in the direction of p. In a gap between points, that of the neighbor which is most
+  /// like the range of p, if most neighbors have points. Empty where nothing was seen.
+  std::optional<double> range_towards(const Eigen::Vector3d& p) const {
+    if (nearest_.empty()) return std::nullopt;
+    const Eigen::Vector3d d = p - sensor_;
+    const Eigen::Vector2d a = (angles(d) - low_) / pitch_;
+    const int u = static_cast<int>(std::floor(a.x())), v = static_cast<int>(std::floor(a.y()));
+    const double range = d.norm(), own = range_of(u, v);
+    if (!std::isinf(own)) return own;
+    constexpr int kFilled = 5;
+    double best = own;
+    int neighbors = 0;
+    for (int y = v - 1; y <= v + 1; ++y)
+      for (int x = u - 1; x <= u + 1; ++x) {
+        const double seen = range_of(x, y);
+        if (std::isinf(seen)) continue;
+        ++neighbors;
+        if (std::abs(seen - range) < std::abs(best - range)) best = seen;
+      }
+    return neighbors >= kFilled ? std::optional(best) : std::nullopt;
   }
 
  private:
@@ -95,6 +116,13 @@ class SightLines {
   Eigen::Vector2d angles(const Eigen::Vector3d& d) const {
     const Eigen::Vector3d l = axes_.transpose() * d;
     return {std::atan2(l.x(), l.z()), std::atan2(l.y(), std::hypot(l.x(), l.z()))};
+  }
+
+  /// The range in a cell (m); infinite where there is no point, or outside of the grid.
+  double range_of(int x, int y) const {
+    if (x < 0 || y < 0 || x >= width_ || y >= height_) return std::numeric_limits<double>::infinity();
+    return double(
+        nearest_[static_cast<std::size_t>(y) * static_cast<std::size_t>(width_) + static_cast<std::size_t>(x)]);
   }
 
   int cell(const Eigen::Vector2d& a) const {
@@ -110,6 +138,33 @@ class SightLines {
   int width_ = 0, height_ = 0;
   std::vector<float> nearest_;  // distance of the nearest point in each cell (m); infinite: none
 };
+
+/// What the sensor of a single view measured where a body should be seen: in directions evenly spread over most of its
+/// disc, is a surface where the body's is? A fruit fills its disc, as far as nothing nearer occludes it; of the disc
+/// about a piece of a leaf much is empty, or shows what is far behind.
+/// @param margin surfaces within this distance (m) of the body's, along the sight line, are the body's
+/// @return as of SeenOn; 1 if all of it is occluded
+inline double seen_on(const SightLines& lines, const Ellipsoid& body, double margin) {
+  constexpr int kDirections = 128;
+  constexpr double kDisc = 0.9;     // of the radius; the rim itself is seen at a slant and often gives no return
+  constexpr double kUnsure = 0.05;  // share of the directions that counts as seen anyway
+  const Eigen::Matrix3d unit = body.A.inverse();  // from the unit sphere to the ellipsoid
+  const Eigen::Vector3d front = (body.A * (lines.sensor() - body.center)).normalized();
+  const Eigen::Vector3d side = any_orthogonal<double>(front), up = front.cross(side);
+  const double golden = kPi * (3.0 - std::sqrt(5.0));
+  int on = 0, missed = 0;
+  for (int i = 0; i < kDirections; ++i) {
+    const double rho = kDisc * std::sqrt((i + 0.5) / kDirections), phi = golden * i;
+    const Eigen::Vector3d u = rho * (std::cos(phi) * side + std::sin(phi) * up) + std::sqrt(1.0 - rho * rho) * front;
+    const Eigen::Vector3d p = body.center + unit * u;
+    const double range = (p - lines.sensor()).norm();
+    const std::optional<double> measured = lines.range_towards(p);
+    if (measured && *measured < range - margin) continue;
+    ++(measured && *measured <= range + margin ? on : missed);
+  }
+  constexpr double kSure = kUnsure * kDirections;
+  return (on + kSure) / (on + missed + kSure);
+}
 
 /// Share (0..1) of a body's surface that more sensors looked through than saw.
 /// @param max_incidence only sight lines that meet the surface at less than this angle to its normal count (rad)

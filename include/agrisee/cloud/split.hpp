@@ -274,7 +274,7 @@ void extend_labels(Labels& labels, const PointCloud<S>& cloud, const std::vector
 template <typename S>
 void split_by_bodies(const PointCloud<S>& cloud, const Segments& segments, const StageParameters& stages,
                      const SplitParameters& parameters, const SeenThrough& seen_through, const MaskEvidence& masks,
-                     int threads, Split& out) {
+                     const SeenOn& seen_on, int threads, Split& out) {
   const BodyParameters& bodies = parameters.bodies;
   std::vector<BodyCandidate> candidates;
   BodyCounts not_proposed;
@@ -285,7 +285,7 @@ void split_by_bodies(const PointCloud<S>& cloud, const Segments& segments, const
   const Grid<S> grid(cloud, static_cast<S>(stages.growing.radius), threads);
   propose_voted(cloud, cloud, {}, grid, stages, parameters, candidates);
   for (const MaskBody& m : masks.bodies) candidates.push_back({m.fit.body, "mask", nullptr, m.fit, m.log_odds});
-  out.found = find_bodies(cloud, candidates, bodies, seen_through, &out.bodies, masks);
+  out.found = find_bodies(cloud, candidates, bodies, seen_through, &out.bodies, masks, seen_on);
   out.bodies.too_small += not_proposed.too_small;
   out.bodies.too_large += not_proposed.too_large;
   out.bodies.inside_out += not_proposed.inside_out;
@@ -309,10 +309,11 @@ void split_by_bodies(const PointCloud<S>& cloud, const Segments& segments, const
 /// @param seen_through evidence of free space for the competition, or empty
 /// @param threads the result does not depend on it
 /// @param masks evidence of a detector, or empty; only bodies use it
+/// @param seen_on evidence of the sensor of a single view, or empty; only bodies use it
 /// @throws ParameterError; InputError if the cloud has no normals; Cancelled
 template <typename S>
 Split split(const PointCloud<S>& cloud, const SplitParameters& parameters = {}, const SeenThrough& seen_through = {},
-            int threads = 1, const MaskEvidence& masks = {}) {
+            int threads = 1, const MaskEvidence& masks = {}, const SeenOn& seen_on = {}) {
   parameters.check();
   check_input(cloud.normals.size() == cloud.points.size(), "split: the cloud has no normals");
   Split out;
@@ -324,7 +325,7 @@ Split split(const PointCloud<S>& cloud, const SplitParameters& parameters = {}, 
 
   const detail::Segments segments = detail::find_segments(cloud, *stages, threads, out);
   if (parameters.fit_bodies) {
-    detail::split_by_bodies(cloud, segments, *stages, parameters, seen_through, masks, threads, out);
+    detail::split_by_bodies(cloud, segments, *stages, parameters, seen_through, masks, seen_on, threads, out);
     return out;
   }
   out.labels = segments.labels;

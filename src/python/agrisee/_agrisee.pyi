@@ -507,6 +507,7 @@ class SplitBodiesParameters:
     min_roundness: float
     min_confidence: float
     normal_noise: float
+    alike: float
     max_overlap: float
     fit: SplitBodiesFitParameters
     __hash__: ClassVar[None]  # type: ignore[assignment]
