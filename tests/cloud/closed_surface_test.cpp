@@ -138,6 +138,41 @@ TEST_CASE("the ellipsoid stays where it explains the points") {
   }
 }
 
+TEST_CASE("a sepal that lies on a round fruit is no reason to give up the ellipsoid") {
+  for (const Radius radius : {ball, tomato})
+    for (const double off : {0.05, 0.1, 0.2}) {  // of the radius
+      CAPTURE(off);
+      Cloud cloud = seen(radius, 0.4);
+      const Pose pose = world_T_body();
+      const Eigen::Vector3d middle = Eigen::Vector3d(0.3, -0.7, 0.6).normalized();
+      for (std::size_t i = 0; i < cloud.size(); ++i) {  // 20 degrees wide, and seen instead of the skin below
+        const Eigen::Vector3d d = (cloud.points[i].cast<double>() - pose.translation());
+        if ((pose.linear().transpose() * d).normalized().dot(middle) < std::cos(deg(10))) continue;
+        cloud.points[i] = (pose.translation() + (1.0 + off) * d).cast<float>();
+      }
+      const auto surface = close(cloud);
+      REQUIRE(surface);
+      CHECK(surface->weight == 0.0);
+      CHECK(surface->joined.empty());
+    }
+}
+
+TEST_CASE("evidence: values far off cost little, and others what they cost without them") {
+  constexpr Eigen::Index kValues = 200;
+  detail::LinearModel model{Eigen::MatrixXd(2, kValues), Eigen::VectorXd(kValues),
+                            Eigen::VectorXd::Constant(kValues, 0.01), Eigen::VectorXd::Ones(2)};
+  Rng rng(5);
+  for (Eigen::Index i = 0; i < kValues; ++i) {
+    model.B.col(i) << 1.0, double(i) / kValues;
+    model.y[i] = 0.3 + 0.2 * model.B(1, i) + 0.1 * std::clamp(rng.normal(), -2.5, 2.5);
+  }
+  const double clean = detail::robust_evidence(model);
+  CHECK(clean == Approx(detail::linear_posterior(model).evidence));
+  for (const Eigen::Index i : {20, 70, 110, 160}) model.y[i] += i < 100 ? 1.5 : -1.5;
+  CHECK(detail::robust_evidence(model) > clean - 4 * (4.5 + std::log(6.0)));
+  CHECK(detail::linear_posterior(model).evidence < clean - 200.0);
+}
+
 TEST_CASE("a closed surface: the covariance of positions inside is that of the body") {
   const auto surface = close(seen(egg, 2.0, 0.0));
   REQUIRE(surface);
