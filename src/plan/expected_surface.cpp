@@ -55,38 +55,47 @@ bool shows_anything(const Progress& progress) {
          (progress.images.empty() || !progress.images.back().depth.empty());
 }
 
+using Coordinates = Eigen::Map<const Eigen::Array<float, Eigen::Dynamic, 3>>;  // of points (m, world), one a row
+
 /// A coarse depth image of obstacles, seen from one view.
 class ObstacleImage {
  public:
-  /// Of points (m, world).
-  ObstacleImage(const sensor::Intrinsics& k, const Eigen::Isometry3f& optical_T_world,
-                const std::vector<Eigen::Vector3f>& obstacles)
+  /// Of points (m, world). They are projected in blocks, so that the compiler can use vector instructions: hundreds of
+  /// views are compared after each frame.
+  ObstacleImage(const sensor::Intrinsics& k, const Eigen::Isometry3f& optical_T_world, const Coordinates& obstacles)
       : fx_(static_cast<float>(k.fx / k.width * kWidth)),
         fy_(static_cast<float>(k.fy / k.height * kHeight)),
         cx_(static_cast<float>((k.cx + 0.5) / k.width * kWidth)),
         cy_(static_cast<float>((k.cy + 0.5) / k.height * kHeight)) {
+    constexpr Eigen::Index kBlock = 256;
+    using Block = Eigen::Array<float, Eigen::Dynamic, 1, 0, kBlock, 1>;
     depth_.fill(std::numeric_limits<float>::infinity());
-    for (const Eigen::Vector3f& o : obstacles) {
-      const Eigen::Vector3f p = optical_T_world * o;
-      const int c = pixel(p);
-      if (c >= 0) depth_[static_cast<std::size_t>(c)] = std::min(depth_[static_cast<std::size_t>(c)], p.z());
+    const Eigen::Matrix4f& t = optical_T_world.matrix();
+    for (Eigen::Index from = 0; from < obstacles.rows(); from += kBlock) {
+      const auto block = obstacles.middleRows(from, std::min(kBlock, obstacles.rows() - from));
+      const auto along = [&](int axis) -> Block {
+        return t(axis, 0) * block.col(0) + t(axis, 1) * block.col(1) + t(axis, 2) * block.col(2) + t(axis, 3);
+      };
+      const Block z = along(2), u = fx_ * along(0) / z + cx_, v = fy_ * along(1) / z + cy_;
+      for (Eigen::Index i = 0; i < z.size(); ++i) {
+        const int c = pixel(u[i], v[i], z[i]);
+        if (c >= 0) depth_[static_cast<std::size_t>(c)] = std::min(depth_[static_cast<std::size_t>(c)], z[i]);
+      }
     }
   }
 
   /// Whether the point p (m, optical frame) lies in the image and no obstacle is more than 12 mm in front of it.
   bool shows(const Eigen::Vector3f& p) const {
-    const int c = pixel(p);
+    const int c = pixel(fx_ * p.x() / p.z() + cx_, fy_ * p.y() / p.z() + cy_, p.z());
     return c >= 0 && !(depth_[static_cast<std::size_t>(c)] < p.z() - 0.012f);
   }
 
  private:
   static constexpr int kWidth = 96, kHeight = 72;
 
-  /// Index of the pixel that holds p (m, optical frame), -1 outside the image.
-  int pixel(const Eigen::Vector3f& p) const {
-    if (!(p.z() > 0.0f)) return -1;
-    const float u = fx_ * p.x() / p.z() + cx_, v = fy_ * p.y() / p.z() + cy_;
-    if (!(u >= 0.0f && v >= 0.0f && u < float(kWidth) && v < float(kHeight))) return -1;
+  /// Index of the pixel at (u, v) of a point at depth z (m), -1 outside the image and behind the camera.
+  static int pixel(float u, float v, float z) {
+    if (!(z > 0.0f && u >= 0.0f && v >= 0.0f && u < float(kWidth) && v < float(kHeight))) return -1;
     return static_cast<int>(v) * kWidth + static_cast<int>(u);
   }
 
@@ -119,7 +128,10 @@ void ExpectedSurface::update(const Progress& progress, const SplitParameters& sp
   PointCloud<float> rest;
   for (std::size_t i = 0; i < progress.cloud.size(); ++i)
     if (labels[i] == 0) rest.points.push_back(progress.cloud.points[i]);
-  obstacles_ = average_in_voxels(rest, 0.006).points;
+  const std::vector<Eigen::Vector3f> thinned = average_in_voxels(rest, 0.006).points;
+  obstacles_.clear();
+  for (const int axis : {0, 1, 2})
+    for (const Eigen::Vector3f& p : thinned) obstacles_.push_back(p[axis]);
   // Samples that earlier views should have shown count less.
   for (const auto& image : progress.images) {
     const double factor = 1.0 - (1.0 - parameters_.missed_factor) * measured_share(image, free_space);
@@ -278,7 +290,8 @@ void ExpectedSurface::for_each_shown(const Pose& world_T_optical, F&& f) const {
   const auto cos_max = static_cast<float>(std::cos(parameters_.max_incidence));
   const auto near_sq = static_cast<float>(sensor_.range_min * sensor_.range_min);
   const auto far_sq = static_cast<float>(sensor_.range_max * sensor_.range_max);
-  const ObstacleImage image(sensor_.intrinsics, optical_T_world, obstacles_);
+  const Coordinates obstacles(obstacles_.data(), static_cast<Eigen::Index>(obstacles_.size() / 3), 3);
+  const ObstacleImage image(sensor_.intrinsics, optical_T_world, obstacles);
   for (std::size_t i = 0; i < samples_.size(); ++i) {
     const Sample& s = samples_[i];
     const Eigen::Vector3f d = s.point - camera;

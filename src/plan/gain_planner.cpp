@@ -170,8 +170,11 @@ void GainPlanner::consider(const ViewRequest& request, const ReachableView& view
 }
 
 void GainPlanner::rate(Scored& scored, const ReachableView& view, const Joints& current) const {
+  // What a pose shows changes with the model alone, and `ranked_` is cleared then.
+  const bool rated = scored.rated && scored.view.world_T_optical.matrix() == view.world_T_optical.matrix();
+  if (!rated) scored.shown = model_.shown(view.world_T_optical);
+  scored.rated = true;
   scored.view = view;
-  scored.shown = model_.shown(view.world_T_optical);
   scored.view.gain = 0.0;
   for (std::uint32_t i : scored.shown) scored.view.gain += double(model_.areas()[i]);
   scored.score = scored.view.gain / (parameters_.dwell + joint_distance(view, current));

@@ -125,9 +125,9 @@ class ExpectedSurface {
   std::size_t segmented_at_ = 0;   // size of the cloud when it was last segmented from scratch
   std::size_t tracked_views_ = 0;  // views of the cloud in which `bodies_` were found
   std::vector<Sample> samples_;
-  std::vector<float> areas_;                // one per sample (m2)
-  std::vector<Occluder> occluders_;         // spheres a little smaller than the fruit
-  std::vector<Eigen::Vector3f> obstacles_;  // points that belong to no fruit, thinned (m)
+  std::vector<float> areas_;         // one per sample (m2)
+  std::vector<Occluder> occluders_;  // spheres a little smaller than the fruit
+  std::vector<float> obstacles_;     // points that belong to no fruit, thinned: all x, then all y, then all z (m)
   double area_ = 0.0, covered_ = 0.0;
   double promised_ = 0.0, kept_ = 0.0;  // what the last views were expected to show, and what they showed of it (m2)
   std::vector<double> area_of_, covered_of_;  // one per fruit (m2)

@@ -49,6 +49,7 @@ class GainPlanner : public Planner {
     ViewRequest request;
     ReachableView view;
     std::vector<std::uint32_t> shown;  // unseen samples of the model that the view shows
+    bool rated = false;                // `shown` is known for this view
     double score = 0.0;                // gain over time (m2/s)
   };
 
