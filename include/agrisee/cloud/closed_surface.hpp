@@ -14,8 +14,7 @@
 /// up the ellipsoid. Unlabelled points on the surface join the fruit: the neck of a pear is too far from any ellipsoid
 /// to be labelled before.
 ///
-/// Metres, any frame. Cost: 2 to 10 ms, and up to 20 ms if the first guess of the axis is bad; points are thinned, so
-/// it hardly grows with them.
+/// Metres, any frame. Cost: 5 to 20 ms; points are thinned, so it hardly grows with them.
 #pragma once
 
 #include <agrisee/cloud/fit.hpp>
