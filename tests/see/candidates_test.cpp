@@ -118,3 +118,11 @@ TEST_CASE("a frontier's depth is measured once a step", "[see]") {
   occluders.insert({0.0f, 0.0f, 0.2f});
   REQUIRE_FALSE(sees_own(c, occluders, parameters));
 }
+
+TEST_CASE("a position is near one of several, or near none", "[see]") {
+  const std::vector<Eigen::Vector3d> positions{{0.0, 0.0, 0.0}, {1.0, 0.0, 0.0}};
+  CHECK(near_any(positions, {1.0, 0.04, 0.0}, 0.05));
+  CHECK_FALSE(near_any(positions, {0.5, 0.0, 0.0}, 0.5));  // nearer, not as near
+  CHECK_FALSE(near_any(positions, {0.0, 0.0, 0.0}, 0.0));
+  CHECK_FALSE(near_any({}, {0.0, 0.0, 0.0}, 1.0));
+}

@@ -144,7 +144,7 @@ TEST_CASE("parameters: k, separation, checks", "[see]") {
   for (auto field :
        {&Parameters::rho, &Parameters::radius, &Parameters::view_distance, &Parameters::psi, &Parameters::upsilon})
     for (double bad : {0.0, -1.0, nan}) rejects(field, bad);
-  rejects(&Parameters::separation, -1.0);
+  for (auto field : {&Parameters::separation, &Parameters::min_move}) rejects(field, -1.0);
   for (auto field : {&Parameters::max_updates, &Parameters::max_views}) rejects(field, 0);
   rejects(&Parameters::radius, 1e9);
   for (double bad : {-1.0, nan, 1e9, std::numeric_limits<double>::infinity()}) {
@@ -158,7 +158,7 @@ TEST_CASE("parameters: k, separation, checks", "[see]") {
   int fields = 0;
   Parameters p;
   Parameters::fields(p, [&](const char*, auto&, const auto&...) { ++fields; });
-  REQUIRE(fields == 11);
+  REQUIRE(fields == 12);
 }
 
 TEMPLATE_TEST_CASE("classification equals brute force", "[see]", float, double) {

@@ -193,6 +193,62 @@ TEST_CASE("a view that shows nothing, or nothing near any frontier, makes its fr
 
 namespace {
 
+/// A view, and that which follows it when the centroid of what it observed lies below its frontier along the normal.
+std::pair<ViewProposal, ViewProposal> after_an_offset_along_the_normal(double min_move) {
+  Parameters parameters = Parameters::published();
+  parameters.min_move = min_move;
+  Explorer planner(parameters);
+  planner.observe(kStrip, kStart);
+  REQUIRE(planner.next_view(kStart));
+  const Frontier f = stubborn(planner);
+  const ViewProposal first = propose(f, 0.38);
+  planner.take(first);
+  planner.observe(beside(f, -0.03f), first.position);
+  const auto second = planner.next_view(first.position, anywhere);
+  REQUIRE(second);
+  return {first, *second};
+}
+
+}  // namespace
+
+TEST_CASE("an adjusted or switched view nearer to an earlier one than min_move counts as one that does not help",
+          "[see]") {
+  const auto [same, again] = after_an_offset_along_the_normal(0.0);  // as in SEE++
+  REQUIRE(again.frontier == same.frontier);
+  REQUIRE((again.position - same.position).norm() < 0.015);
+  const auto [first, second] = after_an_offset_along_the_normal(0.015);
+  REQUIRE(second.frontier == first.frontier);
+  const Eigen::Vector3d point = first.position + 0.38 * first.direction;
+  const Eigen::Vector3d switched = point + 0.38 * (kStart - point).normalized();
+  REQUIRE((switched - kStart).norm() > 0.015);
+  REQUIRE((second.position - switched).norm() < 1e-6);
+  REQUIRE((switched - kStart).norm() < 0.05);
+  const auto [view, other] = after_an_offset_along_the_normal(0.05);
+  REQUIRE(other.frontier != view.frontier);
+}
+
+TEST_CASE("views nearer to an earlier one than min_move come last", "[see]") {
+  const Spheres scene{{{0, 0, 0}, {0.072, 0.01, 0}, {0.03, 0.062, 0.02}, {0.02, 0.02, 0.075}}};
+  const auto nearest = [&](double min_move) {
+    Parameters parameters;
+    parameters.min_move = min_move;
+    parameters.max_views = 12;
+    std::vector<Eigen::Vector3d> places{{0.0, -0.4, 0.0}};
+    double least = 1.0;
+    for (const ViewProposal& v : scan(scene, parameters, anywhere).views) {
+      for (const auto& p : places) least = std::min(least, (v.position - p).norm());
+      places.push_back(v.position);
+    }
+    REQUIRE(places.size() == 12);
+    return least;
+  };
+  REQUIRE(nearest(0.0) < 0.05);
+  REQUIRE(nearest(0.05) >= 0.05);
+  REQUIRE_NOTHROW(nearest(10.0));  // all are too near: they are taken nevertheless
+}
+
+namespace {
+
 /// Frames of the strip's frontiers, before and after a slope was seen beside it. That changes their neighbors.
 std::vector<std::pair<Frontier, Frontier>> frames_beside_a_slope(const Parameters& parameters) {
   Explorer planner(parameters);

@@ -57,6 +57,12 @@ inline std::vector<Candidate*> nearest_views(const std::vector<Place>& places, c
   return out;
 }
 
+/// Whether a position (m, world) is nearer than `distance` (m) to one of `positions`.
+inline bool near_any(const std::vector<Eigen::Vector3d>& positions, const Eigen::Vector3d& position, double distance) {
+  return std::any_of(positions.begin(), positions.end(),
+                     [&](const Eigen::Vector3d& p) { return (p - position).squaredNorm() < distance * distance; });
+}
+
 /// Measure how far the surface reaches at a candidate's frontier, unless that was done in this step.
 inline void measure_depth(Candidate& c, const Occluders& occluders, const Parameters& parameters, int step) {
   if (c.depth_step == step) return;

@@ -32,10 +32,11 @@ struct Parameters {
   int max_views = 20;                    ///< largest number of views
   bool adjusted_first = true;         ///< a view that was adjusted or switched comes next; off: it competes as in SEE++
   bool renew_frames = true;           ///< frames of updated views are estimated anew; off: once, as in SEE++
+  double min_move = 0.08;             ///< views nearer to an earlier one (m) come last; 0: as in SEE++
   bool outward_normals_only = false;  ///< only frontiers whose normals point away from the cloud's mean ([1], eq. 2)
 
-  /// SEE++ as published: its own rule for the separation. Density, distances and tau are those of [1]. Two things are
-  /// not as published: `adjusted_first` and `renew_frames` are on.
+  /// SEE++ as published: its own rule for the separation. Density, distances and tau are those of [1]. Three things are
+  /// not as published: `adjusted_first` and `renew_frames` are on, and there is a `min_move`.
   static Parameters published() {
     Parameters p;
     p.separation = std::cbrt(3.0 * p.radius / (2.0 * kPi * p.rho));
@@ -86,6 +87,7 @@ struct Parameters {
     f("max_views", p.max_views, Range::at_least(1));
     f("adjusted_first", p.adjusted_first);
     f("renew_frames", p.renew_frames);
+    f("min_move", p.min_move, Range::not_negative());
     f("outward_normals_only", p.outward_normals_only);
   }
 };

@@ -250,19 +250,29 @@ class Explorer {
     if (found == candidates_.end()) return;
     Candidate& c = found->second;
     const bool showed_something = seen_.size() > 0 && map_.near_added() > 0;
-    if (!showed_something ||
-        control_view(c.frame, seen_.centroid(), first_sensor(t), parameters_.view_distance,
-                     states_[static_cast<std::size_t>(t)], c.view) == ControllerAction::nothing_helps)
-      return give_up(t);
+    if (!showed_something || !look_elsewhere(c)) return give_up(t);
     c.moved = true;
     if (parameters_.adjusted_first) changed_ = t;
+  }
+
+  /// Let the controller change a candidate's view. A change that leaves it nearer than min_move to where the sensor was
+  /// would show the same again: it counts as one that did not help. That is so where the offset o is along the normal,
+  /// for then an adjustment moves nothing, and mostly after a switch.
+  /// @return false if nothing helps
+  bool look_elsewhere(Candidate& c) {
+    const Index i = c.frame.index;
+    ControllerState& state = states_[static_cast<std::size_t>(i)];
+    while (control_view(c.frame, seen_.centroid(), first_sensor(i), parameters_.view_distance, state, c.view) !=
+           ControllerAction::nothing_helps)
+      if (!near_any(sensors_, c.view.position, parameters_.min_move)) return true;
+    return false;
   }
 
   /// Renew the frames of the views nearest to the sensor, move those views that do not see their frontiers, give up
   /// those frontiers that cannot be seen at all, and update the graph for the views nearest to the sensor.
   void update_views(const Eigen::Vector3d& sensor) {
     const auto most = static_cast<std::size_t>(parameters_.max_updates);
-    const std::vector<Candidate*> updated = nearest_views(places(), sensor, most);
+    const std::vector<Candidate*> updated = nearest_views(new_places(), sensor, most);
     if (parameters_.renew_frames) renew(updated);
     std::vector<char> seen(updated.size(), 1);
     parallel_for(
@@ -277,9 +287,8 @@ class Explorer {
         1);
     for (std::size_t j = 0; j < updated.size(); ++j)
       if (!seen[j]) give_up(updated[j]->frame.index);
-    const std::vector<Place> all = places();
-    const std::vector<Candidate*> near = nearest_views(all, sensor, most);
-    std::vector<Indices> arcs = arcs_from(near, all, occluders_, parameters_, step_, threads_);
+    const std::vector<Candidate*> near = nearest_views(new_places(), sensor, most);
+    std::vector<Indices> arcs = arcs_from(near, places(), occluders_, parameters_, step_, threads_);
     for (std::size_t j = 0; j < near.size(); ++j) {
       graph_.connect(near[j]->node, std::move(arcs[j]));
       near[j]->step = step_;
@@ -317,21 +326,26 @@ class Explorer {
     return out;
   }
 
+  /// The views of the valid frontiers that are no nearer than min_move to where the sensor was; if there are none, all.
+  std::vector<Place> new_places() {
+    const std::vector<Place> all = places();
+    std::vector<Place> out;
+    for (const Place& p : all)
+      if (!near_any(sensors_, p.position, parameters_.min_move)) out.push_back(p);
+    return out.empty() ? all : out;
+  }
+
   /// The frontier whose view is selected; empty if there is none. A view that the controller has just changed comes
   /// first if `adjusted_first` is set: SEE++ lets it compete, but then the sensor creeps, because with tau views in its
   /// neighborhood a nearer one is always found.
-  std::optional<Index> choose(const Eigen::Vector3d& sensor) const {
-    std::vector<ViewOption> options;
-    Indices frontiers;
-    for (const auto& [i, c] : candidates_) {
-      if (!valid(c.frame)) continue;
-      options.push_back({c.node, (c.view.position - sensor).norm()});
-      frontiers.push_back(i);
-    }
+  std::optional<Index> choose(const Eigen::Vector3d& sensor) {
     const auto changed = changed_ ? candidates_.find(*changed_) : candidates_.end();
     if (changed != candidates_.end() && valid(changed->second.frame)) return changed_;
+    const std::vector<Place> all = new_places();
+    std::vector<ViewOption> options;
+    for (const Place& p : all) options.push_back({p.candidate->node, (p.position - sensor).norm()});
     const auto chosen = select_view(options, graph_);
-    return chosen ? std::optional(frontiers[*chosen]) : std::nullopt;
+    return chosen ? std::optional(all[*chosen].candidate->frame.index) : std::nullopt;
   }
 
   void remove(Candidates::iterator c) {

@@ -683,6 +683,7 @@ class SeeParameters:
     max_views: int
     adjusted_first: bool
     renew_frames: bool
+    min_move: float
     outward_normals_only: bool
     __hash__: ClassVar[None]  # type: ignore[assignment]
     def to_dict(self) -> Dict[str, Any]: ...
