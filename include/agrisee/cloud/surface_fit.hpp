@@ -1,0 +1,333 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// @file
+/// The fit of a closed surface in spherical harmonics to a fruit's points, from one first guess of its axis;
+/// closed_surface.hpp says how the surface is described. Metres, any frame.
+#pragma once
+
+#include <agrisee/cloud/fit.hpp>
+#include <agrisee/cloud/linear_model.hpp>
+#include <agrisee/core/parameter_range.hpp>
+#include <agrisee/core/pose.hpp>
+#include <agrisee/geometry/direction_bins.hpp>
+#include <agrisee/geometry/spherical_harmonics.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <vector>
+
+namespace agrisee {
+
+/// Parameters of closed_surface. Standard deviations are of the logarithm of the radius, that is, relative to it.
+struct ClosedSurfaceParameters {
+  double profile = 0.1;    ///< standard deviation of degree 2 of the profile; falls with degree^-1.5
+  double lobes = 0.05;     ///< standard deviation of the lobes at their lowest degree; falls with 1 / degree
+  double uneven = 0.0015;  ///< standard deviation of degree 2 of the asymmetric part; falls with 1 / degree
+  double noise = 0.0025;   ///< least standard deviation of a point, relative to the radius
+  double join = 0.035;     ///< unlabelled points this near to the surface, relative to the radius, join the fruit
+  double doubtful = 50;    ///< up to this evidence (nats) against the ellipsoid, the ellipsoid is used
+  double certain = 90;     ///< from this evidence on, the closed surface is used; in between a mixture
+  double error_scale = 5;  ///< standard errors are this multiple of those for independent points
+  int max_points = 1500;   ///< larger sets of points are thinned evenly to this many
+
+  /// @throws FieldError for the first field that is out of its range
+  void check() const { check_fields(*this); }
+
+  /// f(name, field, range) for every field.
+  template <typename P, typename F>
+  static void fields(P& p, F&& f) {
+    f("profile", p.profile, Range::positive());
+    f("lobes", p.lobes, Range::positive());
+    f("uneven", p.uneven, Range::positive());
+    f("noise", p.noise, Range::positive());
+    f("join", p.join, Range::not_negative());
+    f("doubtful", p.doubtful, Range::not_negative());
+    f("certain", p.certain, Range::above({p.doubtful, "doubtful"}));
+    f("error_scale", p.error_scale, Range::positive());
+    f("max_points", p.max_points, Range::at_least(100));
+  }
+};
+
+namespace detail {
+
+/// Mean distances of points in bins of directions.
+struct RadialBin {
+  Eigen::Vector3d direction = Eigen::Vector3d::Zero();  ///< mean of its points, unit
+  double logarithm = 0.0;                               ///< mean logarithm of their distances (of m)
+  double weight = 0.0;                                  ///< sum of their weights
+};
+
+/// Variance of the mean logarithm of a bin's distances: errors of neighbouring points are correlated.
+/// @param weight sum of the weights of its points
+/// @param noise standard deviation of a point, relative to the radius
+inline double bin_variance(double weight, double noise) { return noise * noise * (1.0 / std::min(weight, 6.0) + 0.25); }
+
+/// The harmonics of a body with some number of lobes (0: of revolution) and the variances of their coefficients.
+struct SurfaceModel {
+  SphericalHarmonics basis;
+  Eigen::VectorXd prior;
+
+  static constexpr int kProfile = 12;  ///< highest degree of the profile
+  static constexpr int kUneven = 4;    ///< highest degree of what no symmetry explains
+
+  static std::vector<int> top(int lobes) {
+    std::vector<int> degrees(static_cast<std::size_t>(std::max(kUneven, 2 * lobes)) + 1, -1);
+    degrees[0] = kProfile;
+    for (std::size_t m = 1; m <= kUneven; ++m) degrees[m] = kUneven;
+    if (lobes > 0) {
+      const auto n = static_cast<std::size_t>(lobes);
+      degrees[n] = std::max(10, lobes + 1);
+      degrees[2 * n] = 2 * lobes + 2;
+    }
+    return degrees;
+  }
+
+  SurfaceModel(int lobes, const ClosedSurfaceParameters& parameters) : basis(top(lobes)), prior(basis.size()) {
+    for (std::size_t k = 0; k < basis.size(); ++k) {
+      const auto [l, m] = basis.terms()[k];
+      const double degree = std::max(2, l);
+      double deviation = 0.0;
+      if (m == 0)
+        deviation = l == 0 ? 2.0 : l == 1 ? 0.2 : parameters.profile * std::pow(2.0 / degree, 1.5);
+      else if (l <= kUneven)
+        deviation = parameters.uneven * 2.0 / degree;
+      if (lobes > 0 && m == lobes) deviation = std::hypot(deviation, parameters.lobes * lobes / degree);
+      if (lobes > 0 && m == 2 * lobes) deviation = std::hypot(deviation, 0.5 * parameters.lobes * lobes / degree);
+      prior[static_cast<Eigen::Index>(k)] = deviation * deviation;
+    }
+  }
+};
+
+/// Logarithm of the distance (of m) from a point inside an ellipsoid to its surface, in the direction `u` (unit).
+inline double log_distance(const Ellipsoid& body, const Eigen::Vector3d& from, const Eigen::Vector3d& u) {
+  const Eigen::Vector3d o = body.times(from - body.center), a = body.times(u);  // |o + r a| = 1
+  const double aa = a.squaredNorm(), ao = a.dot(o), root = ao * ao - aa * (o.squaredNorm() - 1.0);
+  return std::log(std::max(1e-9, (std::sqrt(std::max(0.0, root)) - ao) / aa));
+}
+
+/// Direction i of `count` that are spread evenly over the sphere, on a spiral (Gonzalez, Mathematical Geosciences 42,
+/// 2010).
+inline Eigen::Vector3d spiral_direction(int i, int count) {
+  const double z = 1.0 - (2.0 * i + 1.0) / count, phi = 2.399963229728653322 * i, s = std::sqrt(1.0 - z * z);
+  return {s * std::cos(phi), s * std::sin(phi), z};
+}
+
+/// Fits a closed surface from one first guess of its axis.
+class SurfaceFit {
+ public:
+  /// The points of a fruit and of what belongs to no fruit around it.
+  struct Samples {
+    std::vector<Eigen::Vector3d> points, normals;
+    std::size_t own = 0;  ///< the first ones are the fruit's
+  };
+
+  static constexpr int kExtra = 4;  ///< unknowns beside the harmonics: shift and tilt of the axis, two each
+
+  /// @param model of revolution
+  SurfaceFit(const Samples& samples, const Ellipsoid& start, const Eigen::Vector3d& axis, const SurfaceModel& model,
+             const ClosedSurfaceParameters& parameters)
+      : samples_(samples), parameters_(parameters), center_(start.center), weights_(samples.points.size(), 0.0) {
+    size_ = -std::log(start.A.determinant()) / 3.0;
+    turn_.row(2) = axis.normalized();
+    turn_.row(0) = any_orthogonal<double>(axis.normalized());
+    turn_.row(1) = turn_.row(2).cross(turn_.row(0));
+    std::fill_n(weights_.begin(), samples.own, 1.0);
+    constexpr int kDirections = 200;  // to project the ellipsoid onto the harmonics of order 0
+    coefficients_ = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(model.basis.size()));
+    Eigen::VectorXd values(coefficients_.size());
+    for (int i = 0; i < kDirections; ++i) {
+      const Eigen::Vector3d u = spiral_direction(i, kDirections);
+      model.basis.values(u, values.data());
+      coefficients_ += (log_distance(start, center_, turn_.transpose() * u) - size_) / kDirections * values;
+    }
+    coefficients_.tail(coefficients_.size() - SurfaceModel::kProfile - 1).setZero();
+    residuals_.assign(samples.points.size(), 0.0);
+  }
+
+  /// Steps with `model`; see the constants of closed_surface.
+  /// @return false if the surface degenerates
+  bool step(const SurfaceModel& model, double gate, bool join) {
+    const std::vector<RadialBin> bins = radial_bins(weights_);
+    if (bins.size() < 12) return false;
+    const LinearPosterior posterior = linear_posterior(problem(model, bins, noise_, 1.0));
+    if (!posterior.mean.allFinite()) return false;
+    const Eigen::Vector4d extra = posterior.mean.tail<kExtra>();
+    Eigen::Vector2d shift = extra.head<2>(), tilt = extra.tail<2>();
+    shift /= std::max(1.0, shift.norm() / 0.15);
+    tilt /= std::max(1.0, tilt.norm() / 0.3);
+    center_ += std::exp(size_) * turn_.topRows<2>().transpose() * shift;
+    const Eigen::Vector3d axis = (turn_.row(2).transpose() + turn_.topRows<2>().transpose() * tilt).normalized();
+    turn_.row(0) = (turn_.row(0) - axis.dot(turn_.row(0)) * axis.transpose()).normalized();
+    turn_.row(2) = axis;
+    turn_.row(1) = turn_.row(2).cross(turn_.row(0));
+    coefficients_ = posterior.mean.head(posterior.mean.size() - kExtra);
+    return weigh(model, gate, join);
+  }
+
+  /// Evidence for `model` from the fruit's points, and its coefficients become those of `from` where it has them.
+  double evidence_for(const SurfaceModel& model, const SurfaceModel& from, const std::vector<RadialBin>& bins,
+                      double noise) {
+    const Eigen::VectorXd kept = coefficients_;
+    coefficients_ = mapped(model, from, kept);
+    const double evidence = robust_evidence(problem(model, bins, noise, 1.0));
+    coefficients_ = kept;
+    return evidence;
+  }
+
+  /// Go on with another model.
+  void change(const SurfaceModel& model, const SurfaceModel& from) {
+    coefficients_ = mapped(model, from, coefficients_);
+    noise_ = 0.01;
+  }
+
+  /// Points closer to the surface than `far` (relative) count fully, others not; only the fruit's.
+  std::vector<double> plain_weights(double far) const {
+    std::vector<double> weights(samples_.points.size(), 0.0);
+    for (std::size_t i = 0; i < samples_.own; ++i) weights[i] = std::abs(residuals_[i]) < far ? 1.0 : 0.0;
+    return weights;
+  }
+  void set_weights(std::vector<double> weights) { weights_ = std::move(weights); }
+
+  /// Mean distance of the fruit's points from the surface, relative, each at most 0.05.
+  double misfit() const {
+    double sum = 0.0;
+    for (std::size_t i = 0; i < samples_.own; ++i) sum += std::min(std::abs(residuals_[i]), 0.05);
+    return sum / static_cast<double>(samples_.own);
+  }
+
+  /// Bins of the points by direction from the center, in the axis' frame.
+  std::vector<RadialBin> radial_bins(const std::vector<double>& weights) const {
+    using Bins = CubeBins<8>;
+    std::array<RadialBin, Bins::kCount> all;
+    for (std::size_t i = 0; i < weights.size(); ++i) {
+      if (!(weights[i] > 0.0)) continue;
+      const Eigen::Vector3d q = samples_.points[i] - center_;
+      const double r = q.norm();
+      if (!(r > 1e-9)) continue;
+      RadialBin& bin = all[static_cast<std::size_t>(Bins::bin(q))];
+      bin.direction += weights[i] / r * q;
+      bin.logarithm += weights[i] * std::log(r);
+      bin.weight += weights[i];
+    }
+    std::vector<RadialBin> out;
+    for (RadialBin& bin : all) {
+      if (!(bin.weight > 1e-6) || !(bin.direction.norm() > 0.0)) continue;
+      bin.logarithm /= bin.weight;
+      bin.direction = (turn_ * bin.direction).normalized();
+      out.push_back(bin);
+    }
+    return out;
+  }
+
+  /// Values of the harmonics, and of the shift and tilt, in a direction of the axis' frame.
+  /// @param out receives them: those of the harmonics, then kExtra
+  void values(const SurfaceModel& model, const Eigen::Vector3d& u, double* out) const {
+    model.basis.values(u, out);
+    const double slope = model.basis.slope(u, out, coefficients_), s = std::sqrt(u.x() * u.x() + u.y() * u.y());
+    out += model.basis.size();
+    const double c = s > 0.0 ? u.x() / s : 1.0, d = s > 0.0 ? u.y() / s : 0.0;
+    // A body of revolution r(theta), shifted by t (in units of its size) or tilted by a (rad) towards phi = 0: to first
+    // order ln r changes by t cos(phi) (sin(theta) - slope cos(theta)) and by -a slope cos(phi).
+    const double by_shift = s - slope * u.z();
+    out[0] = c * by_shift;
+    out[1] = d * by_shift;
+    out[2] = -slope * c;
+    out[3] = -slope * d;
+  }
+
+  /// Variances of the bins' logarithms.
+  static Eigen::VectorXd variances(const std::vector<RadialBin>& bins, double noise) {
+    Eigen::VectorXd out(static_cast<Eigen::Index>(bins.size()));
+    for (std::size_t i = 0; i < bins.size(); ++i)
+      out[static_cast<Eigen::Index>(i)] = bin_variance(bins[i].weight, noise);
+    return out;
+  }
+
+  /// The harmonics, and the shift and tilt of the axis, as a linear model of the bins' logarithms.
+  /// @param noise standard deviation of a point, relative to the radius
+  /// @param freedom scales the standard deviations of shift and tilt
+  LinearModel problem(const SurfaceModel& model, const std::vector<RadialBin>& bins, double noise,
+                      double freedom) const {
+    const auto n = static_cast<Eigen::Index>(bins.size()), terms = static_cast<Eigen::Index>(model.basis.size());
+    LinearModel out{Eigen::MatrixXd(terms + kExtra, n), Eigen::VectorXd(n), variances(bins, noise),
+                    Eigen::VectorXd(terms + kExtra)};
+    for (Eigen::Index i = 0; i < n; ++i) {
+      const RadialBin& bin = bins[static_cast<std::size_t>(i)];
+      values(model, bin.direction, out.B.col(i).data());
+      out.y[i] = bin.logarithm - size_;
+    }
+    out.prior << model.prior, Eigen::Vector4d(0.04, 0.04, 0.09, 0.09) * (freedom * freedom);
+    return out;
+  }
+
+  const Eigen::Vector3d& center() const { return center_; }
+  const Eigen::Matrix3d& turn() const { return turn_; }  ///< from the given frame to the axis' frame
+  double size() const { return size_; }
+  double noise() const { return noise_; }
+  const std::vector<double>& weights() const { return weights_; }
+  const std::vector<double>& residuals() const { return residuals_; }
+
+ private:
+  static Eigen::VectorXd mapped(const SurfaceModel& model, const SurfaceModel& from, const Eigen::VectorXd& old) {
+    Eigen::VectorXd out = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(model.basis.size()));
+    const auto& to = model.basis.terms();
+    const auto& have = from.basis.terms();
+    for (std::size_t k = 0, j = 0; k < have.size(); ++k, ++j) {  // both ascend by order, then degree; `to` has all
+      while (to[j].order != have[k].order || to[j].degree != have[k].degree) ++j;
+      out[static_cast<Eigen::Index>(j)] = old[static_cast<Eigen::Index>(k)];
+    }
+    return out;
+  }
+
+  /// New residuals, noise and weights of all points.
+  bool weigh(const SurfaceModel& model, double gate, bool join) {
+    constexpr double kOwnCosine = 0.6, kJoinedCosine = 0.8;  // of the angle between normals of point and surface
+    std::vector<double> cosines(samples_.points.size(), 0.0), sorted;
+    sorted.reserve(samples_.own);
+    std::vector<double> values(model.basis.size());
+    for (std::size_t i = 0; i < samples_.points.size(); ++i) {
+      const Eigen::Vector3d q = turn_ * (samples_.points[i] - center_);
+      const double r = q.norm();
+      if (!(r > 1e-9)) {
+        residuals_[i] = 1.0;
+        continue;
+      }
+      const Eigen::Vector3d u = q / r;
+      model.basis.values(u, values.data());
+      residuals_[i] = std::log(r) - size_ -
+                      Eigen::Map<const Eigen::VectorXd>(values.data(), coefficients_.size()).dot(coefficients_);
+      const double slope = model.basis.slope(u, values.data(), coefficients_);
+      const double s = std::sqrt(u.x() * u.x() + u.y() * u.y());
+      const double c = s > 0.0 ? u.x() / s : 1.0, d = s > 0.0 ? u.y() / s : 0.0;
+      const Eigen::Vector3d normal = u - slope * Eigen::Vector3d(u.z() * c, u.z() * d, -s);
+      cosines[i] = normal.normalized().dot(turn_ * samples_.normals[i]);
+      if (i < samples_.own) sorted.push_back(std::abs(residuals_[i]));
+    }
+    if (sorted.empty()) return false;
+    const auto middle = sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2);
+    std::nth_element(sorted.begin(), middle, sorted.end());
+    noise_ = std::clamp(1.4826 * *middle, parameters_.noise, std::max(parameters_.noise, 0.03));
+    const double far = std::max(4.0 * noise_, gate);
+    for (std::size_t i = 0; i < samples_.points.size(); ++i) {
+      const double t = residuals_[i] / far;
+      const bool own = i < samples_.own;
+      const bool counts = own ? cosines[i] > kOwnCosine
+                              : join && cosines[i] > kJoinedCosine && std::abs(residuals_[i]) < parameters_.join;
+      weights_[i] = counts && std::abs(t) < 1.0 ? (1.0 - t * t) * (1.0 - t * t) : 0.0;
+    }
+    return true;
+  }
+
+  const Samples& samples_;
+  const ClosedSurfaceParameters& parameters_;
+  Eigen::Vector3d center_;
+  Eigen::Matrix3d turn_ = Eigen::Matrix3d::Identity();
+  double size_ = 0.0;    ///< logarithm of the start's mean radius (of m)
+  double noise_ = 0.02;  ///< standard deviation of a point, relative
+  Eigen::VectorXd coefficients_;
+  std::vector<double> weights_, residuals_;
+};
+
+}  // namespace detail
+
+}  // namespace agrisee
