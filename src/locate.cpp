@@ -99,9 +99,18 @@ Fruit fruit_of(const Cloud& cloud, const Labels& labels, const Indices& points, 
   return fruit;
 }
 
+/// Whether a closed surface has the size and shape of an expected fruit. The ellipsoid about a part of a pot, a trough
+/// or a trunk can have both while the surface, which follows the points further, has not.
+bool plausible(const ClosedSurface& surface, const BodyParameters& bodies) {
+  const Eigen::Vector3d variance = principal_axes<double>(surface.center, surface.spread).variance;  // ascending
+  // In the middle of an ellipsoid the smaller principal curvature is to the larger as its semi-axes squared.
+  return bodies.plausible(std::cbrt(surface.volume / (4.0 / 3.0 * kPi))) &&
+         variance[0] >= bodies.min_roundness * variance[2];
+}
+
 /// The closed surface of each found fruit, empty where there is none, as for bodies by masks, of which few points are
-/// seen. Points of no fruit that are on one join it.
-/// @param members the points of each fruit
+/// seen. Points of no fruit that are on one join it. What has a surface that no fruit has loses its points.
+/// @param members the points of each fruit; none for what is no fruit
 /// @param labels one per point: the fruit's number from 1, or 0
 std::vector<std::optional<ClosedSurface>> closed_surfaces(const Cloud& cloud, const Split& split,
                                                           const Parameters& parameters, std::vector<Indices>& members,
@@ -116,6 +125,11 @@ std::vector<std::optional<ClosedSurface>> closed_surfaces(const Cloud& cloud, co
     closing.noise = std::max(closing.noise, parameters.split.bodies.fit.sensor_noise / fit.body.mean_radius());
     surfaces[f] = closed_surface(cloud, members[f], residual(labels), fit.body, axis, closing);
     if (!surfaces[f]) continue;
+    if (surfaces[f]->weight > 0.5 && !plausible(*surfaces[f], parameters.split.bodies)) {
+      for (const Index i : members[f]) labels[static_cast<std::size_t>(i)] = 0;
+      members[f].clear();
+      continue;
+    }
     for (const Index i : surfaces[f]->joined) {
       labels[static_cast<std::size_t>(i)] = static_cast<int>(f) + 1;
       members[f].push_back(i);

@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <agrisee/cloud/split.hpp>
+#include <agrisee/locate.hpp>
+
+#include <numeric>
+
+#include "catch.hpp"
+#include "spheres.hpp"
+
+using namespace agrisee;
+
+namespace {
+
+/// A pear with its neck upwards, 96 mm long and 64 mm wide, seen from all sides but below.
+Cloud pear() {
+  const auto radius = [](const Eigen::Vector3d& d) {
+    const double s2 = 1.0 - d.z() * d.z(), across = 0.032 * (1.0 - 0.45 * d.z());
+    return 1.0 / std::sqrt(s2 / (across * across) + d.z() * d.z() / (0.048 * 0.048));
+  };
+  const auto at = [&](const Eigen::Vector3d& e) -> Eigen::Vector3d { return radius(e.normalized()) * e.normalized(); };
+  Cloud cloud;
+  test::add_sphere(cloud, {Eigen::Vector3d::Zero(), 1.0}, 0.08, [](const Eigen::Vector3d& d) { return d.z() > -0.8; });
+  for (std::size_t i = 0; i < cloud.size(); ++i) {
+    const Eigen::Vector3d d = cloud.normals[i].cast<double>(), u = d.unitOrthogonal(), v = d.cross(u);
+    const double h = 1e-4;
+    cloud.points[i] = at(d).cast<float>();
+    cloud.normals[i] = (at(d + h * u) - at(d - h * u)).cross(at(d + h * v) - at(d - h * v)).normalized().cast<float>();
+  }
+  return cloud;
+}
+
+/// How many fruit are located in a cloud that is segmented as one body. All points are labelled if there is one, none
+/// otherwise.
+std::size_t located(const Cloud& cloud, const Parameters& parameters) {
+  Indices own(cloud.size());
+  std::iota(own.begin(), own.end(), Index{0});
+  const auto sphere = sphere_from_normals(cloud, own);
+  REQUIRE(sphere);
+  const auto fit = fit_ellipsoid(cloud, own, Ellipsoid(*sphere));
+  REQUIRE(fit);
+  Split split;
+  split.labels.assign(cloud.size(), 1);
+  split.found.resize(1);
+  split.found[0].fit = *fit;
+  Labels labels;
+  const std::vector<Fruit> fruits = locate(cloud, split, Eigen::Vector3d::Zero(), parameters, labels);
+  REQUIRE(labels == Labels(cloud.size(), fruits.empty() ? 0 : 1));
+  return fruits.size();
+}
+
+}  // namespace
+
+TEST_CASE("a body whose closed surface has the size or shape of no fruit is none") {
+  Parameters usual;
+  CHECK(located(pear(), usual) == 1);
+  Parameters small;
+  small.split.bodies.radius_max = 0.02;
+  CHECK(located(pear(), small) == 0);
+  Parameters round;
+  round.split.bodies.min_roundness = 0.8;
+  CHECK(located(pear(), round) == 0);
+}
+
+TEST_CASE("a body whose ellipsoid explains it is not judged by a closed surface") {
+  Cloud ball;
+  test::add_sphere(ball, {{0.1, 0.5, 0.2}, 0.03}, 0.0025, [](const Eigen::Vector3d& d) { return d.y() < 0.3; });
+  Parameters small;
+  small.split.bodies.radius_max = 0.02;
+  CHECK(located(ball, small) == 1);
+}
