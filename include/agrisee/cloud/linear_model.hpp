@@ -14,7 +14,7 @@ namespace agrisee::detail {
 
 /// A linear model: y = B c + noise, with independent coefficients c that are normal about 0.
 struct LinearModel {
-  Eigen::MatrixXd B;         ///< one column for each value (the transpose of the B above)
+  Eigen::MatrixXd B;         ///< transposed: one column for each value
   Eigen::VectorXd y;         ///< the values
   Eigen::VectorXd variance;  ///< of the noise of each value
   Eigen::VectorXd prior;     ///< variance of each c
@@ -27,6 +27,8 @@ struct LinearPosterior {
   double evidence = 0.0;                    ///< logarithm of the probability density of y
 };
 
+/// The posterior of the coefficients, and the evidence for the model: the density of the values, with the coefficients
+/// integrated out.
 inline LinearPosterior linear_posterior(const LinearModel& model) {
   const Eigen::VectorXd root = model.variance.cwiseSqrt().cwiseInverse();
   const Eigen::MatrixXd scaled = model.B * root.asDiagonal();
