@@ -76,7 +76,7 @@ void registration(benchmark::State& state) {
   state.counters["error_um"] = 1e6 * (result.target_T_source * moved * middle - middle).norm();
 }
 
-/// Neighbours within 40 mm, at most 537, of every point: what the density of a frontier point takes.
+/// Neighbors within 40 mm, at most 537, of every point: what the density of a frontier point takes.
 void density_counts(benchmark::State& state) {
   const Cloud cloud = cloud_of(state);
   for (auto _ : state) {

@@ -20,7 +20,7 @@ STAGES = {
     "sor": "statistical outlier removal, K = 20",
     "normals": "normals, k = 25",
     "region_growing": "region growing, k = 25, 12 degrees, normals given",
-    "dbscan": "DBSCAN, 20 neighbours, min 10",
+    "dbscan": "DBSCAN, 20 neighbors, min 10",
     "chain": "outlier removal, normals, region growing, clustering",
     "icp": "ICP point to plane, 20 iterations, tree included",
     "voxel": "voxel averaging, 2 mm",
@@ -103,7 +103,7 @@ def comparison(results):
 
 
 def compile_time():
-    """Seconds for compiling the example of the README, with optimisation."""
+    """Seconds for compiling the example of the README, with optimization."""
     begin = time.time()
     subprocess.run(["c++", "-std=c++17", "-O2", "-I", str(ROOT / "include"), "-isystem", "/usr/include/eigen3", "-c", "-o",
                     "/dev/null", str(ROOT / "examples/01_process_cloud.cpp")], check=True)

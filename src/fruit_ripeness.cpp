@@ -8,7 +8,7 @@
 namespace agrisee {
 namespace {
 
-/// Without the greenest share of some colours: that of the calyx, which lies on the fruit and is labelled with it.
+/// Without the greenest share of some colors: that of the calyx, which lies on the fruit and is labeled with it.
 std::vector<Rgb> without_calyx(std::vector<Rgb> colors) {
   constexpr double kCalyx = 0.04;  // of the surface
   std::vector<std::pair<double, std::size_t>> greens;
@@ -23,7 +23,7 @@ std::vector<Rgb> without_calyx(std::vector<Rgb> colors) {
   return out;
 }
 
-/// The measured colours of the skin of a fruit (black: none).
+/// The measured colors of the skin of a fruit (black: none).
 std::vector<Rgb> skin_colors(const Cloud& cloud, const Labels& labels, int label) {
   std::vector<Rgb> colors;
   for (std::size_t i = 0; i < cloud.size(); ++i)

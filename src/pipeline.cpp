@@ -223,7 +223,7 @@ void Pipeline::record(View view, const fuse::Change& change, bool repeated) {
   planned_before_ = seconds_.plan;
 }
 
-/// Keep a frame that shows something, to recognise it if the camera repeats it.
+/// Keep a frame that shows something, to recognize it if the camera repeats it.
 void Pipeline::remember(const sensor::DepthFrame& frame) {
   if (shows_something(frame)) last_frame_ = frame.depth;
 }
@@ -245,7 +245,7 @@ plan::Progress Pipeline::progress(const fuse::Change& change) const {
           masks_.log_odds ? &masks_ : nullptr};
 }
 
-/// The views with masks or colours that are not discarded.
+/// The views with masks or colors that are not discarded.
 std::vector<fuse::DetectedView> Pipeline::detected_views() const {
   std::vector<fuse::DetectedView> out;
   for (const auto& [number, view] : detected_)

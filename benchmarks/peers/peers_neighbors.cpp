@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Neighbours of all points: how many within a radius, and the k nearest; against nanoflann, trees included.
+// Neighbors of all points: how many within a radius, and the k nearest; against nanoflann, trees included.
 #include <agrisee/core/parallel.hpp>
 #include <agrisee/neighbors/count_neighbors.hpp>
 #include <agrisee/neighbors/neighbor_lists.hpp>

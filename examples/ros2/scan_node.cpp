@@ -147,7 +147,7 @@ class ScanNode : public rclcpp_lifecycle::LifecycleNode {
   using ImagePtr = Ros2::ImagePtr;
 
   /// Sensors often publish as best effort, and an old frame is of no use: while a view is planned, those that come are
-  /// old by the time it is done. Of colours and labels some are kept, as they come late.
+  /// old by the time it is done. Of colors and labels some are kept, as they come late.
   void listen() {
     const rclcpp::QoS newest = rclcpp::SensorDataQoS().keep_last(1), some = rclcpp::SensorDataQoS().keep_last(5);
     const ChannelParameters& channels = core_->parameters().channels;

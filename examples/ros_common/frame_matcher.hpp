@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Brings a depth image together with the colours and labels of the same moment, without ROS.
+// Brings a depth image together with the colors and labels of the same moment, without ROS.
 #pragma once
 
 #include <agrisee/core/parameter_range.hpp>
@@ -13,7 +13,7 @@ namespace agrisee::robot {
 
 /// Which images are awaited beside a depth image.
 struct ChannelParameters {
-  bool color = false;   ///< take colours
+  bool color = false;   ///< take colors
   bool labels = false;  ///< take a detector's label images
   double score = 1.0;   ///< of every label: how far the detector is to be believed, 0..1
   double slop = 0.01;   ///< images whose stamps differ by no more belong together (s)

@@ -54,7 +54,7 @@ Message point_message(const Eigen::Vector3d& p) {
 /// The poses that a result is published as, each list by its own order.
 struct ResultPoses {
   std::vector<Pose> fruits;      ///< poses for a gripper (Fruit::pose), by id
-  std::vector<Pose> bodies;      ///< centre and semi-axes of the bodies, by id; the pose frame where none was fitted
+  std::vector<Pose> bodies;      ///< center and semi-axes of the bodies, by id; the pose frame where none was fitted
   std::vector<Pose> pre_grasps;  ///< of the tool, in the order of picking; only of fruit that can be picked
 };
 inline ResultPoses result_poses(const std::vector<Fruit>& fruits) {
@@ -82,7 +82,7 @@ PoseArray pose_array(const Header& header, const std::vector<Pose>& poses) {
   return out;
 }
 
-/// Fill a sensor_msgs/PointCloud2 with x, y, z, normal_x, normal_y, normal_z, rgb (a colour per fruit) and instance
+/// Fill a sensor_msgs/PointCloud2 with x, y, z, normal_x, normal_y, normal_z, rgb (a color per fruit) and instance
 /// (the fruit's id, 0 = none), as `cloud.ply` holds them. Labels may be empty.
 template <typename Message>
 void fill_cloud(Message& m, const Cloud& cloud, const Labels& labels) {

@@ -190,7 +190,7 @@ class NodeCore {
   void observe_match() {
     const auto match = matcher_.take();
     if (!match) return;
-    if (!match->complete) ros_.left_out("colours or labels did not come in time; the frame goes without");
+    if (!match->complete) ros_.left_out("colors or labels did not come in time; the frame goes without");
     const interop::Channels<Image> channels{match->color.get(), match->labels.get(), own_.channels.score};
     const Depth& depth = match->depth;
     session_.observe(interop::depth_frame(*depth.image, *depth.info, own_.rectified, channels), depth.world_T_optical,

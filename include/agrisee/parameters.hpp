@@ -51,8 +51,8 @@ struct Parameters {
   MassParameters mass;                            ///< from volume to mass
   fuse::FreeSpaceParameters free_space;           ///< when a sight line is evidence of free space
   fuse::MaskParameters masks;                     ///< how a detector's masks are weighed
-  fuse::ColorPriorParameters color_prior;         ///< fruit colour as a substitute for a detector
-  RipenessParameters ripeness;                    ///< from colours to ripeness
+  fuse::ColorPriorParameters color_prior;         ///< fruit color as a substitute for a detector
+  RipenessParameters ripeness;                    ///< from colors to ripeness
   plan::GainPlannerParameters gain;               ///< planner `gain`
   pick::PickingParameters picking;                ///< how to approach each fruit
   see::Parameters see;                            ///< planner `see`

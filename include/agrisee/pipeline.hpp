@@ -53,7 +53,7 @@ class Pipeline {
 
   /// Add a depth frame that was taken at `world_T_optical` (and `joints`, if an arm is known).
   ///
-  /// A frame with colours, or that a detector has looked at, is kept for the result: move it in, or share it, to avoid
+  /// A frame with colors, or that a detector has looked at, is kept for the result: move it in, or share it, to avoid
   /// a copy. The planner uses the detections too. A frame without returns inside the scan volume counts as a view that
   /// showed nothing. A view is marked as discarded if its frame repeats the last one bit for bit (the camera is stuck),
   /// or if it contradicts the other views (fuse/fused_views.hpp), because its pose must then be wrong.
@@ -68,7 +68,7 @@ class Pipeline {
   const View& observe(std::shared_ptr<const sensor::DepthFrame> frame, const Pose& world_T_optical,
                       const std::optional<Joints>& joints = std::nullopt);
 
-  /// Like observe(), for unorganised points (m, optical frame) of any cloud type.
+  /// Like observe(), for unorganized points (m, optical frame) of any cloud type.
   template <typename C>
   const View& observe_points(const C& points, const Pose& world_T_optical,
                              const std::optional<Joints>& joints = std::nullopt) {
@@ -133,7 +133,7 @@ class Pipeline {
   std::unique_ptr<plan::Planner> planner_;
   int threads_;
   std::unique_ptr<fuse::Views> map_;
-  std::map<std::size_t, fuse::DetectedView> detected_;  // the views with masks or colours, by number
+  std::map<std::size_t, fuse::DetectedView> detected_;  // the views with masks or colors, by number
   MaskEvidence masks_;                                  // what the masks of all views say
   Cloud cloud_;                                         // of the map, as of the last view
   std::vector<float> last_frame_;                       // the last that showed anything

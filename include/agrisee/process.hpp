@@ -23,8 +23,8 @@ struct CloudOrigin {
   std::optional<Eigen::Vector3d> viewpoint;  ///< one sensor position (m) for all points, for a cloud of a single view
   bool check_normals = false;                ///< also turn the cloud's own normals where they face away from the sensor
   bool trust_viewpoint = false;              ///< use `viewpoint` even if the points contradict it
-  /// Views with masks or colours, and their poses. Masks propose bodies and change the probability of bodies
-  /// (fuse/masks.hpp); a cloud without colours takes theirs (fuse/paint.hpp). May be empty.
+  /// Views with masks or colors, and their poses. Masks propose bodies and change the probability of bodies
+  /// (fuse/masks.hpp); a cloud without colors takes theirs (fuse/paint.hpp). May be empty.
   std::vector<fuse::DetectedView> detected = {};
   fuse::MaskOrder mask_order = fuse::MaskOrder::masks_first;  ///< points_first if several views show each fruit
   /// Origin of the cluster frame {R} in world (m); empty: that of the box around the cloud, seen from the origin.
@@ -98,7 +98,7 @@ ScanResult process(const C& cloud, const Parameters& parameters = {}, const Clou
 /// A ready cloud, thinned to the spacing of fused surfaces.
 ///
 /// A cloud that is denser than `surfels.separation` is averaged in voxels of that size, which removes noise and saves
-/// time; each mean keeps the view, colour and detection of the point nearest to it. A sparser cloud is returned
+/// time; each mean keeps the view, color and detection of the point nearest to it. A sparser cloud is returned
 /// unchanged. Points that are not finite are dropped.
 /// @param cloud points (m); normals and views where it has them
 /// @param parameters only `surfels.separation` is used

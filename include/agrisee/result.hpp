@@ -107,12 +107,12 @@ inline const char* to_string(PickingReason reason) {
   return "unknown";
 }
 
-/// How to pick a fruit: the tool moves straight from the pre-grasp pose along the direction towards the fruit's centre.
+/// How to pick a fruit: the tool moves straight from the pre-grasp pose along the direction towards the fruit's center.
 struct Picking {
   int order = 0;           ///< from 1 over all fruit of a result; those that cannot be picked come last
   bool reachable = false;  ///< the fruit can be picked
   PickingReason reason = PickingReason::not_tested;     ///< why it cannot be picked, if so
-  Eigen::Vector3d direction = Eigen::Vector3d::Zero();  ///< unit, from pre-grasp to the centre; zero without a body
+  Eigen::Vector3d direction = Eigen::Vector3d::Zero();  ///< unit, from pre-grasp to the center; zero without a body
   Pose world_T_pre_grasp =
       Pose::Identity();          ///< of the tool: z along the direction (REP-103's optical frame); with a body
   std::optional<Joints> joints;  ///< at the pre-grasp pose (rad), if it is reachable and the arm model gives them
@@ -131,16 +131,16 @@ struct Fruit {
   Eigen::Matrix3d orientation = Eigen::Matrix3d::Identity();   ///< the pose frame's axes in world
   std::optional<Body> body;                                    ///< the fitted body, if any
   std::optional<Picking> picking;                              ///< the approach, if planned (pick/picking.hpp)
-  std::optional<Ripeness> ripeness = {};                       ///< if the cloud has colours
+  std::optional<Ripeness> ripeness = {};                       ///< if the cloud has colors
 
-  /// Position of the fruit (m, world): the centre of its body if one was fitted, else the centroid of its points.
+  /// Position of the fruit (m, world): the center of its body if one was fitted, else the centroid of its points.
   const Eigen::Vector3d& position() const { return body ? body->center : centroid; }
   /// position() in the cluster frame {R} (m).
   Eigen::Vector3d position_cluster() const { return centroid_cluster + (position() - centroid); }
   /// The pose of the fruit in world, for a gripper: origin at position(), axes of the pose frame.
   Pose pose() const { return pose_at(position()); }
   /// The pose frame of [1] in world: origin at the centroid of the points that were seen, up to half a radius nearer to
-  /// the sensor than the fruit's centre; axes as those of pose().
+  /// the sensor than the fruit's center; axes as those of pose().
   Pose centroid_pose() const { return pose_at(centroid); }
 
  private:
@@ -159,7 +159,7 @@ struct FoundTruss {
   /// The growth frame in world. Origin: the mean position of its fruit. z: the direction along which its fruit hang,
   /// upwards; if no direction stands out, their mean growth axis. x: as near to the x axis of world as z allows.
   Pose world_T_truss = Pose::Identity();
-  std::optional<Ripeness> ripeness = {};  ///< of the surface of all its fruit, if the cloud has colours
+  std::optional<Ripeness> ripeness = {};  ///< of the surface of all its fruit, if the cloud has colors
 };
 
 /// The planner's estimate of how much of the fruit's surface has been seen and how much the arm can see at all: shares

@@ -137,7 +137,7 @@ void print(const study::Metrics& m) {
   percent(m.f1) << "\nSegmentation: mIoU by surface ";
   percent(m.miou_surface) << ", by points ";
   percent(m.miou_point) << "\n";
-  out << "  id  as    IoU   seen  recall  recall_obs  centroid error  centre error  radius error  axis error\n";
+  out << "  id  as    IoU   seen  recall  recall_obs  centroid error  center error  radius error  axis error\n";
   const auto mm = [&](const std::optional<double>& x, int width) {
     out << std::setw(width);
     if (x)

@@ -87,7 +87,7 @@ std::vector<View> greedy_views(const LimitResult& limit, const study::Samples& s
   return out;
 }
 
-/// The colour of a sample: grey-red if no view sees it; otherwise from dark blue (few views) over green to yellow
+/// The color of a sample: gray-red if no view sees it; otherwise from dark blue (few views) over green to yellow
 /// (most).
 io::Rgb seen_color(std::size_t seen_by, std::size_t most) {
   if (seen_by == 0) return {168, 92, 88};
@@ -102,7 +102,7 @@ io::Rgb seen_color(std::size_t seen_by, std::size_t most) {
   return color;
 }
 
-/// Write the samples as a coloured cloud (binary little-endian PLY).
+/// Write the samples as a colored cloud (binary little-endian PLY).
 void write_observable(const fs::path& path, const study::Samples& samples, const std::vector<std::size_t>& seen_by) {
   std::string bytes =
       "ply\nformat binary_little_endian 1.0\ncomment AgriSEE, metres, world frame\nelement vertex " +
@@ -318,9 +318,9 @@ void add_limit(CLI::App& app, Run& run) {
   command->footer(
       "Example:\n"
       "  agrisee limit truss/scene.yaml -o limit --base-search\n"
-      "The folder then holds limit.json; observable.ply, the fruit's surface, coloured by how many of the poses "
+      "The folder then holds limit.json; observable.ply, the fruit's surface, colored by how many of the poses "
       "within\n"
-      "reach see it (grey-red: none); and views.csv, the views of a greedy planner that knows the truth (points_in:\n"
+      "reach see it (gray-red: none); and views.csv, the views of a greedy planner that knows the truth (points_in:\n"
       "samples of the surface that a view sees, points_new: samples that it newly covers).");
   command->callback([options, &run] { run = [options] { return run_limit(*options); }; });
 }

@@ -141,7 +141,7 @@ sensor::DepthFrame frame_of(const ProcessOptions& options) {
   }
 }
 
-/// The points of a frame (m, optical frame) with the colours and detections of their pixels.
+/// The points of a frame (m, optical frame) with the colors and detections of their pixels.
 Cloud points_of(const sensor::DepthFrame& frame) {
   Cloud cloud;
   for (int v = 0; v < frame.intrinsics.height; ++v)
@@ -265,7 +265,7 @@ void add_image_options(CLI::App& command, ProcessOptions& options) {
                   "metres per unit of the depth image (0.001 for whole numbers, 1 for floats)")
       ->check(CLI::PositiveNumber)
       ->needs(depth);
-  command.add_option("--color", options.color, "colour image (PNG) registered to the depth image")->needs(depth);
+  command.add_option("--color", options.color, "color image (PNG) registered to the depth image")->needs(depth);
   command
       .add_option("--masks", options.masks,
                   "label image (PNG): the instance of each pixel, 0 = none; classes and scores come from a file of the "

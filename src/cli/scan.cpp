@@ -314,7 +314,7 @@ void add_scan(CLI::App& app, Run& run) {
       ->capture_default_str();
   command->add_option("--light", options->light, "light on the plant, for the noise models l515, azure and d405")
       ->check(one_of({"shade", "sun"}));
-  command->add_flag("--color", options->color, "simulate colours, so that each fruit gets a ripeness");
+  command->add_flag("--color", options->color, "simulate colors, so that each fruit gets a ripeness");
   command
       ->add_option("--detector", options->detector,
                    "simulate a detector and use its masks, which have errors; implies --color")

@@ -29,7 +29,7 @@ double lightness_of(double ratio) {
 /// Share of a normal distribution below x standard deviations.
 double below(double x) { return 0.5 * std::erfc(-x / std::sqrt(2.0)); }
 
-/// The colours without the brightest and darkest.
+/// The colors without the brightest and darkest.
 std::vector<Eigen::Vector3d> trimmed(std::vector<Eigen::Vector3d> lab, double trim) {
   std::stable_sort(lab.begin(), lab.end(),
                    [](const Eigen::Vector3d& a, const Eigen::Vector3d& b) { return a.x() < b.x(); });

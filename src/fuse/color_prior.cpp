@@ -12,11 +12,11 @@
 namespace agrisee::fuse {
 namespace {
 
-/// For each pixel whether it has the colour of fruit.
+/// For each pixel whether it has the color of fruit.
 std::vector<char> fruit_colored(const sensor::DepthFrame& frame, const ColorPriorParameters& p) {
   std::vector<char> out;
   out.reserve(frame.color.size());
-  std::unordered_map<std::uint32_t, char> known;  // images hold far fewer colours than pixels
+  std::unordered_map<std::uint32_t, char> known;  // images hold far fewer colors than pixels
   for (const Rgb& c : frame.color) {
     const auto key = static_cast<std::uint32_t>(c[0] << 16 | c[1] << 8 | c[2]);
     const auto [entry, added] = known.try_emplace(key);
@@ -47,7 +47,7 @@ std::vector<char> majority(const std::vector<char>& in, int width, int height) {
   return out;
 }
 
-/// A patch of the colour of fruit.
+/// A patch of the color of fruit.
 struct Patch {
   std::vector<std::uint32_t> pixels;  // ascending
   double depth = 0.0;                 // mean (m); 0 without any

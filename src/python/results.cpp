@@ -107,7 +107,7 @@ void bind_pickle(Class& c) {
 void bind_body(py::module_& m) {
   py::class_<Body>(m, "Body", "The body of a fruit as an ellipsoid, in world (m).")
       .def_property_readonly(
-          "center", [](const Body& b) { return b.center; }, "centre (m)")
+          "center", [](const Body& b) { return b.center; }, "center (m)")
       .def_property_readonly(
           "radii", [](const Body& b) { return b.radii; }, "semi-axes (m), largest first")
       .def_property_readonly(
@@ -133,7 +133,7 @@ void bind_picking(py::module_& m) {
           "'reachable', or why it cannot be picked, as in fruits.json")
       .def_property_readonly(
           "direction", [](const Picking& p) { return p.direction; },
-          "unit vector from the pre-grasp pose to the fruit's centre; zero without a body")
+          "unit vector from the pre-grasp pose to the fruit's center; zero without a body")
       .def_property_readonly(
           "pre_grasp", [](const Picking& p) { return matrix_of(p.world_T_pre_grasp); },
           "4 x 4 pose of the tool in world, z along the direction")
@@ -149,7 +149,7 @@ void bind_fruit(py::module_& m) {
       .def_readonly("points", &Fruit::points, "number of its points")
       .def_readonly("found_by", &Fruit::found_by, "the stage that found it, as in fruits.json")
       .def_property_readonly(
-          "position", [](const Fruit& f) { return f.position(); }, "centre of its body, or centroid of its points (m)")
+          "position", [](const Fruit& f) { return f.position(); }, "center of its body, or centroid of its points (m)")
       .def_property_readonly("position_cluster", &Fruit::position_cluster, "position in the cluster frame (m)")
       .def_property_readonly(
           "pose", [](const Fruit& f) { return matrix_of(f.pose()); },

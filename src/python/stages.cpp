@@ -149,7 +149,7 @@ void bind_stage_results(py::module_& m) {
       });
   py::class_<EllipsoidFit>(m, "EllipsoidFit", "The result of fit_ellipsoid.")
       .def_property_readonly(
-          "center", [](const EllipsoidFit& f) { return f.body.center; }, "centre (m)")
+          "center", [](const EllipsoidFit& f) { return f.body.center; }, "center (m)")
       .def_property_readonly(
           "radii", [](const EllipsoidFit& f) { return semi_axes(f.body).first; }, "semi-axes (m), largest first")
       .def_property_readonly(

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Table 3: localisation, and the errors of all fruit.
+// Table 3: localization, and the errors of all fruit.
 #include <agrisee/study/paper_tables.hpp>
 
 #include "report/errors.hpp"
@@ -32,7 +32,7 @@ std::string coordinate(const std::array<double, 3>& at, const std::array<double,
   return fixed(at[axis], 3) + " ± " + fixed(sigma[axis], 3);
 }
 
-/// The scene with the counts of the truss in the localisation table of [1]; null if the group has none.
+/// The scene with the counts of the truss in the localization table of [1]; null if the group has none.
 const Row* paper_row(const Group& group) {
   for (const Row& row : group.rows)
     if (row.total == study::kPaperLocalizationTotal && row.hidden == study::kPaperLocalizationHidden) return &row;
@@ -89,7 +89,7 @@ std::string error_table(const Group& group, Cells head, F&& f) {
   return table.markdown();
 }
 
-/// The truss of the localisation table of [1] in both frames.
+/// The truss of the localization table of [1] in both frames.
 std::string paper_truss(const Group& group) {
   const Row* row = paper_row(group);
   if (!row)
@@ -104,7 +104,7 @@ std::string paper_truss(const Group& group) {
 
 std::string distance_table(const Group& group) {
   return error_table(
-      group, {"missing", "RMSE", "centroid, observable", "centroid, seen", "fitted centre", "radius"},
+      group, {"missing", "RMSE", "centroid, observable", "centroid, seen", "fitted center", "radius"},
       [](const auto& of) {
         const auto mm = [&](Error error) {
           const Errors e = errors(of, error);
@@ -141,7 +141,7 @@ std::string group_section(const Group& group) {
 }  // namespace
 
 std::string localization_section(const Data& data) {
-  std::string out = "## Table 3: localisation\n\n";
+  std::string out = "## Table 3: localization\n\n";
   out +=
       "A fruit is identified by the true fruit that its instance was matched to. σ is the standard deviation of the "
       "points of a fruit along an axis; it is the same in both frames, whose axes are parallel. RMSE is the root mean "
@@ -153,7 +153,7 @@ std::string localization_section(const Data& data) {
          "/localization.csv); with a row per fruit and scan: [fruits.csv](" + data.folder + "/fruits.csv).\n\n";
   out +=
       "The tables of errors: the RMSE; the distance of the centroid from the mean of the observable surface of the "
-      "fruit, and from the mean of that part of it which the views saw; the errors of the centre and the radius of "
+      "fruit, and from the mean of that part of it which the views saw; the errors of the center and the radius of "
       "the fitted body; the angle between the z axis of the pose and the true calyx axis (`median / worst`, degrees); "
       "the error of the completeness of the fitted body (`mean / worst`, percentage points); and the least recall of "
       "the observable surface of any fruit, including missing ones. The truss of the paper's table has its fruit "

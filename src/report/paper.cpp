@@ -43,7 +43,7 @@ std::vector<double> kept_by_sor() {
 }
 
 /// The number of points of a flat hexagonal lattice within `radius` of one of its points, this point included. On a
-/// flat surface whose points keep the distance `spacing`, no point has more neighbours.
+/// flat surface whose points keep the distance `spacing`, no point has more neighbors.
 int lattice_points(double radius, double spacing) {
   const double reach = radius / spacing;
   const int n = static_cast<int>(reach) * 2;
@@ -53,7 +53,7 @@ int lattice_points(double radius, double spacing) {
   return count;
 }
 
-/// The rigid motion that takes the world columns of the localisation table nearest to its cluster columns (least
+/// The rigid motion that takes the world columns of the localization table nearest to its cluster columns (least
 /// squares; Umeyama, 1991). @return the largest distance that is left (m)
 double worst_rigid_residual() {
   constexpr int n = static_cast<int>(study::kPaperLocalization.size());

@@ -62,7 +62,7 @@ svg::BarPanel figure_panel(const std::string& title, const std::vector<const Gro
   return panel;
 }
 
-/// The repeatability of each fruit of the truss in the localisation table of [1].
+/// The repeatability of each fruit of the truss in the localization table of [1].
 svg::BarPanel repeatability_panel(const std::vector<const Group*>& groups) {
   std::set<int> ids;
   std::vector<std::pair<const Group*, std::vector<FruitTrials>>> found;
@@ -96,7 +96,7 @@ svg::BarPanel repeatability_panel(const std::vector<const Group*>& groups) {
   return panel;
 }
 
-/// The mean errors of centroids and fitted centres per scene.
+/// The mean errors of centroids and fitted centers per scene.
 svg::BarPanel error_panel(const std::vector<const Group*>& groups) {
   const std::vector<SceneKey> keys = scenes_of(groups);
   svg::BarPanel panel{"Mean error per scene (mm)", names(keys), {}, {}};
@@ -111,7 +111,7 @@ svg::BarPanel error_panel(const std::vector<const Group*>& groups) {
   for (std::size_t i = 0; i < groups.size(); ++i)
     add(*groups[i], &FruitMetrics::centroid_error, "centroid from mean of observable surface", svg::color(i));
   next = groups.size();
-  for (const Group* group : groups) add(*group, &FruitMetrics::center_error, "fitted centre", svg::color(next++));
+  for (const Group* group : groups) add(*group, &FruitMetrics::center_error, "fitted center", svg::color(next++));
   return panel;
 }
 
@@ -168,7 +168,7 @@ std::vector<File> plots(const Data& data) {
   const svg::BarPanel repeat = repeatability_panel(main);
   if (!repeat.categories.empty()) localization.push_back(repeat);
   localization.push_back(error_panel(main));
-  files.push_back({"localization.svg", svg::bar_chart("Localisation", localization)});
+  files.push_back({"localization.svg", svg::bar_chart("Localization", localization)});
   files.push_back({"planners.svg", planner_chart(data)});
   const std::vector<std::string> presets = distinct(data, &Group::preset);
   if (std::find(presets.begin(), presets.end(), "paper") != presets.end())

@@ -19,7 +19,7 @@ std::string summary_section(const Data& data);
 std::string scanning_section(const Data& data);
 /// Table 2: segmentation.
 std::string segmentation_section(const Data& data);
-/// Table 3: localisation.
+/// Table 3: localization.
 std::string localization_section(const Data& data);
 /// The presets under each noise model.
 std::string noise_section(const Data& data);

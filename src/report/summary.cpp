@@ -26,7 +26,7 @@ Group all_scenes(const Data& data) {
   return all;
 }
 
-/// The repeatability (m) of the truss in the localisation table of [1].
+/// The repeatability (m) of the truss in the localization table of [1].
 Errors paper_rmse() {
   std::vector<double> values;
   for (const study::PaperLocalization& row : study::kPaperLocalization) values.push_back(1e-3 * row.rmse);
@@ -81,7 +81,7 @@ std::string fruit_table(const Data& data, const Group& paper_scenes) {
   const Figures columns{&counting_error, &object_precision, &object_recall, &miou_surface};
   Cells head{"preset / planner / noise"};
   for (const Figure* f : columns) head.emplace_back(f->title);
-  for (const char* title : {"missing", "RMSE mm", "centroid mm", "fitted centre mm", "z axis deg"})
+  for (const char* title : {"missing", "RMSE mm", "centroid mm", "fitted center mm", "z axis deg"})
     head.emplace_back(title);
   Table table(head);
   Cells paper = paper_row(paper_scenes, columns, {"**the paper**"});
@@ -116,7 +116,7 @@ std::string summary_section(const Data& data) {
       "row.\n\nScanning:\n\n";
   out += scanning_table(data, paper_scenes);
   out +=
-      "\nSegmentation and localisation. Errors of fruit are `mean / worst` over the fruit of all scans that were "
+      "\nSegmentation and localization. Errors of fruit are `mean / worst` over the fruit of all scans that were "
       "matched to an instance; `missing` is the number of fruit that were not. The paper's RMSE is that of its one "
       "truss of " +
       std::to_string(study::kPaperLocalizationTotal) + ".\n\n";

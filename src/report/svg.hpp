@@ -11,9 +11,9 @@
 
 namespace agrisee::report::svg {
 
-/// One of seven colours that colour-blind readers can tell apart (Okabe and Ito), as `#rrggbb`; from 7 on they repeat.
+/// One of seven colors that color-blind readers can tell apart (Okabe and Ito), as `#rrggbb`; from 7 on they repeat.
 std::string color(std::size_t index);
-/// The grey of the reference values.
+/// The gray of the reference values.
 constexpr const char* kReference = "#9a9a9a";
 
 /// A series of bars: one value per category, none where there is no value.

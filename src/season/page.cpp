@@ -102,7 +102,7 @@ std::string table(const std::string& title, const std::vector<std::string>& name
   return out + "</table></div>\n";
 }
 
-/// The colour of a value between the smallest and the largest: from pale to deep.
+/// The color of a value between the smallest and the largest: from pale to deep.
 std::string heat(double value, double least, double most) {
   const double at = most > least ? (value - least) / (most - least) : 0.5;
   return "hsl(" + number(210.0 - 175.0 * at, 0) + ",65%," + number(88.0 - 26.0 * at, 0) + "%)";

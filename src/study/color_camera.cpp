@@ -12,15 +12,15 @@ namespace agrisee::study {
 
 namespace {
 
-constexpr std::uint64_t kColorStream = 0xC0105;               // tells the random numbers of colours from all others
+constexpr std::uint64_t kColorStream = 0xC0105;               // tells the random numbers of colors from all others
 constexpr std::uint64_t kWholeView = std::uint64_t{1} << 63;  // in place of a pixel: what the whole view shares
 
-/// A colour in CIELAB by lightness, chroma and hue angle (rad).
+/// A color in CIELAB by lightness, chroma and hue angle (rad).
 struct Shade {
   double lightness, chroma, hue;
 };
 
-/// Linear light of a colour in CIELAB (CIE 15:2004, white point D65; IEC 61966-2-1), limited to 0..1.
+/// Linear light of a color in CIELAB (CIE 15:2004, white point D65; IEC 61966-2-1), limited to 0..1.
 Eigen::Vector3d linear_of(const Shade& s) {
   const auto inverse = [](double t) {
     constexpr double kDelta = 6.0 / 29.0;
@@ -76,7 +76,7 @@ Shade shade_of(ObjectClass cls) {
   }
 }
 
-/// How a view renders brightness and colours.
+/// How a view renders brightness and colors.
 Eigen::Vector3d gains_of(const ColorParameters& p, std::uint64_t seed, std::uint64_t view) {
   Rng rng(seed ^ kColorStream, view, kWholeView);
   const double brightness = std::exp(p.exposure * rng.normal());
@@ -84,7 +84,7 @@ Eigen::Vector3d gains_of(const ColorParameters& p, std::uint64_t seed, std::uint
   return {brightness * red, brightness, brightness * blue};
 }
 
-/// What a surface of this colour sends to the camera (linear light).
+/// What a surface of this color sends to the camera (linear light).
 /// @param normal of the surface (unit)  @param to_camera (unit)
 Eigen::Vector3d shaded(const Eigen::Vector3d& color, Eigen::Vector3d normal, const Eigen::Vector3d& to_camera,
                        bool glossy, const ColorParameters& p) {

@@ -115,7 +115,7 @@ struct Flight {
   double share = 0.0;  ///< how many of such pixels fly, as a share of NoiseParameters::flying
 };
 
-/// The flight of pixel (u, v), whose depth is z (m): to the neighbour across the largest step in depth, else to the
+/// The flight of pixel (u, v), whose depth is z (m): to the neighbor across the largest step in depth, else to the
 /// nearest pixel in its row or column that lies well before it, else behind a rim with nothing beside it.
 Flight flight(const DepthView& image, int u, int v, double z, const NoiseParameters& p) {
   Flight out;

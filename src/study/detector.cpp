@@ -113,7 +113,7 @@ std::vector<int> levels_of(const Bitmap& mask, int reach, const PixelRange& rang
       }
     return false;
   };
-  for (int step = 1; step <= reach; ++step)  // four and eight neighbours in turn: nearly round
+  for (int step = 1; step <= reach; ++step)  // four and eight neighbors in turn: nearly round
     for (int v = range.v0; v <= range.v1; ++v)
       for (int u = range.u0; u <= range.u1; ++u) {
         int& own = at(u, v);

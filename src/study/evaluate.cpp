@@ -71,7 +71,7 @@ LabelledPoints labelled_points(const ScanResult& result) {
 /// What is known of the samples of the true surface, one flag per sample each.
 struct SampleFlags {
   Flags observable;  // some view of the arm can see it
-  Flags recalled;    // a labelled point is near
+  Flags recalled;    // a labeled point is near
   Flags scanned;     // a raw point is near
   Flags seen;        // a view of the result saw it
 };
@@ -116,7 +116,7 @@ struct Matches {
   std::vector<int> by_surface, by_points;  // for each fruit the column of its instance, or -1
 };
 
-/// @param covered the samples that the labelled points cover
+/// @param covered the samples that the labeled points cover
 Matches match_instances(const Truth& truth, const ScanResult& result, const PointTruth& of_point,
                         const LabelledPoints& labelled, const Coverage& covered, const Flags& observable,
                         double threshold) {
@@ -144,7 +144,7 @@ Matches match_instances(const Truth& truth, const ScanResult& result, const Poin
   return {fruits, instances, surface_iou, point_iou, best_matching(surface_iou), best_matching(point_iou)};
 }
 
-/// Precision of the labelled points, and of all points of the cloud.
+/// Precision of the labeled points, and of all points of the cloud.
 void judge_points(const PointTruth& of_point, const Labels& labels, const MetricParameters& parameters, Metrics& m) {
   double labelled = 0.0, on[2] = {0.0, 0.0}, labelled_on[2] = {0.0, 0.0};  // within `threshold`, within `strict`
   for (std::size_t i = 0; i < labels.size(); ++i) {

@@ -72,7 +72,7 @@ void set_azure(NoiseParameters& p, bool sun) {
 /// valid. The error of a disparity grows with the square of the range.
 void set_d405(NoiseParameters& p, bool sun) {
   p.white = {0.00005, 0.0, 0.0008};
-  p.waves[0] = {{0.0, 0.0, 0.0055}, 0.0055, 0.2};  // neighbours share their matching window
+  p.waves[0] = {{0.0, 0.0, 0.0055}, 0.0055, 0.2};  // neighbors share their matching window
   p.waves[1] = {{0.0, 0.0, 0.002}, 0.1, 0.5};
   p.edge_width = 2;
   p.smear = 2;

@@ -9,12 +9,12 @@ namespace agrisee::study {
 
 namespace {
 
-/// The truss of the table on localisation in [1]. Fruit 1 to 6 hang close to the world centres in the table. Fruit 7
+/// The truss of the table on localization in [1]. Fruit 1 to 6 hang close to the world centers in the table. Fruit 7
 /// hangs behind one of them, because nothing would hide it at its place in the table, below the others.
 TrussLayout localization_layout(const TrussParameters& parameters, double spread, Rng& rng) {
   struct Row {
-    Eigen::Vector3d center;  // the world centre in the table (m)
-    double size;             // our choice (m): as large as the centres allow, and larger at the top
+    Eigen::Vector3d center;  // the world center in the table (m)
+    double size;             // our choice (m): as large as the centers allow, and larger at the top
   };
   const Row rows[] = {{{0.060, 0.519, 0.154}, 0.0400}, {{-0.023, 0.521, 0.154}, 0.0400},
                       {{0.064, 0.555, 0.238}, 0.0410}, {{-0.033, 0.550, 0.236}, 0.0415},

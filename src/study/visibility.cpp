@@ -42,7 +42,7 @@ Flags visible_to(const TracedScene& scene, const Samples& samples, const Pose& w
   const sensor::Intrinsics& k = sensor.intrinsics;
   const auto least = static_cast<float>(std::max(0.0, std::cos(sensor.max_incidence)));
   const auto range_min = static_cast<float>(sensor.range_min), range_max = static_cast<float>(sensor.range_max);
-  // The borders of the image on the plane z = 1, half a pixel outside the centres of the outermost pixels.
+  // The borders of the image on the plane z = 1, half a pixel outside the centers of the outermost pixels.
   const Eigen::Vector2f low = k.ray(-0.5, -0.5).head<2>().cast<float>();
   const Eigen::Vector2f high = k.ray(k.width - 0.5, k.height - 0.5).head<2>().cast<float>();
   parallel_for(samples.size(), threads, [&](std::size_t i) {

@@ -84,7 +84,7 @@ TEST_CASE("collision: the sensor may stand exactly at the border of a space") {
   CHECK(sensor_collision(look_along({0.0, 0.25 - 0.0304, 0.3}, {0, 0, 1}), mount));
   CHECK_FALSE(sensor_collision(look_along({0.0, 0.25 - 0.0261, 0.3}, {0, -1, 0}), mount));
   CHECK(sensor_collision(look_along({0.0, 0.25 - 0.0259, 0.3}, {0, -1, 0}), mount));
-  // And a box: looking at a corner, the optical centre may touch it.
+  // And a box: looking at a corner, the optical center may touch it.
   mount.keep_out = {box({0.5, 0.5, 0.5}, {1, 1, 1})};
   const Vector3d inwards(1, 1, 1);
   CHECK_FALSE(sensor_collision(look_along(Vector3d::Zero(), inwards), mount));
@@ -100,7 +100,7 @@ TEST_CASE("collision: the arm meets itself") {
   CHECK(contact(joints(0, -kPi / 2, 0, kPi / 2, 0, 0), mount) == "free");
   // An everyday posture, the tool pointing down.
   CHECK(contact(joints(0, -kPi / 4, kPi / 2, -kPi / 4 - kPi / 2, -kPi / 2, 0), mount) == "free");
-  // Neighbours are never reported, whatever their angle.
+  // Neighbors are never reported, whatever their angle.
   Rng rng(1);
   const std::string neighbours[] = {"shoulder/upper_arm", "upper_arm/forearm", "forearm/wrist_1", "wrist_1/wrist_2",
                                     "wrist_2/wrist_3",    "wrist_3/sensor",    "wrist_2/sensor",  "shoulder/base"};

@@ -195,7 +195,7 @@ TEST_CASE("UR3: out of reach is an empty list") {
   pose.translation() = Eigen::Vector3d(1, 0, 0);
   CHECK(inverse(pose).empty());
   CHECK_FALSE(maybe_reachable(pose));
-  // The wrist's centre inside the cylinder of radius d4 about the base's axis.
+  // The wrist's center inside the cylinder of radius d4 about the base's axis.
   pose.translation() = Eigen::Vector3d(0.05, 0.0, 0.3);
   CHECK(inverse(pose).empty());
   CHECK_FALSE(maybe_reachable(pose));

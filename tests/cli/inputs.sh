@@ -202,7 +202,7 @@ assert "(zero or more)" in row or "(" in row, row
 PY
     done
     ;;
-  image)  # a single depth image, alone and with masks, boxes and colours
+  image)  # a single depth image, alone and with masks, boxes and colors
     small_truss t --total 3 --hidden 0 --seed 3
     expect 0 '' scan t -o r --noise none --seed 5 --max-views 1
     expect 0 '' export-views r -o e
@@ -249,7 +249,7 @@ PY
       [ "$(grep -c '"id"' $f/fruits.json)" = "$(grep -c '"id"' plain/fruits.json)" ] || fail "$f: another number of fruit"
     done
     expect 2 'small.png: is damaged|small.png: .*pixels, but the depth image' process $image --masks small.png -o x
-    expect 2 'has colours or opacity' process $image --masks color.png -o x
+    expect 2 'has colors or opacity' process $image --masks color.png -o x
     expect 2 'no such file' process $image --color none.png -o x
     expect 2 'depth needs 16' process --depth masks.png --intrinsics $camera -o x
     expect 1 'needs --intrinsics' process --depth e/depth/0000.png -o x

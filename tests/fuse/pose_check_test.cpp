@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Poses that are no world_T_optical are recognised by how the views agree.
+// Poses that are no world_T_optical are recognized by how the views agree.
 #include <agrisee/fuse/pose_check.hpp>
 
 #include "catch.hpp"

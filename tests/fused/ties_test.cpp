@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Compiled for processors that multiply and add in one rounding: ties, of which lattices are full, are ties in every
-// search, and neighbours of one another are so for both.
+// search, and neighbors of one another are so for both.
 #include <agrisee/cloud/region_growing.hpp>
 #include <agrisee/core/random.hpp>
 #include <agrisee/neighbors/kdtree.hpp>

@@ -102,7 +102,7 @@ Mesh scene_of(const std::string& kind) {
       const Vector3f a = random_vector(rng, 1.0), b = random_vector(rng, 1.0);
       add(mesh, a, b, b + random_vector(rng, 1e-4));
     }
-  if (kind == "equal")  // one triangle many times over: ties, and centres that coincide
+  if (kind == "equal")  // one triangle many times over: ties, and centers that coincide
     for (int i = 0; i < 100; ++i) add(mesh, Vector3f(-1, -1, 0), Vector3f(1, -1, 0), Vector3f(0, 1, 0));
   if (kind == "scales") {  // sizes and places over 12 powers of ten
     for (int i = 0; i < 240; ++i) {

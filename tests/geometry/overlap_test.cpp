@@ -87,7 +87,7 @@ TEST_CASE("cylinders of any direction overlap solids, by hand") {
   CHECK_FALSE(overlap(OrientedCylinder{{1.5, 0, 0}, x, 0.3, 1.0}, box));  // its flat end touches
   CHECK_FALSE(overlap(OrientedCylinder{{1.3, 0, 0}, z, 0.3, 1.0}, box));  // its side touches
   CHECK(overlap(OrientedCylinder{{1.29, 0, 0}, z, 0.3, 1.0}, box));
-  // Tilted by 45 degrees its rim is 0.5 h cos + r sin ahead of its centre.
+  // Tilted by 45 degrees its rim is 0.5 h cos + r sin ahead of its center.
   const double ahead = (0.5 + 0.3) * std::sqrt(0.5);
   CHECK(overlap(OrientedCylinder{{1.0 + ahead - 0.01, 0, 0}, slant, 0.3, 1.0}, box));
   CHECK_FALSE(overlap(OrientedCylinder{{1.0 + ahead + 0.01, 0, 0}, slant, 0.3, 1.0}, box));

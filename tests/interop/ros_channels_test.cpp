@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Colours and labels that come as further images beside a depth image.
+// Colors and labels that come as further images beside a depth image.
 #include <agrisee/interop/ros.hpp>
 
 #include "catch.hpp"

@@ -112,7 +112,7 @@ void reads_every_layout() {
   }
 }
 
-/// What a sensor at the origin of `pose` sees of two fruit, organised, NaN without return; world frame.
+/// What a sensor at the origin of `pose` sees of two fruit, organized, NaN without return; world frame.
 std::vector<Eigen::Vector3f> scan_of_two() {
   const std::vector<Sphere> fruit = {{{-0.05, 0.5, 0.2}, 0.035}, {{0.04, 0.52, 0.2}, 0.03}};
   const sensor::Intrinsics camera = sensor::intrinsics_from_fov(256, 192, deg(50), deg(38));

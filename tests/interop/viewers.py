@@ -58,7 +58,7 @@ work.mkdir(parents=True, exist_ok=True)
 work = work.resolve()
 expected = read_ply(source)
 if len({(v["red"], v["green"], v["blue"]) for v in expected}) < 2:
-    sys.exit(f"{source}: has one colour alone")
+    sys.exit(f"{source}: has one color alone")
 shutil.copy(source, work / "cloud.ply")
 ran = 0
 if shutil.which("CloudCompare"):

@@ -105,9 +105,9 @@ TEST_CASE("colour and label images say what is wrong with them") {
   CHECK(color(folder.file("c.png", png(8, io::PngKind::rgb, rgb))).pixels == std::vector<Rgb>{{1, 2, 3}, {4, 5, 6}});
   CHECK(label(folder.file("8.png", png(8, io::PngKind::gray, grey8))).labels == std::vector<std::uint16_t>{1, 2});
   CHECK(label(folder.file("16.png", png(16, io::PngKind::gray, grey16))).labels == std::vector<std::uint16_t>{256, 2});
-  require_file_error(folder / "8.png", "is a grey image", color);
+  require_file_error(folder / "8.png", "is a gray image", color);
   require_file_error(folder.file("c16.png", png(16, io::PngKind::rgb, rgb + rgb)), "16 bits a channel", color);
-  require_file_error(folder / "c.png", "one grey channel", label);
+  require_file_error(folder / "c.png", "one gray channel", label);
   require_file_error(folder.file("x.png", "JFIF"), "is not a PNG", color);
   require_file_error(folder / "none.png", "", label);
 }

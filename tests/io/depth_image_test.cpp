@@ -114,7 +114,7 @@ TEST_CASE("PNG images that other programs made") {  // these with Python's zlib,
   require_file_error(image("000000010000000108000000003a7e9b550000000a4944415478da63600500000700062d451807"),
                      "8 bits a pixel; depth needs 16", load);
   require_file_error(image("00000001000000011002000000c0e78f9d0000000c4944415478da636060044100001000041852a5e5"),
-                     "colour image", load);
+                     "color image", load);
   require_file_error(image("00003e8000003e80100000000034855c41000000094944415478da63000000010001b10db693"),
                      "too short for its size", load);
 }

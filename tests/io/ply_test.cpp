@@ -114,7 +114,7 @@ TEST_CASE("cloud.ply has exactly the properties of the contract") {
   const std::size_t at = text.find(wanted);
   REQUIRE(at != std::string::npos);
   REQUIRE(text.size() == at + wanted.size() + 3 * 31);
-  for (int i = 0; i < 3; ++i) {  // the colour is the fruit's
+  for (int i = 0; i < 3; ++i) {  // the color is the fruit's
     const io::Rgb rgb = io::fruit_color(i);
     for (std::size_t c = 0; c < 3; ++c)
       CHECK(static_cast<std::uint8_t>(text[at + wanted.size() + 31 * static_cast<std::size_t>(i) + 24 + c]) == rgb[c]);

@@ -47,7 +47,7 @@ Workcell cell() {
   return w;
 }
 
-/// Pixels whose hue is near that colour's, in columns [x0, x1).
+/// Pixels whose hue is near that color's, in columns [x0, x1).
 std::size_t count_like(const io::Image& image, const io::Rgb& rgb, int x0, int x1) {
   const Eigen::Vector3d wanted = Eigen::Vector3d(rgb[0], rgb[1], rgb[2]).normalized();
   std::size_t n = 0;
@@ -94,7 +94,7 @@ TEST_CASE("the number of a fruit behind another stays readable") {
   const auto ring = [&](int behind) {
     r.fruits[0].body->center = r.fruits[1].body->center + Eigen::Vector3d(0.0, 0.08 * behind, 0.0);
     r.fruits[0].centroid = r.fruits[0].body->center;
-    Cloud only;  // of the second fruit, so that the colour of the first is seen in its number's ring alone
+    Cloud only;  // of the second fruit, so that the color of the first is seen in its number's ring alone
     for (std::size_t i = 0; i < r.cloud.size(); ++i)
       if (r.labels[i] == 2) only.points.push_back(r.cloud.points[i]);
     ScanResult shown = r;

@@ -108,7 +108,7 @@ TEST_CASE("the page of a scan is complete, loads nothing and contains the result
   CHECK(page.compare(page.size() - 8, 8, "</html>\n") == 0);
   CHECK(count(page, "@REPORT_DATA@") == 0);
   CHECK(page.find("default-src 'none'") != std::string::npos);
-  CHECK(page.find("Three.js Authors") != std::string::npos);  // its licence's condition
+  CHECK(page.find("Three.js Authors") != std::string::npos);  // its license's condition
   for (const char* loads : {"src=\"", "src='", "href=\"", "href='", "@import", "url(", "fetch(\"http", "import(\""})
     CHECK(count(page, loads) == 0);
   CHECK(page == io::scan_page(result, cell(), {}, history));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Neighbourhoods, counts and components of all points at once equal brute force, on friendly and on awkward clouds.
+// Neighborhoods, counts and components of all points at once equal brute force, on friendly and on awkward clouds.
 #include <agrisee/neighbors/components.hpp>
 #include <agrisee/neighbors/count_neighbors.hpp>
 #include <agrisee/neighbors/neighbor_lists.hpp>
@@ -57,7 +57,7 @@ void check_nearest(const shapes::Points<S>& cloud, std::size_t k, S radius) {
 template <typename S>
 void check_counts_and_components(const shapes::Points<S>& cloud, S r) {
   const auto counts = count_neighbors(cloud, r, 2);
-  std::vector<Index> lowest(cloud.size());  // of the connected component, by spreading over brute-force neighbours
+  std::vector<Index> lowest(cloud.size());  // of the connected component, by spreading over brute-force neighbors
   std::iota(lowest.begin(), lowest.end(), Index(0));
   for (std::size_t seed = 0; seed < cloud.size(); ++seed) {
     if (!is_finite(cloud[seed])) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Every neighbour query of every search equals brute force, ties and awkward clouds included.
+// Every neighbor query of every search equals brute force, ties and awkward clouds included.
 #include <agrisee/neighbors/grid.hpp>
 #include <agrisee/neighbors/kdtree.hpp>
 

@@ -66,7 +66,7 @@ TEST_CASE("PCL's normals and curvatures are the same") {
       same +=
           std::abs(normals[i].dot(n)) > std::cos(deg(0.5)) && std::abs(curvatures[i] - (*theirs)[i].curvature) < 1e-3f;
     }
-    CHECK(same > cloud.size() * 99 / 100);  // theirs sums in single precision, which round neighbourhoods notice
+    CHECK(same > cloud.size() * 99 / 100);  // theirs sums in single precision, which round neighborhoods notice
   }
 }
 

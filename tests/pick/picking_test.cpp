@@ -154,7 +154,7 @@ TEST_CASE("picking: sides that were seen and sides without neighbours are prefer
   }
   std::vector<Fruit> two{fruit(1, {0.0, 0.5, 0.2}), fruit(2, {0.075, 0.48, 0.2})};
   p.away_weight = 5.0;
-  CHECK(plan_picking(two, scene(), {}, p)[0].direction.x() > 0.1);  // comes from the left, away from its neighbour
+  CHECK(plan_picking(two, scene(), {}, p)[0].direction.x() > 0.1);  // comes from the left, away from its neighbor
   two[1] = fruit(2, {-0.075, 0.48, 0.2});
   CHECK(plan_picking(two, scene(), {}, p)[0].direction.x() < -0.1);
 

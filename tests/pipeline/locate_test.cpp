@@ -29,7 +29,7 @@ Cloud pear() {
   return cloud;
 }
 
-/// How many fruit are located in a cloud that is segmented as one body. All points are labelled if there is one, none
+/// How many fruit are located in a cloud that is segmented as one body. All points are labeled if there is one, none
 /// otherwise.
 std::size_t located(const Cloud& cloud, const Parameters& parameters) {
   Indices own(cloud.size());

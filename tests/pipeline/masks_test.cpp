@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Masks and colours from a frame to fruit.
+// Masks and colors from a frame to fruit.
 #include <agrisee/pipeline.hpp>
 #include <agrisee/process.hpp>
 #include <agrisee/study/simulated_scan.hpp>

@@ -11,7 +11,7 @@ using see::PointClass;
 
 namespace {
 
-/// Parameters with the radius r and k neighbours.
+/// Parameters with the radius r and k neighbors.
 see::Parameters with(double r, double k) {
   see::Parameters p;
   p.radius = r;
@@ -45,7 +45,7 @@ TEMPLATE_TEST_CASE("density: motions, scales, shuffles and precision change noth
 }
 
 TEMPLATE_TEST_CASE("density: m of each point are m times as dense", "", float, double) {
-  // With m times the neighbours asked for the same are core.
+  // With m times the neighbors asked for the same are core.
   const std::string kind = GENERATE(from_range(laws::exact_kinds()));
   const std::size_t m = GENERATE(2u, 5u);
   const auto cloud = laws::exact_cloud<TestType>(kind);

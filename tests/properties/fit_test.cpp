@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Fits of bodies. Rigid motions and shuffles: to the rounding of sums, as long as all points are used; of more points
-// than max_points the order decides which, and a shuffle may move the centre within its standard error. Scaling by a
+// than max_points the order decides which, and a shuffle may move the center within its standard error. Scaling by a
 // power of two with the lengths (start, noise): to the bit. m copies of each point: to the bit once there are twice as
 // many points as are used, since the same ones are picked; the inliers are m times as many.
 #include <agrisee/cloud/fit.hpp>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Frontier frames: the frame moves with the cloud and the sensor, and does not depend on scale or copies of the points
-// with k times as many neighbours. Where the axis of the neighbourhood is told (the two least variances differ) and the
+// with k times as many neighbors. Where the axis of the neighborhood is told (the two least variances differ) and the
 // side is not grazing; there the way into the unseen is told too, unless both tangents are as far from the mean.
 #include <agrisee/neighbors/kdtree.hpp>
 #include <agrisee/see/frontier.hpp>

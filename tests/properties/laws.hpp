@@ -73,7 +73,7 @@ Points<S> hostile_cloud(const std::string& kind) {
   using Limits = std::numeric_limits<S>;
   Points<S> out = exact_cloud<S>("random");
   const std::size_t n = out.size();
-  if (kind == "far")  // in float neighbours are 62.5 mm apart or at one place
+  if (kind == "far")  // in float neighbors are 62.5 mm apart or at one place
     for (auto& p : out) p += Vector3<S>::Constant(S(1e6));
   if (kind == "denormal")
     for (auto& p : out) p *= Limits::denorm_min() / S(kUnit);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Normals: the axis without its sign, to the rounding of the eigenvalues, wherever the neighbourhood tells an axis: its
-// two least variances differ and its k-th neighbour is not tied with the next, of which the lower index wins (so a
+// Normals: the axis without its sign, to the rounding of the eigenvalues, wherever the neighborhood tells an axis: its
+// two least variances differ and its k-th neighbor is not tied with the next, of which the lower index wins (so a
 // shuffle may choose another). Whether a normal is known at all has to be the same everywhere.
 #include <agrisee/cloud/normals.hpp>
 
@@ -18,7 +18,7 @@ bool same_axis(const A& a, const B& b, double tolerance) {
   return u.cross(v).norm() <= tolerance;
 }
 
-/// Which points have an axis that their neighbourhood tells, and are not tied at its end.
+/// Which points have an axis that their neighborhood tells, and are not tied at its end.
 template <typename S>
 std::vector<char> told(const laws::Points<S>& cloud, const NormalParameters& params) {
   std::vector<char> out;
@@ -80,7 +80,7 @@ TEMPLATE_TEST_CASE("normals: motions, scales, shuffles, copies and precision cha
   if (k == 1000) check(back, still, "shuffled");
   for (std::size_t i = 0; i < back.size(); ++i)
     if (sure[i]) REQUIRE(same_axis(back[i], straight[i], tolerance));
-  // m copies and m times the neighbours; two points and their copies are still a line.
+  // m copies and m times the neighbors; two points and their copies are still a line.
   const auto copies = estimate_normals(laws::repeated(cloud, 3), {0x1p-7, 3 * k});
   for (std::size_t i = 0; i < copies.size(); ++i)
     if (sure[i / 3]) REQUIRE(same_axis(copies[i], straight[i / 3], tolerance));

@@ -47,7 +47,7 @@ void check_pick(const Fruit& fruit, const std::vector<Fruit>& all, const Workcel
     REQUIRE(verify::difference(stands, verify::matrix_of(tool)) < 1e-8);
     REQUIRE(verify::fault_of(q, mount, others) == "");
   }
-  // And it ends at the fruit: on the line to the centre, `contact` before the surface.
+  // And it ends at the fruit: on the line to the center, `contact` before the surface.
   const Eigen::Vector3d end = pick.world_T_pre_grasp.translation() + (p.stand_off - p.contact) * pick.direction;
   const Eigen::Vector3d from_center = fruit.body->axes.transpose() * (end - fruit.body->center);
   REQUIRE(from_center.cwiseQuotient(fruit.body->radii).norm() == Approx(1.0).margin(1e-6));

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The whole of `process`. To the bit: threads; points that are not finite, mixed in; doubles that are floats; scales
 // that are powers of two with all lengths. Rigid motions, shuffles and copies choose other samples for what is derived
-// from the cloud (spacing, noise, votes) and other seeds: the same fruit, centres within 0.3 mm of 35 mm, labels but
+// from the cloud (spacing, noise, votes) and other seeds: the same fruit, centers within 0.3 mm of 35 mm, labels but
 // for some points at the borders of bodies; gravity is told from z, so that the pose frames follow turns about z alone.
 #include <agrisee/process.hpp>
 

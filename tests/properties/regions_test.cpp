@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Region growing: with the paper's rule regions are the parts of a graph, so that labels are the same, numbers
-// included, as long as the order of the points is, and up to their numbers in any order. With k nearest neighbours or
+// included, as long as the order of the points is, and up to their numbers in any order. With k nearest neighbors or
 // growth from flat points alone earlier seeds win, and shuffles may move points between regions: not tested here but
 // for motions.
 #include <agrisee/cloud/region_growing.hpp>

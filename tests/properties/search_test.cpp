@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Both searches and all neighbourhoods at once answer like all pairs, on clouds where every distance ties and on clouds
+// Both searches and all neighborhoods at once answer like all pairs, on clouds where every distance ties and on clouds
 // that defy arithmetic.
 #include <agrisee/neighbors/neighbor_lists.hpp>
 

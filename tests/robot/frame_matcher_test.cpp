@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Which colours and labels a robot node takes together with a depth image.
+// Which colors and labels a robot node takes together with a depth image.
 #include "frame_matcher.hpp"
 
 #include <memory>

@@ -59,7 +59,7 @@ TEST_CASE("frontier frame at the edge of a seen cap", "[see]") {
   const Eigen::Vector3d n(std::sin(edge), 0.0, std::cos(edge)), down(std::cos(edge), 0.0, -std::sin(edge));
   cloud.push_back((radius * n).cast<float>());
   const Frontier f = frame_at(cloud, static_cast<Index>(cloud.size() - 1), {0, 0, 0.5});
-  REQUIRE(f.normal.dot(n) > std::cos(deg(15)));  // the neighbourhood lies on the seen side, so its normal tilts to it
+  REQUIRE(f.normal.dot(n) > std::cos(deg(15)));  // the neighborhood lies on the seen side, so its normal tilts to it
   REQUIRE(f.direction.dot(down) > std::cos(deg(15)));
   REQUIRE(std::abs(f.boundary.y()) > std::cos(deg(3)));
   REQUIRE(points_outward(f, Eigen::Vector3d::Zero()));

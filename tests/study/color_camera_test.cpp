@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Simulated colours: fruit as ripe as the scene says, other objects in the colours of their class, depths untouched.
+// Simulated colors: fruit as ripe as the scene says, other objects in the colors of their class, depths untouched.
 #include <agrisee/cloud/ripeness.hpp>
 #include <agrisee/study/capture.hpp>
 #include <agrisee/study/true_ripeness.hpp>
@@ -46,7 +46,7 @@ double hue_of_light(const Eigen::Vector3d& light) {
   return hue_of(to_lab(rgb));
 }
 
-/// The colours of the pixels that see one object.
+/// The colors of the pixels that see one object.
 std::vector<Rgb> colors_of_object(const TracedScene& traced, const Capture& c, std::uint32_t object) {
   const RayImage rays = raycast(traced, c.frame.intrinsics, kPose, 0.0, 5.0);
   std::vector<Rgb> out;

@@ -164,7 +164,7 @@ TEST_CASE("a detection is true from an IoU of one half") {
     if (result.labels[i] == 1 && result.cloud.points[i].z() < float(kCenter[0].z() + 0.2 * kRadius[0]))
       result.labels[i] = 0;
   const Metrics m = evaluate(truth(), result);
-  // The nearest labelled point counts up to 5 mm beyond the cap.
+  // The nearest labeled point counts up to 5 mm beyond the cap.
   for (std::size_t i = 0; i < truth().samples.size(); ++i)
     if (truth().samples.fruit[i] == 1) {
       bool near = false;

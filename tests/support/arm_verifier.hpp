@@ -144,7 +144,7 @@ inline std::vector<Solid> solids(const agrisee::Joints& q, const agrisee::arm::M
     add(piece.part, piece.part == Part::base ? world_T_base : times(world_T_base, frames[std::size_t(piece.part)]),
         piece.cylinder);
   const Matrix world_T_optical = times(times(world_T_base, frames[5]), matrix_of(mount.tool0_T_optical));
-  agrisee::OrientedCylinder housing;  // behind the optical centre
+  agrisee::OrientedCylinder housing;  // behind the optical center
   housing.center = {0, 0, -0.5 * mount.sensor.depth};
   housing.radius = mount.sensor.radius;
   housing.height = mount.sensor.depth;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Friendly and awkward clouds, and neighbours by brute force.
+// Friendly and awkward clouds, and neighbors by brute force.
 #pragma once
 
 #include <agrisee/core/random.hpp>

@@ -25,7 +25,7 @@ ARGUMENTS = {
     'params': ('', "YAML file with parameters of the pipeline, as of agrisee scan --params"),
     'seed': ('0', 'of the planner'),
     'autostart': ('false', 'start without the service'),
-    'color': ('false', 'take colours from color_image'),
+    'color': ('false', 'take colors from color_image'),
     'labels': ('false', "take a detector's label images from labels_image"),
     'depth_image': ('/depth/image', 'topic'),
     'camera_info': ('/depth/camera_info', 'topic'),

@@ -11,8 +11,8 @@
 /// Learning, 2006, 2.1 and 5.4.1). n is chosen by the evidence. Shift and tilt of the axis are unknowns of the same
 /// least-squares problem and are applied after each step. Points far from the surface, or with other normals, lose
 /// their weight (Tukey's biweight). Evidence is robust as well: a sepal that lies on a round fruit is no reason to give
-/// up the ellipsoid. Unlabelled points on the surface join the fruit: the neck of a pear is too far from any ellipsoid
-/// to be labelled before.
+/// up the ellipsoid. Unlabeled points on the surface join the fruit: the neck of a pear is too far from any ellipsoid
+/// to be labeled before.
 ///
 /// Metres, any frame. Cost: 5 to 20 ms; points are thinned, so it hardly grows with them.
 #pragma once
@@ -45,7 +45,7 @@ struct ClosedSurface {
   double volume_error = 0.0;                                    ///< its standard error, relative
   Eigen::Matrix3d spread = Eigen::Matrix3d::Zero();             ///< covariance of the positions inside it (m2)
   double rms = 0.0;                                             ///< root mean square distance of its points (m)
-  Indices joined;  ///< unlabelled points on it, ascending; none if the weight is 0
+  Indices joined;  ///< unlabeled points on it, ascending; none if the weight is 0
 };
 
 namespace detail {

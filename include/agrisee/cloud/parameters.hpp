@@ -110,7 +110,7 @@ struct DbscanParameters {
 
 /// Parameters of register_cloud (ICP).
 struct IcpParameters {
-  bool point_to_point = false;  ///< minimise the distances between points instead of those to the target's planes
+  bool point_to_point = false;  ///< minimize the distances between points instead of those to the target's planes
   double max_distance = 0.005;  ///< points farther apart than this are not matched (m)
   double max_normal_angle = deg(30.0);        ///< nor are points whose normals differ by more (rad); pi: no such test
   RobustKernel kernel = RobustKernel::tukey;  ///< how much large residuals count

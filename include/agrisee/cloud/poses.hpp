@@ -132,7 +132,7 @@ inline BodyAxis symmetry_axis(const EllipsoidFit& fit) {
 }
 
 /// Direction (unit, world) from a fruit's center towards its calyx. Fruit are round about their growth axis, so the
-/// body's axis gives the line, weighted by its certainty. Its sense follows from unlabelled points just outside the
+/// body's axis gives the line, weighted by its certainty. Its sense follows from unlabeled points just outside the
 /// body (calyx, pedicel; nearer ones weigh more) and, weakly, from gravity. If the body is a sphere, these two give the
 /// whole direction.
 /// @param cloud points (m, world)

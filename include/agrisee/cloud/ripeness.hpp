@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// @file
-/// Ripeness of a fruit from the measured colours of its surface, in CIELAB (CIE 15:2004; sRGB and D65 by
+/// Ripeness of a fruit from the measured colors of its surface, in CIELAB (CIE 15:2004; sRGB and D65 by
 /// IEC 61966-2-1). Defined in `agrisee::agrisee`.
 #pragma once
 
@@ -21,7 +21,7 @@ struct RipenessParameters {
   double hue_error = deg(8);  ///< standard deviation of a hue angle due to white balance and shade (rad)
   double min_chroma = 8.0;    ///< surface with less chroma (CIELAB) has no hue and is left out of the share
   double trim = 0.15;         ///< share of the points, the brightest (highlights) and again the darkest (shade), that
-                              ///< is left out of the mean colour
+                              ///< is left out of the mean color
   double breakers = 0.01;     ///< ripe share from which a fruit is of the class breakers
   double turning = 0.10;      ///< ripe share from which it is turning
   double pink = 0.30;         ///< ripe share from which it is pink
@@ -46,10 +46,10 @@ struct RipenessParameters {
   }
 };
 
-/// A colour in CIELAB: L* from 0 to 100, a* and b*; white point D65.
+/// A color in CIELAB: L* from 0 to 100, a* and b*; white point D65.
 Eigen::Vector3d to_lab(const Rgb& color);
 
-/// The hue angle (rad) of a colour in CIELAB, -pi/2..3 pi/2: blue counts as far from red.
+/// The hue angle (rad) of a color in CIELAB, -pi/2..3 pi/2: blue counts as far from red.
 double hue_of(const Eigen::Vector3d& lab);
 
 /// Linear light (0..1) of a channel of sRGB (0..1), IEC 61966-2-1.
@@ -58,15 +58,15 @@ double linear_light(double channel);
 /// The class of a fruit of which this share (0..1) of the surface is ripe.
 RipenessClass class_of(double ripe_share, const RipenessParameters& parameters = {});
 
-/// The ripeness of a surface with these colours.
+/// The ripeness of a surface with these colors.
 ///
 /// Each point with a hue counts as ripe with the probability that its true hue is below `ripe_hue` (a normal
 /// distribution with the standard deviation `hue_error`). The error of the share has two parts: the unseen surface may
 /// differ from the seen one, as if `seen` of 12 patches had been drawn at random, and all hues may be off together by
-/// half of `hue_error`. The brightest and darkest points are left out of the mean colour (`trim`).
+/// half of `hue_error`. The brightest and darkest points are left out of the mean color (`trim`).
 /// @param colors of points spread evenly over the part of the surface that was seen
 /// @param seen   share (0..1) of the surface that was seen
-/// @return empty if there are fewer than 8 colours, or none with a hue
+/// @return empty if there are fewer than 8 colors, or none with a hue
 /// @throws FieldError
 std::optional<Ripeness> ripeness_of(const std::vector<Rgb>& colors, double seen,
                                     const RipenessParameters& parameters = {});

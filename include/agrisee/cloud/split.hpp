@@ -339,7 +339,7 @@ Split split(const PointCloud<S>& cloud, const SplitParameters& parameters = {}, 
 
 /// Update the bodies of a cloud that has grown, or changed a little, since the bodies `known` were found. These compete
 /// again with bodies for which the other points vote. Much faster than `split`, and as good while the cloud grows view
-/// by view. Bodies keep their `found_by`. Points are labelled by the body on which they lie; no regions are grown.
+/// by view. Bodies keep their `found_by`. Points are labeled by the body on which they lie; no regions are grown.
 /// @param cloud points (m) with normals
 /// @param known bodies found before
 /// @param parameters see their struct

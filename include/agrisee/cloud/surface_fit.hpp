@@ -24,7 +24,7 @@ struct ClosedSurfaceParameters {
   double lobes = 0.05;     ///< standard deviation of the lobes at their lowest degree; falls with 1 / degree
   double uneven = 0.0015;  ///< standard deviation of degree 2 of the asymmetric part; falls with 1 / degree
   double noise = 0.0025;   ///< least standard deviation of a point, relative to the radius
-  double join = 0.035;     ///< unlabelled points this near to the surface, relative to the radius, join the fruit
+  double join = 0.035;     ///< unlabeled points this near to the surface, relative to the radius, join the fruit
   double doubtful = 50;    ///< up to this evidence (nats) against the ellipsoid, the ellipsoid is used
   double certain = 90;     ///< from this evidence on, the closed surface is used; in between a mixture
   double error_scale = 5;  ///< standard errors are this multiple of those for independent points
@@ -57,7 +57,7 @@ struct RadialBin {
   double weight = 0.0;                                  ///< sum of their weights
 };
 
-/// Variance of the mean logarithm of a bin's distances: errors of neighbouring points are correlated.
+/// Variance of the mean logarithm of a bin's distances: errors of neighboring points are correlated.
 /// @param weight sum of the weights of its points
 /// @param noise standard deviation of a point, relative to the radius
 inline double bin_variance(double weight, double noise) { return noise * noise * (1.0 / std::min(weight, 6.0) + 0.25); }

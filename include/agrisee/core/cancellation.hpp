@@ -33,7 +33,7 @@ namespace agrisee {
 
 namespace detail {
 /// The flag that stops this thread's work, or null if nothing can stop it. A plain pointer with a constant initial
-/// value: access needs no initialisation guard.
+/// value: access needs no initialization guard.
 inline thread_local const std::atomic<bool>* current_cancellation = nullptr;
 }  // namespace detail
 

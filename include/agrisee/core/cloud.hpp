@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// @file
-/// AgriSEE's own point cloud: points and, if known, their normals, the view that each came from, their colours and
+/// AgriSEE's own point cloud: points and, if known, their normals, the view that each came from, their colors and
 /// what a detector took them for.
 #pragma once
 
@@ -19,7 +19,7 @@ struct PointCloud {
   std::vector<Vector3<S>> points;   ///< m, in the world frame unless said otherwise
   std::vector<Vector3<S>> normals;  ///< unit normals towards the side that was seen; zero = unknown
   std::vector<int> views;           ///< index of the view that observed the point; -1 = unknown
-  std::vector<Rgb> colors = {};     ///< measured colours
+  std::vector<Rgb> colors = {};     ///< measured colors
   std::vector<int> instances = {};  ///< number of a detector's instance in the point's view; 0 = none
 
   /// Number of points.

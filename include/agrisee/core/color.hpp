@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// @file
-/// The 8-bit sRGB colour of a pixel or a point.
+/// The 8-bit sRGB color of a pixel or a point.
 #pragma once
 
 #include <array>

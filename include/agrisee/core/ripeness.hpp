@@ -33,14 +33,14 @@ std::optional<RipenessClass> ripeness_named(std::string_view name);
 
 /// The ripeness of a fruit or a truss.
 struct Ripeness {
-  Eigen::Vector3d lab = Eigen::Vector3d::Zero();  ///< mean colour of the points used: L*, a*, b*
+  Eigen::Vector3d lab = Eigen::Vector3d::Zero();  ///< mean color of the points used: L*, a*, b*
   double hue = 0.0;                            ///< its hue angle (rad) from red (a*) towards yellow (b*), -pi/2..3 pi/2
   double hue_error = 0.0;                      ///< its standard error (rad)
   double ripe_share = 0.0;                     ///< share (0..1) of the surface that is ripe
   double ripe_share_error = 0.0;               ///< its standard error
   RipenessClass grade = RipenessClass::green;  ///< the class of that share
   double probability = 0.0;                    ///< of the class, given the error of the share
-  std::size_t points = 0;                      ///< number of coloured points used
+  std::size_t points = 0;                      ///< number of colored points used
 };
 
 }  // namespace agrisee

@@ -3,7 +3,7 @@
 /// What any point cloud type has to provide so that the library can read it without copying.
 ///
 /// This file covers `std::vector<Eigen::Matrix<S, 3, 1>>` and dense Eigen expressions (matrices, maps with any stride,
-/// blocks) with three rows, where each column is a point, or with three columns, where each row is a point. Specialise
+/// blocks) with three rows, where each column is a point, or with three columns, where each row is a point. Specialize
 /// `CloudTraits<C>` for other types; `interop/` does so for PCL, Open3D and ROS.
 #pragma once
 

@@ -12,7 +12,7 @@
 
 namespace agrisee::detail {
 
-/// std::allocator, except that elements made without arguments are default-initialised: numbers keep whatever value the
+/// std::allocator, except that elements made without arguments are default-initialized: numbers keep whatever value the
 /// memory holds.
 template <typename T>
 struct DefaultInitAllocator : std::allocator<T> {
@@ -24,7 +24,7 @@ struct DefaultInitAllocator : std::allocator<T> {
     using other = DefaultInitAllocator<U>;
   };
 
-  /// Default-initialises an element.
+  /// Default-initializes an element.
   template <typename U>
   void construct(U* p) {
     ::new (static_cast<void*>(p)) U;

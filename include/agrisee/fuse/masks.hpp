@@ -22,7 +22,7 @@ namespace agrisee::fuse {
 /// The evidence from the masks of one view; opaque.
 struct ViewMasks;
 
-/// A view that a detector has looked at, or that has colours. Copies share the frame.
+/// A view that a detector has looked at, or that has colors. Copies share the frame.
 struct DetectedView {
   DetectedView() = default;
   /// A view that shares a frame.

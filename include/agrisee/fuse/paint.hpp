@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// @file
-/// Colours the points of a cloud from the images of its views. Metres, world frame. Defined in `agrisee::agrisee`.
+/// Colors the points of a cloud from the images of its views. Metres, world frame. Defined in `agrisee::agrisee`.
 #pragma once
 
 #include <agrisee/core/cloud.hpp>
@@ -10,12 +10,12 @@
 
 namespace agrisee::fuse {
 
-/// The colour of each point: the mean over the views that see it, weighted by how directly the surface faces the
+/// The color of each point: the mean over the views that see it, weighted by how directly the surface faces the
 /// camera. A view sees a point if its depth there agrees with that of the point to within 1 % of it, or 4 mm if that is
 /// more.
 /// @param cloud points (m, world), with normals or without
-/// @param views views without colours are ignored
-/// @return one colour per point, black where no view sees it; empty if no view has colours
+/// @param views views without colors are ignored
+/// @return one color per point, black where no view sees it; empty if no view has colors
 std::vector<Rgb> colors_of(const Cloud& cloud, const std::vector<DetectedView>& views);
 
 }  // namespace agrisee::fuse

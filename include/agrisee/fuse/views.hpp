@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// @file
-/// The interface of a scan's map. A frame is first analysed (`look`), then added to the map (`take`).
+/// The interface of a scan's map. A frame is first analyzed (`look`), then added to the map (`take`).
 ///
 /// There are two implementations: FusedViews (surfaces, the default) and MergedViews (raw points, as in SEE++ and [1]).
 /// World frame, metres.
@@ -44,7 +44,7 @@ class Views {
   Views& operator=(const Views&) = delete;
   virtual ~Views() = default;
 
-  /// Analyse a frame without changing the map.
+  /// Analyze a frame without changing the map.
   /// @param frame depth z (m)
   /// @param world_T_optical pose of the camera as reported
   /// @throws InputError for a frame whose size disagrees with its intrinsics, or a pose that is not rigid; Cancelled

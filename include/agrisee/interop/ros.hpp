@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// Reads ROS messages in place: `sensor_msgs/PointCloud2` as a cloud, `sensor_msgs/Image` with `CameraInfo` as a depth
-/// frame, with the colours and the labels of a detector from further images.
+/// frame, with the colors and the labels of a detector from further images.
 ///
 /// The message types are template parameters, so both ROS 1 and ROS 2 are supported and no ROS header is included. A
 /// message is checked before it is read: even if its sizes are wrong, nothing outside its data is accessed.
@@ -254,7 +254,7 @@ void add_labels(sensor::DepthFrame& frame, const Image& image, double score) {
 }  // namespace detail
 
 /// A depth image, `16UC1` (mm; 0 and 65535 = no return) or `32FC1` (m; 0, NaN and infinities = no return), as a frame
-/// in metres, with the colours and labels registered to it. The distortion that its CameraInfo states is removed from
+/// in metres, with the colors and labels registered to it. The distortion that its CameraInfo states is removed from
 /// all of them.
 /// @param image sensor_msgs/Image  @param info the CameraInfo that came with it
 /// @param rectified whether the image was rectified before, see intrinsics_of

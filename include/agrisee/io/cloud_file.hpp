@@ -12,33 +12,33 @@ namespace agrisee::io {
 /// What a reader does with points that have a NaN or infinite coordinate.
 enum class NonFinite {
   drop,  ///< leave them out and count them
-  keep   ///< keep them, so that an organised cloud stays organised
+  keep   ///< keep them, so that an organized cloud stays organized
 };
 
 /// The contents of a cloud file. Coordinates are single precision, in the frame and unit of the file (metres are
 /// expected).
 struct CloudFile {
-  Cloud cloud;      ///< points; normals, views, colours and detections where the file has them
+  Cloud cloud;      ///< points; normals, views, colors and detections where the file has them
   Labels instance;  ///< one per point, from the property `instance` or else `label`; empty if the file has neither
   std::size_t dropped = 0;  ///< number of points left out because they were not finite
-  std::size_t width = 0;    ///< points per row of an organised cloud; the number of points otherwise
-  std::size_t height = 0;   ///< number of rows; 1 when the cloud is not organised
+  std::size_t width = 0;    ///< points per row of an organized cloud; the number of points otherwise
+  std::size_t height = 0;   ///< number of rows; 1 when the cloud is not organized
 };
 
 /// Read a cloud. The first bytes of the file say whether it is PLY (ASCII or binary), PCD (ASCII, binary or
 /// compressed), NPY (see read_npy_cloud) or a table of numbers (see read_table_cloud).
 ///
 /// Coordinates may be of any numeric type. Normals (`nx ny nz` or `normal_x normal_y normal_z`) are scaled to unit
-/// length; normals without a direction become zero, which means unknown. Measured colours are `measured_red
+/// length; normals without a direction become zero, which means unknown. Measured colors are `measured_red
 /// measured_green measured_blue`, else `red green blue` or `r g b`, else `rgb` or `rgba` packed as the Point Cloud
-/// Library does. Where the file has `instance`, only `measured_...` is read: other colours paint the instances, as in
+/// Library does. Where the file has `instance`, only `measured_...` is read: other colors paint the instances, as in
 /// write_ply. Everything else in the file is skipped.
 /// Cost: one pass over the file. Memory is bounded by the size of the file, even when its header claims more points.
 /// @throws FileError when the file cannot be read, is of no such format, or is malformed
 CloudFile read_cloud(const std::filesystem::path& path, NonFinite non_finite = NonFinite::drop);
 
 /// Read a cloud that numpy.save wrote: an array of N rows of three numbers or more, or of rows by columns by three or
-/// more (an organised cloud). The first three are x, y and z, the others are skipped.
+/// more (an organized cloud). The first three are x, y and z, the others are skipped.
 /// @throws FileError as read_cloud
 CloudFile read_npy_cloud(const std::filesystem::path& path, NonFinite non_finite = NonFinite::drop);
 

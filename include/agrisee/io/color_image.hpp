@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// @file
-/// Reads the images that come with a depth image: colours, and the masks of a detector. PNG.
+/// Reads the images that come with a depth image: colors, and the masks of a detector. PNG.
 #pragma once
 
 #include <agrisee/core/color.hpp>
@@ -11,7 +11,7 @@
 
 namespace agrisee::io {
 
-/// A colour image, row by row from the top left.
+/// A color image, row by row from the top left.
 struct ColorImage {
   int width = 0;            ///< pixels per row
   int height = 0;           ///< rows
@@ -25,12 +25,12 @@ struct LabelImage {
   std::vector<std::uint16_t> labels;  ///< the instance of each pixel, 0 = none
 };
 
-/// Read a colour image: PNG with three channels, or four, of 8 bits, or with a palette. Opacity is ignored.
-/// @throws FileError when the file cannot be read, is no PNG, is damaged, is grey, or has 16 bits a channel
+/// Read a color image: PNG with three channels, or four, of 8 bits, or with a palette. Opacity is ignored.
+/// @throws FileError when the file cannot be read, is no PNG, is damaged, is gray, or has 16 bits a channel
 ColorImage read_color_image(const std::filesystem::path& path);
 
-/// Read a label image: PNG with one grey channel of 8 or 16 bits whose values are the numbers of instances.
-/// @throws FileError when the file cannot be read, is no PNG, is damaged, or has colours
+/// Read a label image: PNG with one gray channel of 8 or 16 bits whose values are the numbers of instances.
+/// @throws FileError when the file cannot be read, is no PNG, is damaged, or has colors
 LabelImage read_label_image(const std::filesystem::path& path);
 
 }  // namespace agrisee::io

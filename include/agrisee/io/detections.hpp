@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// @file
-/// Reads detections, and adds them and colours to a depth frame (docs/colour.md).
+/// Reads detections, and adds them and colors to a depth frame (docs/color.md).
 #pragma once
 
 #include <agrisee/sensor/depth_frame.hpp>
@@ -12,7 +12,7 @@ namespace agrisee::io {
 
 /// The files that belong to a depth image; an empty path means none.
 struct ChannelFiles {
-  std::filesystem::path color;  ///< colour image
+  std::filesystem::path color;  ///< color image
   std::filesystem::path masks;  ///< label image; classes and scores come from a file of the same name with .json or
                                 ///< .csv beside it, if there is one
   std::filesystem::path boxes;  ///< boxes with classes and scores, JSON or CSV

@@ -40,7 +40,7 @@ void write_stl(const std::filesystem::path& path, const Mesh& mesh);
 /// @param path the file to write
 /// @param mesh vertices (m) and triangles
 /// @param colors one per vertex, or empty
-/// @throws InputError when an index is out of range, a vertex not finite, or the colours are not one per vertex
+/// @throws InputError when an index is out of range, a vertex not finite, or the colors are not one per vertex
 /// @throws FileError when the file cannot be written
 void write_ply_mesh(const std::filesystem::path& path, const Mesh& mesh, const std::vector<Rgb>& colors = {});
 

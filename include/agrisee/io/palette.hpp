@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// @file
-/// The colours that fruit have in cloud files, pictures and the page of a scan.
+/// The colors that fruit have in cloud files, pictures and the page of a scan.
 #pragma once
 
 #include <agrisee/core/color.hpp>
@@ -12,7 +12,7 @@ namespace agrisee::io {
 
 using agrisee::Rgb;
 
-/// The colour of the fruit `id`, counted from 1; grey for 0 and below. There are ten colours that are easy to tell
+/// The color of the fruit `id`, counted from 1; gray for 0 and below. There are ten colors that are easy to tell
 /// apart; after them come darker and lighter versions of the same ten.
 inline Rgb fruit_color(int id) {
   static constexpr Rgb kPalette[] = {{226, 61, 50},  {42, 127, 204}, {245, 166, 35}, {46, 160, 84}, {142, 84, 190},

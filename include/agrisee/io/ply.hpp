@@ -14,12 +14,12 @@ namespace agrisee::io {
 CloudFile read_ply(const std::filesystem::path& path, NonFinite non_finite = NonFinite::drop);
 
 /// Write a consolidated cloud, binary little-endian and atomically: `float x y z nx ny nz`, `uchar red green blue` (the
-/// colour of the fruit, see palette.hpp), `int instance`; then, where the cloud has them, `uchar measured_red
+/// color of the fruit, see palette.hpp), `int instance`; then, where the cloud has them, `uchar measured_red
 /// measured_green measured_blue` and `int detection`.
 /// @param path the file to write
 /// @param cloud points (m, world frame)
 /// @param instance one label per point, 0 for no fruit; empty means 0 everywhere
-/// @throws InputError when `instance`, the normals, colours or detections are neither empty nor one per point
+/// @throws InputError when `instance`, the normals, colors or detections are neither empty nor one per point
 /// @throws FileError when the file cannot be written
 void write_ply(const std::filesystem::path& path, const Cloud& cloud, const Labels& instance = {});
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// @file
-/// A colour image, and how to write it as a PNG file.
+/// A color image, and how to write it as a PNG file.
 #pragma once
 
 #include <agrisee/io/palette.hpp>
@@ -10,11 +10,11 @@
 
 namespace agrisee::io {
 
-/// A colour image; pixels are stored row by row from the top left.
+/// A color image; pixels are stored row by row from the top left.
 struct Image {
   int width = 0;            ///< pixels per row
   int height = 0;           ///< rows
-  std::vector<Rgb> pixels;  ///< width * height colours
+  std::vector<Rgb> pixels;  ///< width * height colors
 
   /// Pixel x of row y, both counted from the top left.
   const Rgb& at(int x, int y) const {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// Views of a real camera in `views.yaml`: the camera's intrinsics and, for each view, the file of its depth image, its
-/// pose and, optionally, colours and detections (see docs/formats.md). World frame, metres.
+/// pose and, optionally, colors and detections (see docs/formats.md). World frame, metres.
 #pragma once
 
 #include <agrisee/io/detections.hpp>
@@ -21,7 +21,7 @@ struct RecordedView {
   std::filesystem::path depth;              ///< file of the depth image; a relative path: from the folder of views.yaml
   Pose world_T_optical = Pose::Identity();  ///< pose of the camera's optical frame (z forward, x right, y down)
   std::string place;                        ///< "<file>:<line>: views[<i>].depth", for messages
-  ChannelFiles channels = {};               ///< colours and masks; relative paths as for `depth`
+  ChannelFiles channels = {};               ///< colors and masks; relative paths as for `depth`
 };
 
 /// The contents of views.yaml.

@@ -12,7 +12,7 @@ namespace agrisee::io {
 /// Draw a result from two sides: on the left close up from the front, as the robot sees it; on the right obliquely,
 /// with the positions of the sensor.
 ///
-/// The cloud is drawn as shaded surface elements, coloured by fruit; points without a normal are discs that face the
+/// The cloud is drawn as shaded surface elements, colored by fruit; points without a normal are discs that face the
 /// viewer, and back faces are dimmed. On top of the cloud are drawn the pose frames of the fruit (x red, y green, z
 /// blue), their ids and the outlines of the fitted bodies; in the right picture also the scan volume, the frusta of the
 /// sensor and its path from the first view (dark) to the last (light). Without a scan volume the picture shows the

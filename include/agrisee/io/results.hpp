@@ -58,7 +58,7 @@ void write_views(const std::filesystem::path& path, const std::vector<View>& vie
 ///   (kg); the errors are standard errors.
 /// - With a picking plan: `picking_order` (from 1), `picking_after` (ids of the fruit that are in the way and must be
 ///   picked first), `reachable` and `picking_reason` (see PickingReason); unless the reason is `no_body`, also
-///   `approach_direction_world` (unit vector from the pre-grasp position to the centre of the fruit),
+///   `approach_direction_world` (unit vector from the pre-grasp position to the center of the fruit),
 ///   `pre_grasp_position_world` (m), `pre_grasp_orientation_world` (of the tool, z along the approach direction) and,
 ///   if the arm is known, `pre_grasp_joints` (rad).
 /// - Where they are known: `truss` (see FoundTruss) and `ripeness` (see Ripeness).

@@ -30,7 +30,7 @@ struct ScanHistory {
 };
 
 /// The page as HTML text. It is complete in itself: it loads nothing from the disk or the network. It shows the cloud
-/// coloured by fruit, the points of no fruit, the merged cloud, the frontier, the fitted bodies and pose frames; view
+/// colored by fruit, the points of no fruit, the merged cloud, the frontier, the fitted bodies and pose frames; view
 /// by view the sensor, its path, the arm and the depth image; a table of the fruit, curves over the views, times and
 /// parameters.
 ///

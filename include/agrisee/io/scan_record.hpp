@@ -29,7 +29,7 @@ struct ScanTask {
   int threads = 1;             ///< number of threads; the result does not depend on it
   std::string noise = "none";  ///< noise model of the simulated sensor
   std::string planner;         ///< see Parameters::planner, or `greedy`
-  bool color = false;          ///< whether the simulated camera returns colours
+  bool color = false;          ///< whether the simulated camera returns colors
   std::string detector;        ///< the simulated detector, or empty
   Parameters parameters;       ///< all parameters of the scan
 

@@ -3,7 +3,7 @@
 /// Predicts how much new fruit surface a view will show: the unseen parts of the fruit found so far, and unknown space
 /// near them in which more fruit may be hidden.
 ///
-/// The merged cloud is segmented into fruit, each modelled by an ellipsoid (cloud/split.hpp). Samples are spread over
+/// The merged cloud is segmented into fruit, each modeled by an ellipsoid (cloud/split.hpp). Samples are spread over
 /// each ellipsoid; those with no point nearby are unseen surface, and each stands for an area. In addition, voxels near
 /// the ellipsoids that no sight line has reached stand for fruit that may be hidden there. A view shows a sample when
 /// the sample lies in the image and within the sensor's range, faces the sensor, and no ellipsoid or other point of the

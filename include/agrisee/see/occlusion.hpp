@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// Whether a frontier is visible from a view and, if not, from which side it is farthest from all occluders (SEE++,
-/// view optimisation). World frame, metres.
+/// view optimization). World frame, metres.
 #pragma once
 
 #include <agrisee/geometry/aabb.hpp>
@@ -158,7 +158,7 @@ class FreeSearch {
 }  // namespace detail
 
 /// The direction within `max_angle` of `axis` whose angle to the nearest occluder is largest (SEE++, view
-/// optimisation).
+/// optimization).
 ///
 /// SEE++ solves a quadratic program. That has a single optimum only if the occluders leave half of the sphere free.
 /// Here a branch and bound over spherical triangles always finds the global optimum to within `tolerance`: the
@@ -178,7 +178,7 @@ inline FreeDirection freest_direction(const std::vector<Eigen::Vector3f>& occlud
   return detail::FreeSearch(axis, max_angle, tolerance).run(occluders);
 }
 
-/// The view of a frontier from the side that is farthest from all its occluders (SEE++, view optimisation). They are
+/// The view of a frontier from the side that is farthest from all its occluders (SEE++, view optimization). They are
 /// seen from a place at the distance `start` in front of the frontier, on the line to `seen_from`: so the surface's own
 /// points do not fill all directions. Sides behind the surface are left out: in gaps between its points, rays would
 /// pass through it. Even the best view may be blocked.

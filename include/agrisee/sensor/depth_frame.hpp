@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// @file
-/// A depth image, with optional colours and detections.
+/// A depth image, with optional colors and detections.
 #pragma once
 
 #include <agrisee/core/color.hpp>
@@ -38,7 +38,7 @@ inline void check(const DepthFrame& frame) {
                   std::isfinite(k.cx) && std::isfinite(k.cy),
               "depth frame: unusable intrinsics");
   check_input(frame.depth.size() == k.size(), "depth frame: the image size differs from its intrinsics");
-  check_input(frame.color.empty() || frame.color.size() == k.size(), "depth frame: not one colour a pixel");
+  check_input(frame.color.empty() || frame.color.size() == k.size(), "depth frame: not one color a pixel");
   check_input(frame.instances.empty() || frame.instances.size() == k.size(), "depth frame: not one instance a pixel");
 }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// @file
-/// Turns the unorganised points of one view into a depth image, so that sensors that give no image can be used too.
+/// Turns the unorganized points of one view into a depth image, so that sensors that give no image can be used too.
 #pragma once
 
 #include <agrisee/core/cloud.hpp>

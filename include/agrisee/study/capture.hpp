@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// A simulated depth camera: it casts rays into a scene (raycast.hpp) and applies a noise model (depth_noise.hpp). A
-/// colour camera (color_camera.hpp) and a detector (detector.hpp) may look along the same rays.
+/// color camera (color_camera.hpp) and a detector (detector.hpp) may look along the same rays.
 #pragma once
 
 #include <agrisee/core/pose.hpp>
@@ -38,15 +38,15 @@ Capture capture(const TracedScene& scene, const sensor::DepthCamera& sensor, con
 
 /// The simulated color camera and detector of a view.
 struct ImageOptions {
-  bool color = false;                               ///< add colours
+  bool color = false;                               ///< add colors
   std::optional<DetectorParameters> detector = {};  ///< add the masks of this detector
-  ColorParameters light = {};                       ///< light and errors of the colours
+  ColorParameters light = {};                       ///< light and errors of the colors
 
   /// Whether anything is added.
   bool any() const { return color || detector; }
 };
 
-/// Add colours and detections to a frame. Its depths stay as they are. The additions depend only on the scene, the
+/// Add colors and detections to a frame. Its depths stay as they are. The additions depend only on the scene, the
 /// pose, the seed and the number of the view.
 /// @param frame its intrinsics are read
 /// @param scene what the camera sees

@@ -37,7 +37,7 @@ Pose reported_pose(const Pose& world_T_optical, const NoiseModel& model, std::ui
 ///   pixels beyond its edge.
 /// - Light enters translucent objects and returns from some depth, but not from behind the next opaque surface.
 /// - Flying pixels. A pixel lies at a depth edge if its depth z differs by more than NoiseParameters::edge from that of
-///   one of its four neighbours, or, with a larger `edge_width`, if a surface that is so much nearer lies within that
+///   one of its four neighbors, or, with a larger `edge_width`, if a surface that is so much nearer lies within that
 ///   many pixels along its row or column. The share `flying` of these pixels measures a range that is uniformly
 ///   distributed between the two surfaces. Such a pixel always returns something, whatever the incidence, because its
 ///   beam falls on both surfaces. With `skirt`, a pixel at an edge with nothing beyond it measures up to that far

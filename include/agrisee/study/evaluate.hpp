@@ -4,7 +4,7 @@
 /// World frame, metres. Cost: one or two nearest-point queries per point of the cloud and two per sample; some 0.1 s
 /// for 15,000 points.
 ///
-/// Surface IoU counts observable samples. A sample belongs to the instance of its nearest labelled point within
+/// Surface IoU counts observable samples. A sample belongs to the instance of its nearest labeled point within
 /// `threshold`, or to none. For fruit f and instance k, IoU = |f and k| / (|f or k| + penalty). The penalty is for the
 /// points of k that are farther than `threshold` from every fruit: each counts as many samples as one of k's other
 /// points stands for. Point IoU counts points of the cloud; the true label of a point is that of the nearest surface of

@@ -19,7 +19,7 @@ struct TrueFruit {
                                                        ///< largest first
   Eigen::Matrix3d axes = Eigen::Matrix3d::Identity();  ///< columns: unit directions of `radii`
   double volume = 0.0;                                 ///< m3; 0 if the mesh is not closed
-  std::optional<Eigen::Vector3d> growth_axis;          ///< unit vector from the centre to the calyx
+  std::optional<Eigen::Vector3d> growth_axis;          ///< unit vector from the center to the calyx
   std::optional<bool> hidden;                          ///< placed behind the others, as seen from the robot
   std::optional<double> visible_share;                 ///< share of its surface that is visible from frontal_eye()
   std::optional<double> ripeness = {};                 ///< share (0..1) of its surface that has turned; of the scene

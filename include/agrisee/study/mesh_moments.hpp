@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// @file
-/// Centre, size and volume of an object, computed from its mesh: the volume centroid and the ellipsoid with the same
+/// Center, size and volume of an object, computed from its mesh: the volume centroid and the ellipsoid with the same
 /// second moments. World frame, metres. The cost is linear in the number of triangles.
 #pragma once
 
@@ -23,7 +23,7 @@ struct MeshMoments {
 /// with the semi-axes r has the variances r^2 / 5 along its axes, so radii = sqrt(5 lambda) for the eigenvalues lambda
 /// of the covariance. A mesh whose triangles face inwards gives the same moments.
 ///
-/// A mesh is not closed if its area vectors add up to more than 1 % of its area, or if it encloses no volume. Centre
+/// A mesh is not closed if its area vectors add up to more than 1 % of its area, or if it encloses no volume. Center
 /// and radii then describe its surface, whose variances are about r^2 / 3.
 /// @throws InputError if a triangle refers to a missing vertex, or if the area is zero or not finite
 MeshMoments mesh_moments(const Mesh& mesh);

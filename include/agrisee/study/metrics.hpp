@@ -43,13 +43,13 @@ struct FruitMetrics {
   bool detected = false;                      ///< its surface IoU is at least `min_iou`
   double surface_iou = 0.0;                   ///< with the matched instance
   double point_iou = 0.0;                     ///< with the instance that the matching by point IoU gives it
-  double recall = 0.0;                        ///< share of its surface within `threshold` of a labelled point
+  double recall = 0.0;                        ///< share of its surface within `threshold` of a labeled point
   double recall_obs = 0.0;                    ///< `recall` of its observable surface
   double scanned = 0.0;                       ///< share of its surface within `threshold` of any raw point
   double observable = 0.0;                    ///< share of its surface that can be observed
   std::optional<double> centroid_error;       ///< centroid, from the mean of its observable surface (m)
   std::optional<double> centroid_error_seen;  ///< centroid, from the mean of the surface that the views saw (m)
-  std::optional<double> center_error;         ///< centre of the fitted body, from the volume centroid (m)
+  std::optional<double> center_error;         ///< center of the fitted body, from the volume centroid (m)
   /// `center_error` in standard deviations: (e^T C^-1 e / 3)^1/2 with the body's covariance C; 1 in the root mean
   /// square over many fruit if the covariances are right. None if the body has no covariance.
   std::optional<double> center_error_normalised;
@@ -83,11 +83,11 @@ struct FruitMetrics {
 
 /// Metrics of a result. A share of nothing is 0, so that an empty result never looks good.
 struct Metrics {
-  double precision = 0.0;             ///< share of the labelled points within `threshold` of a fruit's surface
+  double precision = 0.0;             ///< share of the labeled points within `threshold` of a fruit's surface
   double precision_strict = 0.0;      ///< `precision` within `strict`
   double precision_all = 0.0;         ///< share of all cloud points within `threshold` of a fruit's surface
   double precision_all_strict = 0.0;  ///< `precision_all` within `strict`
-  double recall = 0.0;                ///< share of the fruit's surface within `threshold` of a labelled point
+  double recall = 0.0;                ///< share of the fruit's surface within `threshold` of a labeled point
   double recall_obs = 0.0;            ///< `recall` of the observable surface
   double scanned = 0.0;               ///< share of the fruit's surface within `threshold` of any raw point
   double scanned_obs = 0.0;           ///< `scanned` of the observable surface

@@ -70,7 +70,7 @@ struct NoiseParameters {
   double bias = 0.0;           ///< standard deviation of an error common to all ranges of one view (m)
 
   double flying = 0.0;  ///< share of the pixels at depth edges that measure between the two surfaces
-  double edge = 0.010;  ///< smallest step in depth z between neighbouring pixels that counts as an edge (m)
+  double edge = 0.010;  ///< smallest step in depth z between neighboring pixels that counts as an edge (m)
   int edge_width = 1;   ///< flying pixels occur up to this many pixels from an edge, fewer with each pixel
   double skirt = 0.0;   ///< how far flying pixels lie behind an edge with nothing beyond it, at most (m)
   int smear = 0;        ///< the nearer surface covers up to this many pixels beyond its edge (pixels); stereo

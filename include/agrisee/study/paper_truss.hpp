@@ -34,7 +34,7 @@ constexpr std::array<PaperTruss, 11> kPaperTrusses{{{5, 1, 51, 0},
                                                     {9, 4, 94, 0}}};
 
 /// Generates the one of the eleven trusses that has `total` fruit, `hidden` of them hidden. In the truss with 7 and 1,
-/// the fruit hang where the table on localisation in [1] puts them.
+/// the fruit hang where the table on localization in [1] puts them.
 /// @throws ParameterError if there is no truss with these numbers
 Truss make_paper_truss(int total, int hidden);
 

@@ -31,7 +31,7 @@ using ViewTaker = std::function<std::optional<Capture>(const plan::ReachableView
 ViewTaker simulated_views(const TracedScene& scene, const sensor::DepthCamera& sensor, const NoiseModel& noise,
                           std::uint64_t seed, int threads = 1);
 
-/// Wrap a ViewTaker so that each frame gets colours and detections (add_images). These depend only on the requested
+/// Wrap a ViewTaker so that each frame gets colors and detections (add_images). These depend only on the requested
 /// pose and the number of the view, so that a frame that was recorded without images gets the same ones again.
 /// @param take_view takes the views
 /// @param scene what the cameras see; it must outlive the returned function
@@ -45,7 +45,7 @@ ViewTaker with_images(ViewTaker take_view, const TracedScene& scene, const senso
 /// Options of scan().
 struct SimulationOptions {
   NoiseModel noise;                                   ///< noise of the simulated sensor
-  ImageOptions images = {};                           ///< colours and detections to simulate
+  ImageOptions images = {};                           ///< colors and detections to simulate
   std::uint64_t seed = 0;                             ///< seed of the noise and of the planner
   int threads = 1;                                    ///< number of threads; the result does not depend on it
   std::unique_ptr<plan::Planner> planner = nullptr;   ///< replaces the planner that the parameters name

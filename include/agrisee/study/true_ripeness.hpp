@@ -60,7 +60,7 @@ struct RipenessSummary {
   double share_error = 0.0;  ///< mean magnitude of the error of the share
 };
 
-/// Summarise the metrics of several fruit.
+/// Summarize the metrics of several fruit.
 RipenessSummary summarize(const std::vector<RipenessMetrics>& fruits);
 
 }  // namespace agrisee::study

@@ -27,7 +27,7 @@ Sink vector_sink(std::vector<Vector3<T>>& values, int axis) {
 
 Sink int_sink(std::vector<int>& values) { return {nullptr, values.empty() ? nullptr : values.data(), 1}; }
 
-/// A channel of a colour, from a number in 0..255.
+/// A channel of a color, from a number in 0..255.
 std::uint8_t channel_of(float value) {
   return static_cast<std::uint8_t>(std::lround(std::clamp(std::isfinite(value) ? value : 0.0f, 0.0f, 255.0f)));
 }
@@ -61,7 +61,7 @@ CloudColumns::CloudColumns(const std::filesystem::path& path, std::size_t points
   find_colors(points, names);
 }
 
-/// Find the columns of the measured colours: `measured_red` and so on; else `red green blue` or `r g b`, unless there
+/// Find the columns of the measured colors: `measured_red` and so on; else `red green blue` or `r g b`, unless there
 /// is an `instance` that they paint; else `rgb` or `rgba`, packed as PCL does.
 void CloudColumns::find_colors(std::size_t points, const std::vector<std::string>& names) {
   const auto has = [&](const std::string& name) { return std::find(names.begin(), names.end(), name) != names.end(); };
@@ -96,7 +96,7 @@ Sink CloudColumns::sink(const std::string& name, Scalar type) {
   return {};
 }
 
-/// Turn what was read into colours. Floats of which none is above 1 reach from 0 to 1, else from 0 to 255.
+/// Turn what was read into colors. Floats of which none is above 1 reach from 0 to 1, else from 0 to 255.
 void CloudColumns::finish_colors() {
   std::vector<Rgb>& colors = file_.cloud.colors;
   if (!channel_values_.empty()) {

@@ -33,7 +33,7 @@ class CloudColumns {
   std::string channels_[3];            // names of the columns of red, green and blue; empty if there are none
   std::vector<float> channel_values_;  // three a point
   bool whole_channels_ = true;         // they are integers, 0..255
-  std::string packed_;                 // name of the column of packed colours; empty if there is none
+  std::string packed_;                 // name of the column of packed colors; empty if there is none
   std::vector<std::uint32_t> packs_;   // one a point: 0x00rrggbb
   std::string instance_;               // name of the column that holds the instance; empty if there is none
 };

@@ -68,7 +68,7 @@ decltype(auto) with_type(Scalar type, F&& f) {
   return f(double{});
 }
 
-/// The 32 bits of a number: of a float as they are, of an integer its lowest. PCL packs colours so.
+/// The 32 bits of a number: of a float as they are, of an integer its lowest. PCL packs colors so.
 template <typename T>
 std::uint32_t bits_of(T value) {
   if constexpr (std::is_floating_point_v<T>) {

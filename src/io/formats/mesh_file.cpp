@@ -76,7 +76,7 @@ Mesh read_ply_mesh(const fs::path& path) {
 
 void write_ply_mesh(const fs::path& path, const Mesh& mesh, const std::vector<Rgb>& colors) {
   check_writable(mesh);
-  check_input(colors.empty() || colors.size() == mesh.vertices.size(), "write_ply_mesh: not one colour per vertex");
+  check_input(colors.empty() || colors.size() == mesh.vertices.size(), "write_ply_mesh: not one color per vertex");
   std::string out = "ply\nformat binary_little_endian 1.0\ncomment AgriSEE, metres\nelement vertex " +
                     std::to_string(mesh.vertices.size()) + "\nproperty float x\nproperty float y\nproperty float z\n";
   if (!colors.empty()) out += "property uchar red\nproperty uchar green\nproperty uchar blue\n";

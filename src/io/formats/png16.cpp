@@ -48,7 +48,7 @@ void check_chunks(const std::filesystem::path& path, std::string_view bytes) {
 struct PngHeader {
   std::uint64_t width, height;
   int bits;  // of a channel
-  int kind;  // 0 grey, 2 colour, 3 palette, 4 grey with opacity, 6 colour with opacity
+  int kind;  // 0 gray, 2 color, 3 palette, 4 gray with opacity, 6 color with opacity
 };
 
 /// Test that a file is whole and small enough, and not of more pixels than its bytes can encode.
@@ -92,7 +92,7 @@ bool is_png(std::string_view bytes) { return bytes.substr(0, kPngSignature.size(
 
 GreyImage decode_png16(const std::filesystem::path& path, std::string_view bytes) {
   const PngHeader header = checked_header(path, bytes);
-  if (header.kind != 0) fail(path, "is a colour image; depth has one grey channel");
+  if (header.kind != 0) fail(path, "is a color image; depth has one gray channel");
   if (header.bits != 16) fail(path, "has " + std::to_string(header.bits) + " bits a pixel; depth needs 16");
   check_size(path, header, 16, bytes);
   GreyImage image;
@@ -103,8 +103,8 @@ GreyImage decode_png16(const std::filesystem::path& path, std::string_view bytes
 ColorImage decode_png_colors(const std::filesystem::path& path, std::string_view bytes) {
   const PngHeader header = checked_header(path, bytes);
   if (header.kind == 0 || header.kind == 4)
-    fail(path, "is a grey image of " + std::to_string(header.bits) + " bits; a colour image has three channels");
-  if (header.bits == 16) fail(path, "has 16 bits a channel; colours need 8");
+    fail(path, "is a gray image of " + std::to_string(header.bits) + " bits; a color image has three channels");
+  if (header.bits == 16) fail(path, "has 16 bits a channel; colors need 8");
   check_size(path, header, header.kind == 3 ? header.bits : 24, bytes);
   ColorImage image;
   const auto values = decoded(path, bytes, 3, stbi_load_from_memory, image.width, image.height);
@@ -117,7 +117,7 @@ ColorImage decode_png_colors(const std::filesystem::path& path, std::string_view
 LabelImage decode_png_labels(const std::filesystem::path& path, std::string_view bytes) {
   const PngHeader header = checked_header(path, bytes);
   if (header.kind != 0)
-    fail(path, "has colours or opacity; a label image has one grey channel, whose values are numbers of instances");
+    fail(path, "has colors or opacity; a label image has one gray channel, whose values are numbers of instances");
   if (header.bits != 8 && header.bits != 16)
     fail(path, "has " + std::to_string(header.bits) + " bits a pixel; a label image needs 8 or 16");
   check_size(path, header, header.bits, bytes);

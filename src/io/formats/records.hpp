@@ -33,9 +33,9 @@ inline void put_vector(char*& at, const Eigen::Vector3f& v) {
   put(at, v.z());
 }
 
-/// @throws InputError when the colours or detections of a cloud are neither empty nor one per point
+/// @throws InputError when the colors or detections of a cloud are neither empty nor one per point
 inline void check_channels(const Cloud& cloud) {
-  check_input(cloud.colors.empty() || cloud.colors.size() == cloud.size(), "write a cloud: not one colour per point");
+  check_input(cloud.colors.empty() || cloud.colors.size() == cloud.size(), "write a cloud: not one color per point");
   check_input(cloud.instances.empty() || cloud.instances.size() == cloud.size(),
               "write a cloud: not one detection per point");
 }

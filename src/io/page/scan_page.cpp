@@ -60,7 +60,7 @@ Json rounded(const Eigen::Vector3d& v) {
   return list;
 }
 
-/// A colour as `#rrggbb`.
+/// A color as `#rrggbb`.
 std::string hex(const Rgb& color) {
   constexpr char kDigits[] = "0123456789abcdef";
   std::string out = "#";
@@ -124,7 +124,7 @@ std::string cloud_text(const Cloud& cloud, const Labels& labels, std::size_t max
   Json j;
   j["count"] = points.size();
   j["total"] = cloud.size();
-  // Discs of this radius (m) close the gaps between neighbouring points, unless the cloud is sparse.
+  // Discs of this radius (m) close the gaps between neighboring points, unless the cloud is sparse.
   const double spacing = points.size() > 1 ? estimate_spacing(points) : 0.0;
   j["radius"] = spacing > 0.0 ? std::clamp(0.95 * spacing, 1e-5, 0.05) : 0.002;
   const std::string positions = positions_to(j, points);

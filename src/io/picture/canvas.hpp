@@ -20,7 +20,7 @@ using Color = Eigen::Vector3f;
 inline Color color(const Rgb& rgb) { return Color(rgb[0], rgb[1], rgb[2]) / 255.0f; }
 inline Color mix(const Color& a, const Color& b, float share) { return a + share * (b - a); }
 
-/// Colours of texts.
+/// Colors of texts.
 inline const Color kInk(0.13f, 0.16f, 0.20f), kFaint(0.45f, 0.49f, 0.54f);
 
 /// Shape of the ends of a line.
@@ -39,7 +39,7 @@ class Canvas {
   Color& at(int x, int y) {
     return pixels_[static_cast<std::size_t>(y) * static_cast<std::size_t>(width_) + static_cast<std::size_t>(x)];
   }
-  /// Mix a colour into a pixel; pixels outside of the canvas are ignored.
+  /// Mix a color into a pixel; pixels outside of the canvas are ignored.
   void blend(int x, int y, const Color& c, float alpha) {
     if (x < 0 || y < 0 || x >= width_ || y >= height_ || alpha <= 0.0f) return;
     Color& p = at(x, y);
@@ -64,7 +64,7 @@ class Canvas {
   void line(const Eigen::Vector2f& a, const Eigen::Vector2f& b, float line_width, const Color& c, Cap cap,
             Alpha&& alpha);
 
-  /// The image, in colours of eight bits a channel.
+  /// The image, in colors of eight bits a channel.
   Image image() const;
 
  private:

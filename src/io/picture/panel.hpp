@@ -34,7 +34,7 @@ struct LineStyle {
 class Panel {
  public:
   /// Look along `direction`, with `up` upwards in the viewport. The eye is placed as near as possible such that all
-  /// `subjects` are in the viewport, centred.
+  /// `subjects` are in the viewport, centered.
   Panel(Canvas& canvas, const Viewport& viewport, const Eigen::Vector3d& direction, const Eigen::Vector3d& up,
         const std::vector<Eigen::Vector3d>& subjects);
 

@@ -22,7 +22,7 @@ Rectangle rectangle(const Viewport& v) {
 }
 
 /// The outline of an ellipsoid: the ellipse in which rays from the eye touch it. In coordinates in which the ellipsoid
-/// is the unit sphere and the eye is at e, it is a circle in the plane at the distance 1 / |e| from the centre, towards
+/// is the unit sphere and the eye is at e, it is a circle in the plane at the distance 1 / |e| from the center, towards
 /// e.
 std::vector<Eigen::Vector3d> outline(const Body& body, const Eigen::Vector3d& eye) {
   constexpr int kSegments = 96;
@@ -100,7 +100,7 @@ void draw_fruit(Canvas& canvas, Panel& panel, const std::vector<Fruit>& fruits, 
   }
 }
 
-/// The colour of view `i` of `n`: dark for the first, light for the last.
+/// The color of view `i` of `n`: dark for the first, light for the last.
 Color view_color(std::size_t i, std::size_t n) {
   const float share = n > 1 ? static_cast<float>(i) / static_cast<float>(n - 1) : 0.0f;
   return mix(Color(0.10f, 0.14f, 0.40f), Color(0.36f, 0.66f, 0.93f), share);
@@ -224,7 +224,7 @@ Layout layout_of(const Canvas& canvas, const std::vector<Fruit>& fruits) {
   return layout;
 }
 
-/// The points of the cloud in the colours of their fruit.
+/// The points of the cloud in the colors of their fruit.
 Splats splats_of(const ScanResult& result) {
   Splats splats{result.cloud, {}, splat_radius(result.cloud)};
   splats.colors.reserve(result.cloud.size());

@@ -164,7 +164,7 @@ double read_ripeness(const YamlValue& value) {
   return share;
 }
 
-/// A colour: red, green, blue as whole numbers from 0 to 255.
+/// A color: red, green, blue as whole numbers from 0 to 255.
 Rgb read_color(const YamlValue& value) {
   if (value.list_size() != 3) value.fail("expected red, green and blue");
   Rgb out{};

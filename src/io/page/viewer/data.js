@@ -3,7 +3,7 @@
 
 const bytes = (text) => Uint8Array.from(atob(text || ''), (c) => c.charCodeAt(0)).buffer;
 
-/** Text to numbers: [n, 3] positions (m, world), normals or null, labels, views (-1 = not known), [n, 3] measured colours or null. */
+/** Text to numbers: [n, 3] positions (m, world), normals or null, labels, views (-1 = not known), [n, 3] measured colors or null. */
 function cloud(raw) {
   const n = raw.count;
   const positions = new Float32Array(3 * n);
@@ -16,7 +16,7 @@ function cloud(raw) {
   return { n, total: raw.total, positions, normals, labels, views, colors, radius: raw.radius };
 }
 
-/** Where a fruit is (m, world): the centre of its body, or the centroid of its points where none was fitted. */
+/** Where a fruit is (m, world): the center of its body, or the centroid of its points where none was fitted. */
 export const place = (f) => f.position_world || f.center_world || f.centroid_world;
 
 export function readData() {

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What the camera saw in the view shown: its depth image, and its colour image where there is one.
+// What the camera saw in the view shown: its depth image, and its color image where there is one.
 import { el, fixed } from './data.js';
 
 const kDepth = /^[A-Za-z0-9+/=]+$/, kColor = /^data:image\/(png|jpeg);base64,[A-Za-z0-9+/=]+$/;
 
-/** The colours of 256 levels, from far (violet) to near (yellow); level 0 is no return. Viridis, as polynomials. */
+/** The colors of 256 levels, from far (violet) to near (yellow); level 0 is no return. Viridis, as polynomials. */
 const palette = Array.from({ length: 256 }, (_, i) => {
   const x = i / 255;
   const channel = (...c) => Math.round(255 * Math.min(1, Math.max(0, c.reduceRight((sum, k) => sum * x + k, 0))));
@@ -13,7 +13,7 @@ const palette = Array.from({ length: 256 }, (_, i) => {
     channel(0.3341, 1.38459, 0.095095, -19.332441, 56.690553, -65.353033, 26.312435), 255] : [0, 0, 0, 0];
 });
 
-/** The colour of each level of an image: half by its depth, half by its rank among the pixels, so that each fruit has relief. */
+/** The color of each level of an image: half by its depth, half by its rank among the pixels, so that each fruit has relief. */
 function colorsOf(levels) {
   const count = new Uint32Array(256);
   for (const level of levels) ++count[level];
@@ -33,7 +33,7 @@ export function makeImages(data, nodes) {
   const any = data.views.some((v) => v.depth || v.color);
   nodes.section.hidden = !any;
   if (!any) return { show() {} };
-  const canvas = el('canvas', { role: 'img', 'aria-label': 'Depth image of the view' }), photo = el('img', { alt: 'Colour image of the view' }), text = el('p');
+  const canvas = el('canvas', { role: 'img', 'aria-label': 'Depth image of the view' }), photo = el('img', { alt: 'Color image of the view' }), text = el('p');
   nodes.images.append(canvas, photo, text);
   let levels = null, range = null, wanted = -1;
   const caption = (at) => {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Distances in the view: from one point of the cloud, or centre of a fruit, to another.
+// Distances in the view: from one point of the cloud, or center of a fruit, to another.
 import { Group } from 'three';
 import { copyButton, el, fixed } from './data.js';
 import { thickLines } from './scene.js';
@@ -12,7 +12,7 @@ export function makeMeasure(scene, frame, node, button, changed) {
   const lines = new Group();
   scene.add(lines);
   let on = false, ends = [];
-  const name = (e) => (e.fruit ? `centre of fruit ${e.fruit}` : 'point');
+  const name = (e) => (e.fruit ? `center of fruit ${e.fruit}` : 'point');
 
   function show(note) {
     for (const line of lines.children) { line.geometry.dispose(); line.material.dispose(); }
@@ -35,7 +35,7 @@ export function makeMeasure(scene, frame, node, button, changed) {
         mark.renderOrder = 21;
         lines.add(mark);
       }
-      node.replaceChildren(el('span', {}, note || (ends.length ? `From the ${name(ends[0])}: click the second point or number.` : 'Click a point, or the number of a fruit for its centre.')));
+      node.replaceChildren(el('span', {}, note || (ends.length ? `From the ${name(ends[0])}: click the second point or number.` : 'Click a point, or the number of a fruit for its center.')));
     }
     changed();
   }

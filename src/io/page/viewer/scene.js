@@ -83,7 +83,7 @@ function surfels(cloud, keep, colorOf) {
 
 const rgb = (hex) => { const c = parseInt(hex.slice(1), 16); return [c >> 16, (c >> 8) & 255, c & 255]; };
 const mix = (a, b, t) => rgb(a).map((x, i) => Math.round(x + t * (rgb(b)[i] - x)));
-/** The colour of view i of n: the first dark, the last light. */
+/** The color of view i of n: the first dark, the last light. */
 export const viewColor = (i, n) => mix(kFirst, kLast, n > 1 ? i / (n - 1) : 0);
 const css = (c) => `rgb(${c[0]},${c[1]},${c[2]})`;
 
@@ -205,7 +205,7 @@ export function makeScene(data, resolution) {
   add('rest', 'Residual', restPoints, restPoints.userData.count);
   const measuredColor = (i) => data.cloud.colors.subarray(3 * i, 3 * i + 3);
   const measured = surfels(data.cloud, (i) => data.cloud.colors && measuredColor(i).some((c) => c > 0), measuredColor);
-  add('measured', 'Measured colours', measured, measured.userData.count, false);
+  add('measured', 'Measured colors', measured, measured.userData.count, false);
   add('merged', 'Merged cloud, by view', merged, merged.userData.count, false);
   add('frontier', 'Frontier', frontier, frontier.userData.count, false);
   const clouds = [fruitPoints, restPoints, measured, merged, frontier];
@@ -275,7 +275,7 @@ export function makeScene(data, resolution) {
   /** How large a pixel is (m) at a distance of 1 m: no point is drawn smaller than it. */
   function setPixel(size) { for (const c of clouds) c.material.uniforms.pixel.value = size; }
 
-  /** What steps back takes the colour of the ground. */
+  /** What steps back takes the color of the ground. */
   function setDark(dark) { for (const c of clouds) c.material.uniforms.ground.value.setStyle(dark ? '#2b3138' : '#e3e8ec', ''); }
 
   function setResolution(width, height) {

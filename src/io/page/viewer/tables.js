@@ -26,7 +26,7 @@ export function makeFruitTable(data, nodes, on) {
   const columns = [
     ['No.', (f) => f.id, (f) => [el('span', { class: 'dot', style: { background: data.colors[f.id] } }), String(f.id)], 'Number, from 1'],
     ...(trusses ? [['Truss', (f) => f.truss, (f) => [f.truss === undefined ? dash : String(f.truss)], 'Number of its truss']] : []),
-    ...['x', 'y', 'z'].map((name, a) => [`${name}, mm`, (f) => place(f)[a], (f) => [mm(place(f)[a])], 'Centre of the fitted body in world, or of the points where none was fitted']),
+    ...['x', 'y', 'z'].map((name, a) => [`${name}, mm`, (f) => place(f)[a], (f) => [mm(place(f)[a])], 'Center of the fitted body in world, or of the points where none was fitted']),
     ['\u2300, mm', diameter, (f) => [mm(diameter(f))], 'Diameter of the sphere of the same volume'],
     ['Seen', (f) => f.completeness, (f) => (f.completeness === undefined ? [dash] : [bar(f.completeness), percent(f.completeness)]), 'Completeness: share of the surface that was observed'],
     ['Conf.', (f) => f.confidence, (f) => [percent(f.confidence)], 'Confidence'],
@@ -59,7 +59,7 @@ export function makeFruitTable(data, nodes, on) {
   const ripeOfTruss = (id) => { const t = (data.run.trusses || []).find((truss) => truss.id === id); return t && t.ripeness ? ', ' + ripe(t.ripeness) : ''; };
   function detail(f) {
     const entries = [
-      ['Position', list(place(f), (v) => mm(v)) + ` mm (${f.center_world ? 'centre of the fitted body' : 'centroid: no body was fitted'})`],
+      ['Position', list(place(f), (v) => mm(v)) + ` mm (${f.center_world ? 'center of the fitted body' : 'centroid: no body was fitted'})`],
       ['Orientation', list(f.orientation_world, (v) => fixed(v, 4)) + '\u2002(x\u00a0y\u00a0z\u00a0w)'],
       ['Found by', `${words(f.found_by)}, ${plural(f.points, 'point', 'points')}`],
       ...(f.truss === undefined ? [] : [['Truss', String(f.truss) + ripeOfTruss(f.truss)]]),
