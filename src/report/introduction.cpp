@@ -68,16 +68,16 @@ std::string how_to_read_it(const Data& data) {
   out +=
       "- A row is the mean over the trials of a scene. `average` is the mean over the rows, `worst row` is the worst "
       "row of each column, and `worst scan` is the worst single trial. The paper's values in these three rows are "
-      "those of the same scenes.\n";
+      "those of the same scenes. Tables of figures that the paper does not report show all scenes together; the CSV "
+      "files have every scan.\n";
   out +=
       "- `-`: there is no value. `7.0 [2/3]`: only 2 of 3 scans have a value, and this is their mean; then there is no "
       "worst value.\n";
   out += "- Seconds are computing time on the machine that ran it, without the simulated sensor.\n";
   out +=
       "- A group is a preset, a planner and a noise model; with `free flight` the camera flies to every view instead "
-      "of "
-      "being held by the arm. The detailed tables show one group per preset. The other "
-      "groups are in the summary and in the CSV files: ";
+      "of being held by the arm. The detailed tables show one group per preset. The other groups are in the summary "
+      "and in the CSV files: ";
   for (const char* name : {"scanning", "segmentation", "localization", "fruits", "curves", "scenes"})
     out +=
         (name == std::string("scanning") ? "[" : ", [") + std::string(name) + "](" + data.folder + "/" + name + ".csv)";

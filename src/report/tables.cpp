@@ -9,30 +9,18 @@ namespace {
 using Figures = std::vector<const Figure*>;
 using Cells = std::vector<std::string>;
 
-/// A table with a row per scene, then the average, the worst row and the worst scan. `last_title` is the title of a
-/// last column with the reasons why the scans stopped; null for none.
-std::string figure_table(const Group& group, const Figures& figures, const char* last_title = nullptr) {
-  Cells head{"scene", "fruit / hidden"};
-  for (const Figure* f : figures) head.emplace_back(f->title);
-  if (last_title) head.emplace_back(last_title);
-  Table table(head);
-  for (const Row& row : group.rows) {
-    Cells cells{text(row.scene), std::to_string(row.total) + " / " + std::to_string(row.hidden)};
-    for (const Figure* f : figures) {
-      const auto paper = f->paper ? f->paper(row.total, row.hidden) : std::nullopt;
-      cells.push_back(shown(mean(row, *f), f->digits, paper));
-    }
-    if (last_title) cells.push_back(stop_reasons(row));
-    table.row(cells);
-  }
-  Cells average{"**average**", ""}, worst{"**worst row**", ""}, scan{"**worst scan**", ""};
+/// Adds the rows of the average, the worst scene and the worst scan. `before` are the cells between the name of the row
+/// and the figures; with `stopped`, a last cell says why the scans stopped.
+void add_averages(Table& table, const Group& group, const Figures& figures, const Cells& before, const char* stopped) {
+  Cells average{"**average**"}, worst{"**worst row**"}, scan{"**worst scan**"};
+  for (Cells* cells : {&average, &worst, &scan}) cells->insert(cells->end(), before.begin(), before.end());
   for (const Figure* f : figures) {
     const auto paper = paper_mean(group, *f);
     average.push_back(shown(mean(group, *f), f == &figure::n_real ? 1 : f->digits, paper));
     worst.push_back(shown({worst_row(group, *f), 0, 0}, f->digits, paper_worst(group, *f)));
     scan.push_back(fixed(worst_scan(group, *f), f->digits));
   }
-  if (last_title) {
+  if (stopped) {
     average.push_back(stop_reasons(group));
     worst.emplace_back("");
     scan.emplace_back("");
@@ -40,6 +28,33 @@ std::string figure_table(const Group& group, const Figures& figures, const char*
   table.row(average);
   table.row(worst);
   table.row(scan);
+}
+
+/// A table with a row per scene, then the average, the worst row and the worst scan.
+std::string scene_table(const Group& group, const Figures& figures) {
+  Cells head{"scene", "fruit / hidden"};
+  for (const Figure* f : figures) head.emplace_back(f->title);
+  Table table(head);
+  for (const Row& row : group.rows) {
+    Cells cells{text(row.scene), std::to_string(row.total) + " / " + std::to_string(row.hidden)};
+    for (const Figure* f : figures) {
+      const auto paper = f->paper ? f->paper(row.total, row.hidden) : std::nullopt;
+      cells.push_back(shown(mean(row, *f), f->digits, paper));
+    }
+    table.row(cells);
+  }
+  add_averages(table, group, figures, {""}, nullptr);
+  return table.markdown();
+}
+
+/// A table of the average, the worst row and the worst scan alone. `stopped` is the title of a last column with the
+/// reasons why the scans stopped; null for none.
+std::string average_table(const Group& group, const Figures& figures, const char* stopped = nullptr) {
+  Cells head{"all scenes"};
+  for (const Figure* f : figures) head.emplace_back(f->title);
+  if (stopped) head.emplace_back(stopped);
+  Table table(head);
+  add_averages(table, group, figures, {}, stopped);
   return table.markdown();
 }
 
@@ -72,11 +87,12 @@ std::string scanning_section(const Data& data) {
       "observable share are off; and why the scans stopped.\n\n";
   for (const Group* group : main_groups(data)) {
     out += "### " + text(group->name()) + "\n\n";
-    out += figure_table(*group, {&views, &merged, &filtered, &seconds, &scanned, &precision, &recall, &f1});
+    out += scene_table(*group, {&views, &merged, &filtered, &seconds, &scanned, &precision, &recall, &f1});
     out += "\nWhat the paper leaves out:\n\n";
-    out += figure_table(*group, {&observable, &recall_obs, &precision_all, &precision_strict, &views_95});
+    out += average_table(*group, {&observable, &recall_obs, &precision_all, &precision_strict, &views_95});
     out += "\n" +
-           figure_table(*group, {&path, &path_ratio, &residual, &belief_seen, &belief_observable}, "stopped by") + "\n";
+           average_table(*group, {&path, &path_ratio, &residual, &belief_seen, &belief_observable}, "stopped by") +
+           "\n";
   }
   return out;
 }
@@ -92,13 +108,13 @@ std::string segmentation_section(const Data& data) {
   out += elsewhere(data, "segmentation.csv");
   for (const Group* group : main_groups(data)) {
     out += "### " + text(group->name()) + "\n\n";
-    out += figure_table(*group, {&n_real, &n_det, &counting_error, &object_precision, &object_recall, &miou_surface,
-                                 &miou_point, &views_all});
+    out += scene_table(*group, {&n_real, &n_det, &counting_error, &object_precision, &object_recall, &miou_surface,
+                                &miou_point, &views_all});
     out +=
         "\nWhat each of the paper's two stages finds alone on the same clean cloud, a comparison that the paper "
         "omits:\n\n";
-    out += figure_table(*group, {&growing_n, &growing_recall, &growing_miou, &clustering_n, &clustering_recall,
-                                 &clustering_miou}) +
+    out += average_table(*group, {&growing_n, &growing_recall, &growing_miou, &clustering_n, &clustering_recall,
+                                  &clustering_miou}) +
            "\n";
   }
   return out;
