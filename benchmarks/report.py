@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""Runs the benchmark programs and writes docs/benchmarks.md: report.py BUILD_DIR OUTPUT.md [--large]
+"""Runs the benchmark programs and writes docs/benchmarks.md and .csv: report.py BUILD_DIR OUTPUT.md [--large]
 
 Wall time on an otherwise idle machine, medians of runs that are taken in random order, so that slow spells hit all alike.
 --large adds the peers on 1.5 million points (half an hour); without it only ours are run there.
@@ -112,6 +112,7 @@ def compile_time():
 
 def main():
     build, target, large = pathlib.Path(sys.argv[1]), pathlib.Path(sys.argv[2]), "--large" in sys.argv
+    stages = target.with_suffix(".csv")
     few = 3  # runs of what takes long
     repetitions = few if large else 5
     results = {}
@@ -129,15 +130,14 @@ def main():
             own.update({f"{program.name[6:]}: {name}": value for name, value in run(program, ".*", few).items()})
     text = ["# Benchmarks", "", "Written by `make bench`" + (" `LARGE=1`" if large else "") + " at " +
             output_of("git", "-C", str(ROOT), "rev-parse", "--short", "HEAD") + ".", "", machine(), "",
-            "All libraries get the very same cloud, a noisy truss, in the same process, and the answers are compared"
-            " before anything is timed; times of one row come from one program. Wall time in random order, medians of"
-            f" {repetitions} runs (of {few} at 1.5 million points and of our stages alone). \"Fastest peer\" is the fastest of"
-            " PCL, Open3D, nanoflann and Embree that has the stage. Only the ratios travel to other machines.", "", comparison(results)]
+            "All libraries get the same cloud, a noisy truss, in the same process, and their answers are compared before anything is"
+            f" timed. Wall time, medians of {repetitions} runs ({few} at 1.5 million points). \"Fastest peer\" is the fastest of PCL,"
+            " Open3D, nanoflann and Embree that has the stage. On other machines expect the ratios, not the times. Times of our"
+            f" stages alone: [{stages.name}]({stages.name}).", "", comparison(results)]
     text += ["", f"`examples/01_process_cloud.cpp`, the README's ten lines, compiles in {compile_time():.1f} s (`-O2`)."]
     text += ["", pathlib.Path(__file__).with_name("notes.md").read_text().strip()]
-    text += ["", "## Our stages alone", "", "| program: run / argument | ms |", "|---|---|"]
-    text += [f"| {name} | {number(value[0])} |" for name, value in own.items()]
     target.write_text("\n".join(text) + "\n")
+    stages.write_text("\n".join(["run,ms"] + [f"{name},{value[0]:.4g}" for name, value in own.items()]) + "\n")
 
 
 if __name__ == "__main__":
