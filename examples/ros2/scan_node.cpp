@@ -85,8 +85,8 @@ class Ros2 {
 };
 
 /// Parameters are read when it is configured. While it is active it listens and serves; deactivated, it stops the scan
-/// and keeps what was seen; cleaned up, it forgets. All callbacks are of the node's default group, so that none runs
-/// beside another whatever executor spins it.
+/// and keeps what was seen; cleaned up, it forgets. All callbacks are in the node's default group, so that no two run
+/// at the same time, with any executor.
 class ScanNode : public rclcpp_lifecycle::LifecycleNode {
  public:
   using Core = NodeCore<Ros2>;
@@ -146,8 +146,8 @@ class ScanNode : public rclcpp_lifecycle::LifecycleNode {
  private:
   using ImagePtr = Ros2::ImagePtr;
 
-  /// Sensors often publish as best effort, and an old frame is of no use: while a view is planned, those that come are
-  /// old by the time it is done. Of colors and labels some are kept, as they come late.
+  /// Sensors often publish as best effort. Only the newest frame is kept, as those that arrive while a view is planned
+  /// are out of date when it is done. Of colors and labels some are kept, as they come late.
   void listen() {
     const rclcpp::QoS newest = rclcpp::SensorDataQoS().keep_last(1), some = rclcpp::SensorDataQoS().keep_last(5);
     const ChannelParameters& channels = core_->parameters().channels;
@@ -167,7 +167,7 @@ class ScanNode : public rclcpp_lifecycle::LifecycleNode {
           create_subscription<Ros2::Image>("labels/image", some, [this](ImagePtr m) { core_->take_labels(m); }));
   }
 
-  /// The arm is told to hold, and nothing is heard any more.
+  /// Makes the arm hold and ends all subscriptions.
   void disconnect() {
     if (active_) core_->stop();
     active_ = false;

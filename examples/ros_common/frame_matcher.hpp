@@ -11,7 +11,7 @@
 
 namespace agrisee::robot {
 
-/// Which images are awaited beside a depth image.
+/// Which images are expected with a depth image.
 struct ChannelParameters {
   bool color = false;   ///< take colors
   bool labels = false;  ///< take a detector's label images

@@ -14,8 +14,7 @@ namespace agrisee::robot {
 inline const std::array<std::string, 6> kJointNames{"shoulder_pan_joint", "shoulder_lift_joint", "elbow_joint",
                                                     "wrist_1_joint",      "wrist_2_joint",       "wrist_3_joint"};
 
-/// The arm's joints (rad) of a sensor_msgs/JointState, whatever their order and whatever else it tells; empty when one
-/// is missing.
+/// The arm's joints (rad) in a sensor_msgs/JointState, in any order and among others; empty when one is missing.
 template <typename Message>
 std::optional<Joints> joints_of(const Message& message) {
   Joints joints;

@@ -208,7 +208,7 @@ class NodeCore {
     return pose;
   }
 
-  /// Bad messages and poses that are not known are told and left at that.
+  /// Runs an action; a bad message or an unknown pose is reported and skipped.
   template <typename Action>
   void guarded(Action&& action) {
     try {

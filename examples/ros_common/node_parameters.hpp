@@ -33,7 +33,7 @@ struct NodeParameters {
   }
 };
 
-/// Everything that a scan node is told.
+/// All parameters of a scan node.
 struct NodeSetup {
   NodeParameters node;
   Parameters pipeline;

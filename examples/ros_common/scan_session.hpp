@@ -113,8 +113,8 @@ class ScanSession {
   }
 
   /// Whether a frame stamped `stamp`, when the sensor was at `world_T_optical`, and at `before` `settle` seconds
-  /// earlier, is the one awaited. Where joints are told, those of before the standstill do not do: the next view is
-  /// planned from them.
+  /// earlier, is the one awaited. If joint states are received, one from before the standstill is not enough: the
+  /// next view is planned from it.
   bool arrived(double stamp, const Pose& world_T_optical, const Pose& before) const {
     const double standing_since = stamp - session_.settle;
     return state_ == SessionState::moving && standing_since >= asked_at_ &&

@@ -17,7 +17,7 @@
 namespace agrisee::cli {
 
 /// Exit codes. kUsage: the command line cannot be followed, whatever its inputs hold. kBadInput: an input is missing or
-/// damaged, or does not fit what the command line says of it. kScanFailed: a scan failed midway, or could take no view.
+/// damaged, or contradicts the command line. kScanFailed: a scan failed midway, or could take no view.
 constexpr int kSuccess = 0, kUsage = 1, kBadInput = 2, kScanFailed = 3;
 
 /// A command line that can be parsed but asks for something that cannot be done, whatever its inputs hold.

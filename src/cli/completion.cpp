@@ -136,7 +136,7 @@ complete -o default -F _agrisee agrisee
   return out.str();
 }
 
-/// What zsh's _arguments says of a value: ":value:(a b)" or ":file:_files"; nothing for a flag.
+/// A value in the syntax of zsh's _arguments: ":value:(a b)" or ":file:_files"; nothing for a flag.
 std::string zsh_value(const Word& word) {
   if (!word.takes_value) return "";
   return word.choices.empty() ? ":file:_files" : ":value:(" + joined(word.choices, " ") + ")";

@@ -25,7 +25,7 @@ struct PlantOptions {
   bool force = false, json = false;
 };
 
-/// What the options ask for: where they say nothing, number and size of the fruit are those of the kind.
+/// The parameters that the options give; number and size of the fruit are those of the kind unless they are given.
 study::PlantParameters parameters_of(const PlantOptions& options) {
   study::PlantParameters parameters = options.plant;
   const study::PlantParameters usual = study::PlantParameters::of(parameters.kind);

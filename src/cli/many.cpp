@@ -50,7 +50,7 @@ std::vector<std::string> names_of(fs::path path) {
   return out;
 }
 
-/// Fill in what a summary tells of a finished result, read from its files; empty where it is missing there.
+/// Fill in a summary's columns from the files of a finished result; columns whose values are missing stay empty.
 void add_result(const fs::path& folder, SummaryRow& row) {
   std::ifstream file(folder / "run.json");
   const nlohmann::json run = nlohmann::json::parse(file, nullptr, false);

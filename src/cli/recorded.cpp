@@ -24,7 +24,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Stands for the planner of a scan whose views have already been taken.
+/// A planner that proposes nothing, for views that have already been taken.
 class NoPlanner final : public plan::Planner {
  public:
   void observe(const plan::Progress&) override {}
@@ -35,7 +35,7 @@ class NoPlanner final : public plan::Planner {
   StopReason stop_reason() const override { return StopReason::not_stopped; }
 };
 
-/// What a first look at the images tells.
+/// What a first pass over the images finds.
 struct Survey {
   Aabb seen;                              ///< all points of the views that were looked at
   std::vector<fuse::ViewSample> samples;  ///< some of their points

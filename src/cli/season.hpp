@@ -18,7 +18,7 @@ struct SeasonOptions {
 /// Add --db, --row, --date and --threads.
 void add_season_options(CLI::App& command, SeasonOptions& options);
 
-/// Put all results in some folders, at any depth, into the database, and say how many are new.
+/// Put all results in some folders, at any depth, into the database, and print how many are new.
 /// @throws UsageError without SQLite, or for a regular expression that is none; FileError
 void add_to_season(const std::vector<std::string>& folders, const SeasonOptions& options);
 

@@ -10,7 +10,7 @@ namespace agrisee::cli {
 /// that are optional. Without a line break at the end.
 std::string version_text();
 
-/// The version of SQLite, without which `merge --db` and `season` say that they are not there; empty without it.
+/// The version of SQLite, which `merge --db` and `season` need; empty if AgriSEE was built without it.
 std::string sqlite_version();
 
 }  // namespace agrisee::cli

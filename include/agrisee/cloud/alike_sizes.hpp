@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// Evidence from the sizes of the fruit in one cloud, which are often alike: a leaf that looks like a small part of a
-/// fruit has any size, a fruit that of the others (empirical Bayes). Cost: linear in the number of bodies.
+/// fruit may have any size, while a fruit has about the size of the others (empirical Bayes). Cost: linear in the
+/// number of bodies.
 #pragma once
 
 #include <agrisee/cloud/fit.hpp>
@@ -18,10 +19,10 @@ struct KnownSize {
   double weight = 1.0;  ///< its probability of being a fruit
 };
 
-/// How much the size of a body speaks for or against a fruit, given the sizes of fruit found beside it.
+/// Evidence for or against a fruit from the size of a body, given the sizes of the other fruit.
 ///
 /// The logarithm of a fruit's radius is taken to follow the distribution of the others', blurred by their own standard
-/// deviation; with some probability it is of a kind of its own, anywhere in the expected range (the predictive
+/// deviation; with some probability it is of another kind, anywhere in the expected range (the predictive
 /// distribution of a Dirichlet process with Gaussian kernels; Escobar & West, 1995). What is no fruit has any radius of
 /// the range. The evidence counts less the more the sizes of the others vary, and not at all where their standard
 /// deviation exceeds 40 %, as on a truss that shrinks from its shoulder to its tip.
@@ -30,7 +31,7 @@ struct KnownSize {
 /// @return difference of log-odds; 0 if there is no other fruit
 inline double alike_log_odds(const std::vector<KnownSize>& known, const Ellipsoid& body, double radius_min,
                              double radius_max) {
-  constexpr double kNew = 3.0;         // weight of a kind of its own, in fruit
+  constexpr double kNew = 3.0;         // weight of another kind, in fruit
   constexpr double kNarrowest = 0.15;  // least blur: errors of fits to little surface
   constexpr double kMixed = 0.4;       // standard deviation of the logarithms from which on sizes say nothing
   const double radius = body.mean_radius(), x = std::log(radius);

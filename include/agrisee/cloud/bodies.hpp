@@ -151,8 +151,8 @@ class Competition {
   const BodyCounts& counts() const { return counts_; }
 
  private:
-  /// An entry with less than this share of the confidence that is asked for does not compete. Others may gain some:
-  /// points that a better body takes are no longer clutter about them.
+  /// An entry with less than this share of the required confidence does not compete. Those above it may gain confidence
+  /// later: points that a better body takes are no longer clutter around them.
   static constexpr double kHopeless = 0.2;
 
   struct Entry {
@@ -165,8 +165,8 @@ class Competition {
     double prior = 0.0;                        // log-odds by the masks
   };
 
-  /// How far sight lines through a body, and points inside it, speak against masks of several views: log-odds. A single
-  /// view's have been weighed when the body was proposed.
+  /// Log-odds against a body that masks of several views proposed, from sight lines through it and points inside it.
+  /// Those of a single view were weighed when the body was proposed.
   double against_masks(const Ellipsoid& body, const Verdict& v) const {
     constexpr double kThrough = 25.0, kUnsure = 0.02, kInside = 10.0;
     if (!masks_.remaining) return 0.0;
@@ -174,15 +174,15 @@ class Competition {
     return kThrough * std::max(0.0, through - kUnsure) + kInside * v.inside;
   }
 
-  /// What the masks, and the sizes of the other fruit, say of a body.
+  /// Log-odds of a body by the masks and by the sizes of the other fruit.
   double prior_of(const Ellipsoid& body) const {
     const double by_size =
         sizes_.empty() ? 0.0 : alike_log_odds(sizes_, body, parameters_.radius_min, parameters_.radius_max);
     return (masks_.log_odds ? masks_.log_odds(body) : 0.0) + parameters_.alike * by_size;
   }
 
-  /// Fit a body that a mask proposed to its points, where these cover half of it: from there on they say more of it
-  /// than its outline.
+  /// Fit a body that a mask proposed to its points if these cover half of it, as they then describe it better than its
+  /// outline.
   void prefer_points(Entry& e) {
     constexpr double kEnough = 0.5;
     const auto fit = refine(e.fit.body, parameters_.fit);

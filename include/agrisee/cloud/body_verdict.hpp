@@ -76,9 +76,9 @@ struct SupportSums {
   }
 };
 
-/// What the points tell that `visit` shows.
+/// The evidence from the points that `visit` shows.
 /// @param visit visit(f) calls f(index) for points within kNearBody radii of the body's center
-/// @param each how many points each of these stands for
+/// @param each number of points that each of these represents
 /// @param taken whether a point belongs to a body that has won already
 template <typename S, typename Visit>
 Verdict judge_points(const PointCloud<S>& cloud, Visit&& visit, std::size_t each, const std::vector<char>& taken,

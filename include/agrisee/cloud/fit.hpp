@@ -119,9 +119,9 @@ namespace detail {
 using Vector9 = Eigen::Matrix<double, 9, 1>;
 using Matrix9 = Eigen::Matrix<double, 9, 9>;
 
-/// One row of the least squares: what a point says of an ellipsoid. Derivatives are taken at the point's radial
-/// projection, not at the point: there they would be correlated with the point's own error, and crescents would come
-/// out millimetres too large or too small.
+/// One row of the least squares: a point's residual from an ellipsoid, with its derivatives. Derivatives are taken at
+/// the point's radial projection, not at the point: there they would be correlated with the point's own error, and
+/// crescents would come out millimetres too large or too small.
 struct EllipsoidRow {
   double residual = 0.0;  ///< distance of the point (m)
   double weight = 0.0;    ///< Tukey's biweight; 0: the point is beyond the gate, or its normal disagrees

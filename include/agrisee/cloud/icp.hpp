@@ -104,7 +104,7 @@ void compare_residuals(const Problem& problem, const std::vector<Index>& matches
   }
 }
 
-/// True if the data speak for the correction that `result` describes, rather than for the pose that was given. Compared
+/// True if the data favor the correction that `result` describes over the pose that was given. Compared
 /// are the likelihood of the residuals, if one in `independent` matches has an error of its own, and what the
 /// correction costs: half the logarithm of that number for each direction that is corrected (Schwarz, Annals of
 /// Statistics 6:461, 1978), and its size against the pose's expected error.

@@ -124,7 +124,7 @@ struct OrientationEdge {
 };
 
 /// The edges of the neighbor graph, cheapest first.
-/// @param known known(i) tells whether point i has a place and a normal
+/// @param known known(i) says whether point i is finite and has a normal
 template <typename C, typename Known>
 std::vector<OrientationEdge<scalar_t<C>>> orientation_edges(const std::vector<Vector3<scalar_t<C>>>& normals,
                                                             const C& cloud, const OrientationParameters& parameters,

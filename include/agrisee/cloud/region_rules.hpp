@@ -20,7 +20,7 @@
 namespace agrisee {
 namespace detail {
 
-/// Seeds are sorted by this key of point i: by rising curvature if that is asked for (NaN comes last), then by index.
+/// Seeds are sorted by this key of point i: by rising curvature if `by_curvature` (NaN comes last), then by index.
 template <typename Curvatures>
 std::pair<typename Curvatures::value_type, Index> seed_key(std::size_t i, bool by_curvature,
                                                            const Curvatures& curvatures) {

@@ -19,7 +19,7 @@ inline double volume(const Ellipsoid& body) { return 4.0 / 3.0 * kPi / body.A.de
 
 /// Relative standard error of a fitted body's volume. This is the standard error of the logarithm of 1 / det A, whose
 /// derivative by A is -A^-1, under the joint covariance of center and A. Points, derivatives, weights and prior are
-/// those of fit_ellipsoid: what the points leave open of the shape is as uncertain as the prior says. There is no prior
+/// those of fit_ellipsoid: the prior gives the uncertainty of the shape where there are no points. There is no prior
 /// on the size, so too few points give a large error (at most 1).
 /// @param cloud points (m) with normals
 /// @param indices the points to which the body was fitted

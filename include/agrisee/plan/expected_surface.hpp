@@ -102,7 +102,7 @@ class ExpectedSurface {
   void add_sample(const Eigen::Vector3d& point, const Eigen::Vector3d& normal, double area, int body);
   /// Whether a point (m) lies inside another fruit than `own`.
   bool inside_other(const Eigen::Vector3d& point, int own) const;
-  /// Whether a body is taken for a fruit, not only for what may be one.
+  /// Whether a body counts as a fruit, and not only as a possible one.
   bool believed(const FoundBody& body) const { return body.confidence >= min_confidence_; }
   /// Center (m, world) of a voxel.
   Eigen::Vector3d voxel_center(int x, int y, int z) const;

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// What can block lines of sight: the points of a growing cloud, ready for the questions of occlusion.hpp. World frame,
-/// metres. Most balls along a line of sight hold nothing. One look-up in a table of cells tells so; only near points
-/// they are searched. Cost: O(1) per point and per empty ball.
+/// metres. Most balls along a line of sight hold no points, which one look-up in a table of cells shows; only balls
+/// near points are searched. Cost: O(1) per point and per empty ball.
 #pragma once
 
 #include <agrisee/geometry/aabb.hpp>

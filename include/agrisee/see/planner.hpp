@@ -10,8 +10,8 @@
 ///   explorer.observe(points_from(*view), sensor_position = ...);   // wherever the sensor really went
 /// explorer.stop_reason();                                          // why there is no further view
 /// ```
-/// It knows nothing of the robot: `reachable` says which proposals can be reached. It ends after `max_views` views at
-/// the latest. Cost per step: one frame for each new frontier and each of the tau nearest, and tau^2 lines of sight.
+/// It does not know the robot: `reachable` says which proposals can be reached. It ends after at most `max_views`
+/// views. Cost per step: one frame for each new frontier and each of the tau nearest, and tau^2 lines of sight.
 #pragma once
 
 #include <agrisee/core/parallel.hpp>
@@ -240,7 +240,7 @@ class Explorer {
     return frames;
   }
 
-  /// Decide what becomes of the frontier that the last view was taken for, if it is still one.
+  /// Decide what to do with the frontier of the last view, if it is still a frontier.
   void control() {
     changed_.reset();
     if (!target_) return;

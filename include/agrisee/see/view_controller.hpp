@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// @file
-/// What becomes of a frontier that is still one after the view that was taken for it (SEE++, view controller). World
+/// What to do with a frontier that remains a frontier after a view was taken for it (SEE++, view controller). World
 /// frame, metres.
 #pragma once
 

@@ -31,7 +31,7 @@ struct DepthFrame {
   Eigen::Vector3f point(int u, int v) const { return (intrinsics.ray(u, v) * double(at(u, v))).cast<float>(); }
 };
 
-/// @throws InputError if the depth image is not as large as its intrinsics say, or these are not usable
+/// @throws InputError if the depth image does not have the size in its intrinsics, or these are not usable
 inline void check(const DepthFrame& frame) {
   const Intrinsics& k = frame.intrinsics;
   check_input(k.width > 0 && k.height > 0 && std::isfinite(k.fx) && std::isfinite(k.fy) && k.fx > 0 && k.fy > 0 &&

@@ -27,7 +27,7 @@ struct PaperScanning {
 struct PaperSegmentation {
   int total;                ///< number of fruit
   int hidden;               ///< how many of them are hidden
-  int n_real;               ///< "real tomatoes"; the first row says 6 for a truss of 5
+  int n_real;               ///< "real tomatoes"; the first row has 6 for a truss of 5
   int n_det;                ///< number of fruit detected
   int counting_error;       ///< CE
   double object_precision;  ///< P_obj (%)
