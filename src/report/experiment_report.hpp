@@ -31,8 +31,7 @@ struct ReportInfo {
 /// @param scenes records of what can be seen of the scenes; may be empty
 /// @param info how the records were made
 /// @throws InputError if `cells` is empty, if two records are of the same cell or scene, if the lists of fruit in a
-/// record
-///   differ in length, and if the path has no extension
+///   record differ in length, and if the path has no extension
 /// @throws FileError if a file cannot be written
 void write_experiment_report(const std::filesystem::path& path, const std::vector<study::CellRecord>& cells,
                              const std::vector<study::SceneRecord>& scenes, const ReportInfo& info);

@@ -103,8 +103,7 @@ Labels reached_sets(DisjointSets& sets, std::size_t n, Edges& edges, const Membe
 
 /// Find the reach of all points of a grid.
 /// @param found found(j, neighborhood, reach) is called for each point whose k nearest are found by rings, after its
-/// own
-///   reach is entered
+///   own reach is entered
 template <typename C, typename Found>
 NearestReach<scalar_t<C>> nearest_reach(const C& cloud, const NeighborhoodGrid<scalar_t<C>>& near, std::size_t k,
                                         int threads, const Found& found) {

@@ -77,8 +77,7 @@ class Bvh {
   /// Calls f for the triangles of all leaves whose boxes `keep` accepts.
   ///
   /// @param keep `bool(const Eigen::Vector3f& min, const Eigen::Vector3f& max)`; if it accepts a box, it must accept
-  /// every
-  ///   box that contains it
+  ///   every box that contains it
   /// @param f `bool(std::uint32_t triangle, const Triangle& corners)`; the visit ends when it returns false
   template <typename Keep, typename F>
   void visit(Keep&& keep, F&& f) const;

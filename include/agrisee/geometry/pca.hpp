@@ -55,11 +55,9 @@ PrincipalAxes<S> principal_axes(const Vector3<S>& mean, const Matrix3<S>& covari
 /// eigenvalue is nearly equal to l, an iterative solver is used instead.
 /// @param covariance symmetric, without negative eigenvalues
 /// @param variance receives the eigenvalues, ascending, never negative; if the larger two coincide, these are accurate
-/// to
-///   half of their digits only
+///   to half of their digits only
 /// @return the axis, of unit length and arbitrary sign; both the axis and `variance` are zero if the matrix is zero,
-/// not
-///   finite, or so small that its inverse overflows
+///   not finite, or so small that its inverse overflows
 inline Eigen::Vector3d least_axis(const Eigen::Matrix3d& covariance, Eigen::Vector3d& variance) {
   variance.setZero();
   const double scale = covariance.diagonal().maxCoeff();
