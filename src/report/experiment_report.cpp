@@ -34,8 +34,8 @@ void write_experiment_report(const std::filesystem::path& path, const std::vecto
   Data data = arrange(cells, scenes);
   data.folder = url(path.stem().string());
   std::string text = introduction(data, info);
-  for (const auto section : {summary_section, scanning_section, segmentation_section, localization_section,
-                             noise_section, planner_section, limit_section})
+  for (const auto section : {summary_section, planner_section, noise_section, limit_section, scanning_section,
+                             segmentation_section, localization_section})
     text += section(data);
   text += paper_section();
   std::vector<File> files = csv_files(data);
