@@ -300,7 +300,8 @@ int run_experiment(const ExperimentOptions& options) {
     if (job.record) records.push_back(std::move(*job.record));
   if (!records.empty()) {
     const fs::path path = options.report.empty() ? fs::path(options.output) / "report.md" : fs::path(options.report);
-    report::write_experiment_report(path, records, scene_records, {AGRISEE_VERSION, command_of(options)});
+    report::write_experiment_report(path, records, scene_records,
+                                    {AGRISEE_VERSION, command_of(options), options.groups.empty()});
     std::cout << "Report: " << path.string() << "\n";
   }
   if (failed.empty()) return kSuccess;
@@ -329,9 +330,11 @@ void add_experiment(CLI::App& app, Run& run) {
       ->delimiter(',')
       ->capture_default_str();
   command
-      ->add_option("--groups", options->groups,
-                   "groups to run instead of all combinations of --presets, --planner and --noise: "
-                   "PRESET/PLANNER/NOISE, or PRESET/PLANNER/NOISE/free for a free-flying camera instead of the arm")
+      ->add_option(
+          "--groups", options->groups,
+          "groups to run instead of all combinations of --presets, --planner and --noise; the report then compares "
+          "groups, without a row per truss: "
+          "PRESET/PLANNER/NOISE, or PRESET/PLANNER/NOISE/free for a free-flying camera instead of the arm")
       ->delimiter(',');
   command->add_flag("--scanned-only", options->scanned_only,
                     "after each view measure only how much surface was scanned, not the fruit; much faster");

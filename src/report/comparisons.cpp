@@ -19,7 +19,7 @@ std::string noise_section(const Data& data) {
   out +=
       "Each preset with its own planner, under each noise model that it was run with. `none` is a perfect sensor. "
       "`gaussian:S` adds independent errors with a standard deviation of S metres along the ray; the paper states "
-      "0.01. `l515` follows the published figures of the sensor. `rough` is harder: correlated errors, a bias per "
+      "0.01. `l515` imitates a real L515 (docs/sensors.md). `rough` is harder: correlated errors, a bias per "
       "view, flying pixels and a wrong pose.\n\n";
   out += picture(data, "noise.svg", "Object recall by noise model, per preset");
   const std::vector<const Figure*> columns{&views,         &seconds,     &precision, &recall_obs, &object_precision,

@@ -14,8 +14,9 @@ namespace agrisee::report {
 
 /// How the records of a report were made; stated in its text.
 struct ReportInfo {
-  std::string version;  ///< version of AgriSEE
-  std::string command;  ///< command line that repeats the experiment; may have several lines
+  std::string version;    ///< version of AgriSEE
+  std::string command;    ///< command line that repeats the experiment; may have several lines
+  bool per_truss = true;  ///< whether the document of an experiment has the paper's tables, with a row per truss
 };
 
 /// Write the report as the Markdown document `path`, and its attachments into a folder beside it that has the same name

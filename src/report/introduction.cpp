@@ -60,24 +60,28 @@ std::string what_was_run(const Data& data, const ReportInfo& info) {
   return out + "\n\n";
 }
 
-std::string how_to_read_it(const Data& data) {
+std::string how_to_read_it(const Data& data, bool per_truss) {
   std::string out = "## How to read it\n\n";
   out +=
       "- `8.3 (12.0)`: our value, and in parentheses the paper's for the truss with the same counts. Where the paper "
       "has no such truss, our value stands alone.\n";
-  out +=
-      "- A row is the mean over the trials of a scene. `average` is the mean over the rows, `worst row` is the worst "
-      "row of each column, and `worst scan` is the worst single trial. The paper's values in these three rows are "
-      "those of the same scenes. Tables of figures that the paper does not report show all scenes together; the CSV "
-      "files have every scan.\n";
+  if (per_truss)
+    out +=
+        "- A row is the mean over the trials of a scene. `average` is the mean over the rows, `worst row` is the worst "
+        "row of each column, and `worst scan` is the worst single trial. The paper's values in these three rows are "
+        "those of the same scenes. Tables of figures that the paper does not report show all scenes together; the CSV "
+        "files have every scan.\n";
   out +=
       "- `-`: there is no value. `7.0 [2/3]`: only 2 of 3 scans have a value, and this is their mean; then there is no "
       "worst value.\n";
   out += "- Seconds are computing time on the machine that ran it, without the simulated sensor.\n";
   out +=
       "- A group is a preset, a planner and a noise model; with `free flight` the camera flies to every view instead "
-      "of being held by the arm. The detailed tables show one group per preset. The other groups are in the summary "
-      "and in the CSV files: ";
+      "of being held by the arm. ";
+  out += per_truss
+             ? "The detailed tables show one group per preset. The other groups are in the summary and in the CSV "
+               "files: "
+             : "The CSV files have a row per scan: ";
   for (const char* name : {"scanning", "segmentation", "localization", "fruits", "curves", "scenes"})
     out +=
         (name == std::string("scanning") ? "[" : ", [") + std::string(name) + "](" + data.folder + "/" + name + ".csv)";
@@ -87,7 +91,7 @@ std::string how_to_read_it(const Data& data) {
 }  // namespace
 
 std::string introduction(const Data& data, const ReportInfo& info) {
-  std::string out = "# The paper's experiment, side by side\n\n";
+  std::string out = info.per_truss ? "# The paper's experiment, side by side\n\n" : "# Planners, side by side\n\n";
   out +=
       "A simulated depth sensor on a UR3 scans trusses of tomatoes, and the results of AgriSEE are compared with the "
       "true surfaces. Beside each value is the one that the paper reports in its three result tables (F. "
@@ -98,7 +102,7 @@ std::string introduction(const Data& data, const ReportInfo& info) {
       "and `default` presets scan the same scenes.\n\n";
   out +=
       "The command below writes this page from the records of the scans. All values but the paper's are measured.\n\n";
-  return out + what_was_run(data, info) + how_to_read_it(data);
+  return out + what_was_run(data, info) + how_to_read_it(data, info.per_truss);
 }
 
 }  // namespace agrisee::report

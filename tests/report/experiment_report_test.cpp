@@ -307,6 +307,20 @@ TEST_CASE("the order of the records does not matter") {
   }
 }
 
+TEST_CASE("a report without the paper's tables compares groups, and has only the plots that it shows") {
+  const TempFolder folder;
+  std::vector<study::CellRecord> cells{cell("a", 6, 2, 1), cell("a", 6, 2, 1)};
+  cells[1].cell.planner = "see";
+  report::write_experiment_report(folder / "r.md", cells, {scene("a", 6, 2)}, {"1.2.3", "again", false});
+  const std::string document = slurp(folder / "r.md");
+  CHECK(document.find("## Summary") != std::string::npos);
+  CHECK(document.find("## Planners") != std::string::npos);
+  CHECK(document.find("## Table") == std::string::npos);
+  CHECK(std::filesystem::exists(folder / "r/scanning.csv"));
+  CHECK(std::filesystem::exists(folder / "r/planners.svg"));
+  CHECK_FALSE(std::filesystem::exists(folder / "r/scanning.svg"));
+}
+
 TEST_CASE("names are shown verbatim") {
   const TempFolder folder;
   report::write_experiment_report(folder / "a b.md", {cell("x|y<z>,\"_q_\"", 4, 0, 1)}, {scene("x|y<z>,\"_q_\"", 4, 0)},
