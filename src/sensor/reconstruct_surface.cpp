@@ -6,154 +6,16 @@
 #include <algorithm>
 #include <array>
 
+#include "depth_blocks.hpp"
 #include "paraboloid.hpp"
 
 namespace agrisee::sensor {
 namespace {
 
+using detail::Block;
+using detail::Blocks;
 using detail::ParaboloidSums;
 using detail::Tap;
-
-/// Robust standard deviation (m) of an image's noise, from second differences of pixels `lag` apart along rows (median
-/// of their sizes, scaled to a Gaussian). Differences across invalid pixels are left out.
-double image_noise(const std::vector<float>& z, int width, int height, int lag) {
-  std::vector<float> d;
-  for (int v = 0; v < height; ++v)
-    for (int u = lag; u + lag < width; ++u) {
-      const float* c = &z[static_cast<std::size_t>(v) * static_cast<std::size_t>(width) + static_cast<std::size_t>(u)];
-      if (c[-lag] > 0.0f && c[0] > 0.0f && c[lag] > 0.0f) d.push_back(std::abs(c[-lag] - 2.0f * c[0] + c[lag]));
-    }
-  return 1.4826 * static_cast<double>(median(d)) / std::sqrt(6.0);
-}
-
-/// The pixels inside the volume.
-struct Crop {
-  std::vector<float> depth;  ///< z (m) of each pixel; 0 where it is invalid or outside
-  std::size_t pixels = 0;    ///< how many are inside
-  double typical = 1.0;      ///< their median depth (m)
-};
-
-Crop crop(const DepthFrame& frame, const Pose& world_T_optical, const Aabb& volume) {
-  const Intrinsics& k = frame.intrinsics;
-  const std::size_t width = static_cast<std::size_t>(k.width);
-  const Eigen::Matrix3d rotation = world_T_optical.linear();
-  const Eigen::Vector3d origin = world_T_optical.translation();
-  Crop out;
-  out.depth.assign(k.size(), 0.0f);
-  std::vector<float> depths;
-  depths.reserve(k.size() / 4);
-  for (int v = 0; v < k.height; ++v) {
-    const float* row = &frame.depth[static_cast<std::size_t>(v) * width];
-    // The ray of column u at z = 1, in world, is left + u * pitch.
-    const Eigen::Vector3d left = rotation * k.ray(0.0, v), pitch = rotation.col(0) / k.fx;
-    for (int u = 0; u < k.width; ++u) {
-      const float z = row[u];
-      if (!DepthFrame::valid(z)) continue;
-      if (!volume.contains(Eigen::Vector3d(origin + (left + double(u) * pitch) * double(z)))) continue;
-      out.depth[static_cast<std::size_t>(v) * width + static_cast<std::size_t>(u)] = z;
-      depths.push_back(z);
-    }
-  }
-  out.pixels = depths.size();
-  if (out.pixels) out.typical = static_cast<double>(median(depths));
-  return out;
-}
-
-/// Intrinsics of an image whose pixels are blocks of b x b pixels.
-Intrinsics block_intrinsics(const Intrinsics& k, int b) {
-  Intrinsics cells;
-  cells.width = (k.width + b - 1) / b;
-  cells.height = (k.height + b - 1) / b;
-  cells.fx = k.fx / b;
-  cells.fy = k.fy / b;
-  cells.cx = (k.cx + 0.5) / b - 0.5;
-  cells.cy = (k.cy + 0.5) / b - 0.5;
-  return cells;
-}
-
-/// The pixels of a block that agree with its median: their mean pixel (in cells) and depth (m). z = 0: there are none.
-struct Block {
-  float u = 0.0f, v = 0.0f, z = 0.0f;
-};
-
-/// The image as blocks of b x b pixels.
-struct Blocks {
-  Intrinsics cells;           ///< of the blocks
-  std::vector<Block> blocks;  ///< row by row
-  std::vector<float> depth;   ///< median depth (m) of all valid pixels of a block, inside the volume or not; 0: none
-  double fill = 0.0;          ///< median share of valid pixels in blocks with any
-
-  const Block& at(int u, int v) const {
-    return blocks[static_cast<std::size_t>(v) * static_cast<std::size_t>(cells.width) + static_cast<std::size_t>(u)];
-  }
-};
-
-/// Make block c.
-/// @param agree pixels agree with the median when they differ by at most this (m)
-/// @param any_depth receives the median depth (m) of all valid pixels
-/// @return share of valid pixels
-float make_block(const DepthFrame& frame, const std::vector<float>& inside, int cells_across, int b, float agree,
-                 std::size_t c, Block& block, float& any_depth) {
-  const Intrinsics& k = frame.intrinsics;
-  const std::size_t width = static_cast<std::size_t>(k.width);
-  const int u0 = static_cast<int>(c % static_cast<std::size_t>(cells_across)) * b;
-  const int v0 = static_cast<int>(c / static_cast<std::size_t>(cells_across)) * b;
-  float in[64 * 64], any[64 * 64];
-  int n_in = 0, n_any = 0;
-  const int u1 = std::min(u0 + b, k.width), v1 = std::min(v0 + b, k.height);
-  for (int v = v0; v < v1; ++v)
-    for (int u = u0; u < u1; ++u) {
-      const std::size_t i = static_cast<std::size_t>(v) * width + static_cast<std::size_t>(u);
-      if (inside[i] > 0.0f) in[n_in++] = inside[i];
-      if (DepthFrame::valid(frame.depth[i])) any[n_any++] = frame.depth[i];
-    }
-  if (n_any == 0) return 0.0f;
-  const float fill = static_cast<float>(n_any) / static_cast<float>((u1 - u0) * (v1 - v0));
-  std::nth_element(any, any + n_any / 2, any + n_any);
-  any_depth = any[n_any / 2];
-  if (n_in == 0) return fill;
-  std::nth_element(in, in + n_in / 2, in + n_in);
-  const float middle = in[n_in / 2];
-  double su = 0.0, sv = 0.0, sz = 0.0, s1 = 0.0;
-  for (int v = v0; v < v1; ++v)
-    for (int u = u0; u < u1; ++u) {
-      const float z = inside[static_cast<std::size_t>(v) * width + static_cast<std::size_t>(u)];
-      if (z > 0.0f && std::abs(z - middle) <= agree) su += u, sv += v, sz += double(z), s1 += 1.0;
-    }
-  block.u = static_cast<float>((su / s1 + 0.5) / b - 0.5);
-  block.v = static_cast<float>((sv / s1 + 0.5) / b - 0.5);
-  block.z = static_cast<float>(sz / s1);
-  return fill;
-}
-
-/// Divide the image into blocks of b x b pixels.
-Blocks make_blocks(const DepthFrame& frame, const std::vector<float>& inside, int b, double spacing, int threads) {
-  const Intrinsics& k = frame.intrinsics;
-  Blocks out;
-  out.cells = block_intrinsics(k, b);
-  const std::size_t n = out.cells.size();
-  out.depth.assign(n, 0.0f);
-  out.blocks.resize(n);
-  const double pixel_noise = image_noise(inside, k.width, k.height, std::max(1, b));
-  const float agree = static_cast<float>(std::max(3.0 * pixel_noise, 0.6 * spacing));
-  std::vector<float> fill(n, 0.0f);
-  const auto make = [&](std::size_t c) {
-    fill[c] = make_block(frame, inside, out.cells.width, b, agree, c, out.blocks[c], out.depth[c]);
-  };
-  parallel_for(n, threads, make, 1024);
-  std::vector<float> some;
-  for (const float share : fill)
-    if (share > 0.0f) some.push_back(share);
-  out.fill = static_cast<double>(median(some));
-  return out;
-}
-
-/// Robust standard deviation (m) of the noise between blocks.
-double noise_of(const Blocks& blocks) {
-  std::vector<float> z(blocks.blocks.size());
-  for (std::size_t c = 0; c < z.size(); ++c) z[c] = blocks.blocks[c].z;
-  return image_noise(z, blocks.cells.width, blocks.cells.height, 1);
-}
 
 /// The paraboloid fitted around a block: depth over the offset (du, dv) from the block's mean pixel, in cells.
 struct Patch {
@@ -301,8 +163,9 @@ Sample sample(const Intrinsics& cells, const Block& block, const Patch& patch, d
 
 /// Take one sample of each patch; where the surface is steep several along the slope, so that they stay evenly apart on
 /// the surface.
-void sample_patches(const Blocks& blocks, const std::vector<Patch>& patches, const SurfaceParameters& parameters,
-                    SurfaceImage& out) {
+/// Samples outside of the volume are left out.
+void sample_patches(const Blocks& blocks, const std::vector<Patch>& patches, const Aabb& volume,
+                    const SurfaceParameters& parameters, SurfaceImage& out) {
   const Intrinsics& cells = blocks.cells;
   const Eigen::Matrix3d rotation = out.world_T_optical.linear();
   const double cos_max = std::cos(parameters.max_incidence);
@@ -320,7 +183,9 @@ void sample_patches(const Blocks& blocks, const std::vector<Patch>& patches, con
         s = sample(cells, blocks.blocks[c], patch, t * slope.x(), t * slope.y());
         if (!(s.cosine > cos_max)) continue;
       }
-      out.points.push_back((out.world_T_optical * s.point).cast<float>());
+      const Eigen::Vector3d point = out.world_T_optical * s.point;
+      if (!volume.contains(point)) continue;
+      out.points.push_back(point.cast<float>());
       out.normals.push_back((rotation * s.normal).cast<float>());
       out.sigma.push_back(static_cast<float>(patch.sigma * s.point.norm() / s.point.z()));
     }
@@ -335,12 +200,14 @@ SurfaceImage reconstruct_surface(const DepthFrame& frame, const Pose& world_T_op
   parameters.check();
   check_input(is_rigid(world_T_optical), "reconstruct_surface: the sensor pose is not a rigid transform");
   const Intrinsics& k = frame.intrinsics;
-  const Crop inside = crop(frame, world_T_optical, volume);
+  detail::Crop inside = detail::crop(frame, world_T_optical, volume);
   const int b =
       std::clamp(static_cast<int>(std::lround(parameters.spacing * k.fx / inside.typical)), 1, parameters.max_block);
-  Blocks blocks = make_blocks(frame, inside.depth, b, parameters.spacing, threads);
+  const double pixel_noise = detail::image_noise(inside.depth, k.width, k.height, b);
+  detail::add_border(frame, pixel_noise, inside);
+  Blocks blocks = detail::make_blocks(frame, inside.depth, b, parameters.spacing, pixel_noise, threads);
   // The noise that is left between blocks decides how far to smooth.
-  const double block_noise = std::max(noise_of(blocks), 0.02 * parameters.target_sigma);
+  const double block_noise = std::max(detail::noise_of(blocks), 0.02 * parameters.target_sigma);
   const PatchFitter fitter(blocks, inside.typical / blocks.cells.fx, block_noise, parameters);
   const std::vector<Patch> patches = fit_patches(fitter, blocks.blocks.size(), threads);
 
@@ -351,7 +218,7 @@ SurfaceImage reconstruct_surface(const DepthFrame& frame, const Pose& world_T_op
   out.fill = blocks.fill;
   constexpr double kOfMedians = 1.2533;  // sqrt(pi / 2): a median's standard deviation over that of a mean
   out.noise = (b > 1 ? kOfMedians : 1.0) * block_noise;
-  sample_patches(blocks, patches, parameters, out);
+  sample_patches(blocks, patches, volume, parameters, out);
   out.depth = std::move(blocks.depth);
   return out;
 }

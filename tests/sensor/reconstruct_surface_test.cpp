@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <agrisee/core/random.hpp>
 #include <agrisee/sensor/points_to_frame.hpp>
 #include <agrisee/sensor/reconstruct_surface.hpp>
 
@@ -71,6 +72,37 @@ TEST_CASE("a surface is recovered from noise that is larger than its detail") {
     std::nth_element(off.begin(), off.begin() + std::ptrdiff_t(off.size() / 2), off.end());
     CHECK(image.noise == Approx(1.4826 * off[off.size() / 2] / std::sqrt(6.0)).epsilon(0.15));
   }
+}
+
+TEST_CASE("a noisy surface keeps its shape where it leaves the scan volume") {
+  // The plane z = 0.5 + x in the optical frame; the volume ends at z = 0.5. Of the pixels near the border only those
+  // that their noise brings nearer lie inside.
+  DepthFrame frame;
+  frame.intrinsics = intrinsics_from_fov(640, 480, deg(50), deg(39));
+  frame.depth.resize(frame.intrinsics.size());
+  const auto width = static_cast<std::size_t>(frame.intrinsics.width);
+  Rng rng(1);
+  for (std::size_t i = 0; i < frame.depth.size(); ++i) {
+    const double x = frame.intrinsics.ray(double(i % width), double(i / width)).x();
+    frame.depth[i] = static_cast<float>(0.5 / (1.0 - x) + 0.01 * rng.normal());
+  }
+  Aabb box;
+  box.extend({-0.2, -0.1, 0.3});
+  box.extend({0.2, 0.1, 0.5});
+  const SurfaceImage image = reconstruct_surface(frame, Pose::Identity(), box);
+  double off = 0.0, turned = 0.0;
+  std::size_t near_border = 0;
+  for (std::size_t i = 0; i < image.points.size(); ++i) {
+    const Eigen::Vector3d p = image.points[i].cast<double>();
+    CHECK(box.contains(p));
+    if (p.z() < 0.485) continue;
+    off += (p.z() - 0.5 - p.x()) / std::sqrt(2.0);
+    turned += image.normals[i].cast<double>().dot(Eigen::Vector3d(1.0, 0.0, 1.0).normalized());
+    ++near_border;
+  }
+  REQUIRE(near_border > 100);
+  CHECK(std::abs(off) / double(near_border) < 0.0007);
+  CHECK(std::abs(turned) / double(near_border) < 0.03);
 }
 
 TEST_CASE("cells and pixels agree where a point is seen") {

@@ -4,13 +4,14 @@
 ///
 /// A depth sensor measures far more densely (0.5 mm at arm's length) than a fruit's surface needs, and its error lies
 /// along the ray. The steps:
-/// 1. Crop: only pixels inside the scan volume count.
+/// 1. Crop: only pixels inside the scan volume count, and those that only their noise moved out of it.
 /// 2. Blocks: the image is divided into blocks of b x b pixels, of about the wanted spacing. Each block keeps the mean
 ///    of those of its pixels that agree with its median.
 /// 3. Fit: a paraboloid is fitted around each block, over a window that grows with the noise of the blocks. Weights
 ///    exclude surface beyond a depth edge (iteratively reweighted least squares with Tukey's biweight). The fit's
 ///    value, slope and variance at the block are the surface's depth, normal and uncertainty there.
-/// 4. Sample: each fit gives one surface point, or several along the slope where the surface is steep.
+/// 4. Sample: each fit gives one surface point, or several along the slope where the surface is steep. Points outside
+///    of the volume are dropped.
 ///
 /// Cost: linear in the pixels, and in the blocks times the cells of the window.
 #pragma once
@@ -23,7 +24,7 @@ namespace agrisee::sensor {
 
 /// The surface of a depth image inside `volume`.
 ///
-/// Pixels outside the volume, invalid pixels and cells without support give no surface points. `depth` of the result
+/// Invalid pixels, cells without support and surface outside the volume give no points. `depth` of the result
 /// also covers surface outside the volume, as evidence of free space.
 /// @param frame the measured image
 /// @param world_T_optical pose of the sensor when the frame was taken
