@@ -435,6 +435,73 @@ TEST_CASE("picking: within a depth the arm's shortest moves decide, then the id"
   CHECK(orders({fruit(9, {0.2, 0.5, 0.4}), fruit(2, {0.2, 0.5, 0.0})})[1] == 1);
 }
 
+TEST_CASE("picking: fruit that cannot be picked show the approach that came farthest") {
+  const ReachApproach arm = [](const ApproachRequest& r, const Joints&) {
+    return ApproachAnswer{std::nullopt,
+                          r.direction.x() > 0.5 ? PickingReason::approach_interrupted : PickingReason::out_of_reach};
+  };
+  const auto plan = plan_picking({fruit(1, {0.0, 0.5, 0.2})}, scene(), arm);
+  CHECK(plan[0].reason == PickingReason::approach_interrupted);
+  CHECK(plan[0].direction.x() > 0.5);
+}
+
+TEST_CASE("picking: depth is horizontal, whatever hangs below the robot") {
+  const auto plan = plan_picking({fruit(1, {0.0, 0.55, -0.2}), fruit(2, {0.0, 0.5, -0.8})}, scene());
+  CHECK(plan[0].order == 2);
+  CHECK(plan[1].order == 1);
+}
+
+TEST_CASE("picking: one roll is enough, on the axis of the last joint and off it") {
+  PickingParameters p;
+  p.rolls = 1;
+  const std::vector<Fruit> fruits{fruit(1, {0.1, 0.5, 0.2})};
+  for (const double off : {0.0, 0.03}) {
+    arm::Mount mount = ur3();
+    mount.tool0_T_optical = pose_from_xyz_rpy({off, 0, 0.05}, {0, 0, 0});
+    check_pick(plan_with_ur3(fruits, scene(), p, mount)[0], fruits[0], scene(), p, mount);
+  }
+}
+
+TEST_CASE("picking: a tool on the axis takes the roll that turns the last joint least") {
+  const PickingParameters p;
+  const auto plan = plan_with_ur3({fruit(1, {0.1, 0.5, 0.2})}, scene(), p);
+  REQUIRE(plan[0].joints);
+  CHECK(std::abs((*plan[0].joints)[5] - kStart[5]) <= kPi / p.rolls + 1e-9);
+}
+
+TEST_CASE("picking: a tilted tool whose origin is on the axis is where the joints put it") {
+  for (const double x : {-0.1, 0.0, 0.1, 0.2}) {
+    arm::Mount mount = ur3();
+    mount.tool0_T_optical = pose_from_xyz_rpy({0, 0, 0.05}, {0.3, 0, 0});
+    const std::vector<Fruit> fruits{fruit(1, {x, 0.45, 0.2})};
+    check_pick(plan_with_ur3(fruits, scene(), {}, mount)[0], fruits[0], scene(), {}, mount);
+  }
+}
+
+TEST_CASE("picking: the largest change of a joint counts from step to step, not from the start") {
+  PickingParameters p;
+  p.steps = 100;
+  p.max_joint_step = 0.05;
+  const std::vector<Fruit> fruits{fruit(1, {0.1, 0.5, 0.2})};
+  const auto plan = plan_with_ur3(fruits, scene(), p);
+  check_pick(plan[0], fruits[0], scene(), p);
+  // All ways from there to the end turn a joint by more.
+  Pose end = plan[0].world_T_pre_grasp;
+  end.translation() += p.stand_off * plan[0].direction;
+  for (const Joints& q : arm::inverse(end * ur3().tool0_T_optical.inverse(), ur3().model.limits, (*plan[0].joints)[5]))
+    CHECK((q - *plan[0].joints).cwiseAbs().maxCoeff() > 2.0 * p.max_joint_step);
+}
+
+TEST_CASE("picking: a workcell's own tool frame is the one that approaches") {
+  Workcell workcell;
+  workcell.tool0_T_tool = pose_from_xyz_rpy({0.01, 0.02, 0.15}, {0, 0, 0});
+  const std::vector<Fruit> fruits{fruit(1, {0.1, 0.45, 0.2})};
+  const auto plan = plan_picking(fruits, scene(), approach_of(workcell, {}));
+  REQUIRE(plan[0].joints);
+  const Pose tool = workcell.world_T_base * arm::forward(*plan[0].joints) * *workcell.tool0_T_tool;
+  CHECK(tool.isApprox(plan[0].world_T_pre_grasp, 1e-9));
+}
+
 TEST_CASE("picking: bad input by name") {
   const std::vector<Fruit> good{fruit(1, {0.0, 0.5, 0.2})};
   std::vector<Fruit> bad = good;
@@ -466,4 +533,7 @@ TEST_CASE("picking: bad input by name") {
   Pose skewed = Pose::Identity();
   skewed.linear()(0, 0) = 2.0;
   CHECK_THROWS_AS(approach_of(ur3(), skewed), InputError);
+  arm::Mount mount = ur3();
+  mount.sensor.radius = 0.0;
+  CHECK_THROWS_AS(approach_of(mount, Pose::Identity()), ParameterError);
 }
