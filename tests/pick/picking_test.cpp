@@ -164,6 +164,8 @@ TEST_CASE("picking: sides that were seen and sides without neighbours are prefer
     cloud.points.push_back((two[1].body->center + 0.035 * d).cast<float>());
     labels.push_back(2);
   }
+  cloud.points.push_back({0.0f, 0.5f, 0.2f});
+  labels.push_back(3);  // of no fruit
   const auto seen = seen_directions(cloud, labels, two);
   CHECK(seen[0].none());
   CHECK(seen[1].count() == 2);
@@ -464,9 +466,13 @@ TEST_CASE("picking: one roll is enough, on the axis of the last joint and off it
 
 TEST_CASE("picking: a tool on the axis takes the roll that turns the last joint least") {
   const PickingParameters p;
-  const auto plan = plan_with_ur3({fruit(1, {0.1, 0.5, 0.2})}, scene(), p);
-  REQUIRE(plan[0].joints);
-  CHECK(std::abs((*plan[0].joints)[5] - kStart[5]) <= kPi / p.rolls + 1e-9);
+  for (const double last : {-2.0, -1.0, 0.4, 1.3, 2.2}) {
+    PickingScene s = scene();
+    s.joints[5] = last;
+    const auto plan = plan_with_ur3({fruit(1, {0.1, 0.5, 0.2})}, s, p);
+    REQUIRE(plan[0].joints);
+    CHECK(std::abs((*plan[0].joints)[5] - last) <= kPi / p.rolls + 1e-9);
+  }
 }
 
 TEST_CASE("picking: a tilted tool whose origin is on the axis is where the joints put it") {
