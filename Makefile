@@ -108,7 +108,7 @@ format-check:
 
 mutate:
 	@cmake/packages.sh build test
-	@python3 tests/mutate.py --count $(MUTANTS) $(foreach room,plan fuse pick,src/$(room) include/agrisee/$(room)) include/agrisee/cloud
+	@python3 tests/mutate.py --count $(MUTANTS) $(foreach room,plan fuse pick cloud,src/$(room) include/agrisee/$(room))
 
 clean:
 	@rm -rf build demo
