@@ -100,12 +100,14 @@ Fruit fruit_of(const Cloud& cloud, const Labels& labels, const Indices& points, 
 }
 
 /// Whether a closed surface has the size and shape of an expected fruit. The ellipsoid about a part of a pot, a trough
-/// or a trunk can have both while the surface, which follows the points further, has not.
+/// or a trunk can have both while the surface, which follows the points further, has not. Its size is that of a ball of
+/// its volume, and half its width: its middle semi-axis, of a flat fruit the larger one, of a long one the smaller.
 bool plausible(const ClosedSurface& surface, const BodyParameters& bodies) {
   const Eigen::Vector3d variance = principal_axes<double>(surface.center, surface.spread).variance;  // ascending
-  // In the middle of an ellipsoid the smaller principal curvature is to the larger as its semi-axes squared.
+  // In the middle of an ellipsoid the smaller principal curvature is to the larger as its semi-axes squared, and a
+  // semi-axis squared is five times the variance along it.
   return bodies.plausible(std::cbrt(surface.volume / (4.0 / 3.0 * kPi))) &&
-         variance[0] >= bodies.min_roundness * variance[2];
+         bodies.plausible(std::sqrt(5.0 * variance[1])) && variance[0] >= bodies.min_roundness * variance[2];
 }
 
 /// The closed surface of each found fruit, empty where there is none, as for bodies by masks, of which few points are

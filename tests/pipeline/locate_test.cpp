@@ -11,11 +11,12 @@ using namespace agrisee;
 
 namespace {
 
-/// A pear with its neck upwards, 96 mm long and 64 mm wide, seen from all sides but below.
-Cloud pear() {
-  const auto radius = [](const Eigen::Vector3d& d) {
+/// A pear with its neck upwards, 64 mm wide, seen from all sides but below.
+/// @param half_length m
+Cloud pear(double half_length = 0.048) {
+  const auto radius = [=](const Eigen::Vector3d& d) {
     const double s2 = 1.0 - d.z() * d.z(), across = 0.032 * (1.0 - 0.45 * d.z());
-    return 1.0 / std::sqrt(s2 / (across * across) + d.z() * d.z() / (0.048 * 0.048));
+    return 1.0 / std::sqrt(s2 / (across * across) + d.z() * d.z() / (half_length * half_length));
   };
   const auto at = [&](const Eigen::Vector3d& e) -> Eigen::Vector3d { return radius(e.normalized()) * e.normalized(); };
   Cloud cloud;
@@ -59,6 +60,15 @@ TEST_CASE("a body whose closed surface has the size or shape of no fruit is none
   Parameters round;
   round.split.bodies.min_roundness = 0.8;
   CHECK(located(pear(), round) == 0);
+}
+
+TEST_CASE("a flat body that is wider than any expected fruit is none, though its volume is that of one") {
+  const Cloud flat = pear(0.024);  // 64 mm wide, with the volume of a ball 58 mm wide
+  Parameters parameters;
+  parameters.split.bodies.radius_max = 0.030;
+  CHECK(located(flat, parameters) == 1);
+  parameters.split.bodies.radius_max = 0.0265;
+  CHECK(located(flat, parameters) == 0);
 }
 
 TEST_CASE("a body whose ellipsoid explains it is not judged by a closed surface") {
