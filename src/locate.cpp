@@ -99,19 +99,33 @@ Fruit fruit_of(const Cloud& cloud, const Labels& labels, const Indices& points, 
   return fruit;
 }
 
-/// Whether a closed surface has the size and shape of an expected fruit. The ellipsoid about a part of a pot, a trough
-/// or a trunk can have both while the surface, which follows the points further, has not. Its size is that of a ball of
-/// its volume, and half its width: its middle semi-axis, of a flat fruit the larger one, of a long one the smaller.
-bool plausible(const ClosedSurface& surface, const BodyParameters& bodies) {
+/// What the size and shape of a closed surface say of a body.
+enum class Likeness {
+  fruit,    ///< they are those of an expected fruit
+  unsure,   ///< it is somewhat more slender, which may be due to the side that was not seen
+  no_fruit  ///< they are those of no fruit
+};
+
+/// What the size and shape of a closed surface say of a body. The ellipsoid about a part of a pot, a trough or a trunk
+/// can have those of a fruit while the surface, which follows the points further, has not. Its size is that of a ball
+/// of its volume, and half its width: its middle semi-axis, of a flat fruit the larger one, of a long one the smaller.
+Likeness likeness(const ClosedSurface& surface, const BodyParameters& bodies) {
+  constexpr double kSlender = 0.6;  // of the least roundness; a surface that is longer still is no error
   const Eigen::Vector3d variance = principal_axes<double>(surface.center, surface.spread).variance;  // ascending
-  // In the middle of an ellipsoid the smaller principal curvature is to the larger as its semi-axes squared, and a
-  // semi-axis squared is five times the variance along it.
-  return bodies.plausible(std::cbrt(surface.volume / (4.0 / 3.0 * kPi))) &&
-         bodies.plausible(std::sqrt(5.0 * variance[1])) && variance[0] >= bodies.min_roundness * variance[2];
+  // A semi-axis squared is five times the variance along it.
+  if (!bodies.plausible(std::cbrt(surface.volume / (4.0 / 3.0 * kPi))) ||
+      !bodies.plausible(std::sqrt(5.0 * variance[1])))
+    return Likeness::no_fruit;
+  // In the middle of an ellipsoid the smaller principal curvature is to the larger as its semi-axes squared.
+  if (variance[0] >= bodies.min_roundness * variance[2]) return Likeness::fruit;
+  const bool maybe =
+      variance[0] >= kSlender * bodies.min_roundness * variance[2] && bodies.plausible(std::sqrt(5.0 * variance[2]));
+  return maybe ? Likeness::unsure : Likeness::no_fruit;
 }
 
 /// The closed surface of each found fruit, empty where there is none, as for bodies by masks, of which few points are
-/// seen. Points of no fruit that are on one join it. What has a surface that no fruit has loses its points.
+/// seen. Points of no fruit that are on one join it. What has a surface that no fruit has loses its points; what
+/// may have one keeps its ellipsoid.
 /// @param members the points of each fruit; none for what is no fruit
 /// @param labels one per point: the fruit's number from 1, or 0
 std::vector<std::optional<ClosedSurface>> closed_surfaces(const Cloud& cloud, const Split& split,
@@ -127,7 +141,12 @@ std::vector<std::optional<ClosedSurface>> closed_surfaces(const Cloud& cloud, co
     closing.noise = std::max(closing.noise, parameters.split.bodies.fit.sensor_noise / fit.body.mean_radius());
     surfaces[f] = closed_surface(cloud, members[f], residual(labels), fit.body, axis, closing);
     if (!surfaces[f]) continue;
-    if (surfaces[f]->weight > 0.5 && !plausible(*surfaces[f], parameters.split.bodies)) {
+    const Likeness like = surfaces[f]->weight > 0.5 ? likeness(*surfaces[f], parameters.split.bodies) : Likeness::fruit;
+    if (like == Likeness::unsure) {
+      surfaces[f].reset();
+      continue;
+    }
+    if (like == Likeness::no_fruit) {
       for (const Index i : members[f]) labels[static_cast<std::size_t>(i)] = 0;
       members[f].clear();
       continue;

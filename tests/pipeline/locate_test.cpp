@@ -59,7 +59,16 @@ TEST_CASE("a body whose closed surface has the size or shape of no fruit is none
   CHECK(located(pear(), small) == 0);
   Parameters round;
   round.split.bodies.min_roundness = 0.8;
-  CHECK(located(pear(), round) == 0);
+  CHECK(located(pear(0.070), round) == 0);
+}
+
+TEST_CASE(
+    "a closed surface that is somewhat more slender than fruit are is dropped, and the body keeps its ellipsoid") {
+  Parameters parameters;
+  parameters.split.bodies.min_roundness = 0.8;  // the pear has 0.65
+  CHECK(located(pear(), parameters) == 1);
+  parameters.split.bodies.radius_max = 0.035;  // but it is too long then
+  CHECK(located(pear(), parameters) == 0);
 }
 
 TEST_CASE("a flat body that is wider than any expected fruit is none, though its volume is that of one") {
