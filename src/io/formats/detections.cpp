@@ -20,10 +20,10 @@ namespace {
 namespace fs = std::filesystem;
 
 /// What a detection may be called in a file; the first name is the one of messages.
-const std::vector<std::vector<const char*>> kNames = {{"instance", "label", "id"}, {"class"},
-                                                      {"score", "confidence"},     {"u", "box_u", "x"},
-                                                      {"v", "box_v", "y"},         {"width", "box_w", "w"},
-                                                      {"height", "box_h", "h"}};
+const std::vector<std::vector<const char*>> kColumnNames = {{"instance", "label", "id"}, {"class"},
+                                                            {"score", "confidence"},     {"u", "box_u", "x"},
+                                                            {"v", "box_v", "y"},         {"width", "box_w", "w"},
+                                                            {"height", "box_h", "h"}};
 constexpr std::size_t kInstance = 0, kClass = 1, kScore = 2, kBoxFirst = 3;
 
 bool is_fruit(const std::string& name) {
@@ -41,7 +41,7 @@ class Collector {
   /// @param first the instance of the first detection that has none
   explicit Collector(std::size_t first) : next_(first) {}
 
-  /// @param number(k)   the value with the names kNames[k]
+  /// @param number(k)   the value with the names kColumnNames[k]
   /// @param complain(m) throws FileError with the message m
   void add(const Number& number, const std::string& name, const std::optional<sensor::PixelBox>& given_box,
            const Complain& complain) {
@@ -86,7 +86,7 @@ std::vector<sensor::Detection> from_json(const fs::path& path, const Bytes& byte
     const JsonValue value = list.at(i);
     if (!value.json().is_object()) value.fail("expected an object");
     const auto number = [&](std::size_t k) -> std::optional<double> {
-      for (const char* name : kNames[k])
+      for (const char* name : kColumnNames[k])
         if (value.has(name)) return value.at(name).number();
       return std::nullopt;
     };
@@ -108,8 +108,8 @@ std::vector<sensor::Detection> from_csv(const fs::path& path, std::string_view b
   std::vector<std::string> names, cells;
   split_csv(line, names);
   std::map<std::size_t, std::size_t> columns;  // of each value
-  for (std::size_t k = 0; k < kNames.size(); ++k)
-    for (const char* name : kNames[k])
+  for (std::size_t k = 0; k < kColumnNames.size(); ++k)
+    for (const char* name : kColumnNames[k])
       for (std::size_t c = 0; c < names.size(); ++c)
         if (!columns.count(k) && lower(trimmed(names[c])) == name) columns[k] = c;
   if (!columns.count(kInstance) && !columns.count(kBoxFirst))
@@ -122,7 +122,8 @@ std::vector<sensor::Detection> from_csv(const fs::path& path, std::string_view b
     const auto number = [&](std::size_t k) -> std::optional<double> {
       if (!columns.count(k) || trimmed(cells[columns[k]]).empty()) return std::nullopt;
       const auto value = to_number(trimmed(cells[columns[k]]));
-      if (!value) complain(std::string(kNames[k].front()) + ": " + excerpt(cells[columns[k]]) + " is not a number");
+      if (!value)
+        complain(std::string(kColumnNames[k].front()) + ": " + excerpt(cells[columns[k]]) + " is not a number");
       return value;
     };
     const std::string name = columns.count(kClass) ? std::string(trimmed(cells[columns[kClass]])) : "";
