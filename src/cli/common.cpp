@@ -10,7 +10,6 @@
 #include <filesystem>
 #include <iomanip>
 #include <iostream>
-#include <nlohmann/json.hpp>
 #include <sstream>
 #include <sys/ioctl.h>
 #include <system_error>
@@ -19,6 +18,7 @@
 
 #include "commands.hpp"
 #include "interrupt.hpp"
+#include "io/formats/json_value.hpp"
 #include "io/formats/text.hpp"
 #include "job_record.hpp"
 #include "words.hpp"
@@ -176,9 +176,9 @@ void end_progress() {
 namespace {
 
 std::string summary_json(const ScanResult& result, const std::string& folder, std::size_t labelled) {
-  nlohmann::ordered_json out;
+  io::Json out;
   out["folder"] = folder;
-  out["fruits"] = nlohmann::ordered_json::parse(io::fruits_to_json(result.fruits));
+  out["fruits"] = io::parse_json(io::fruits_to_json(result.fruits));
   out["views"] = result.views.size();
   if (const std::string discarded = discarded_views(result.views); !discarded.empty()) out["discarded"] = discarded;
   if (!result.warnings.empty()) out["warnings"] = result.warnings;

@@ -3,8 +3,7 @@
 
 #include <agrisee/io/files.hpp>
 
-#include <fstream>
-#include <nlohmann/json.hpp>
+#include "io/formats/json_value.hpp"
 
 namespace agrisee::cli {
 namespace {
@@ -25,8 +24,7 @@ void each_text(Record& record, F&& f) {
 }  // namespace
 
 std::optional<JobRecord> read_job(const std::filesystem::path& folder) {
-  std::ifstream file(folder / kJobFile);
-  const nlohmann::json json = nlohmann::json::parse(file, nullptr, false);
+  const io::Json json = io::load_json_or_null(folder / kJobFile);
   if (!json.is_object()) return std::nullopt;
   JobRecord record;
   bool whole = true;
@@ -41,9 +39,9 @@ std::optional<JobRecord> read_job(const std::filesystem::path& folder) {
 }
 
 void write_job(const std::filesystem::path& folder, const JobRecord& record) {
-  nlohmann::ordered_json json;
+  io::Json json;
   each_text(record, [&](const char* key, const std::string& text) { json[key] = text; });
-  io::write_file(folder / kJobFile, json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");
+  io::write_file(folder / kJobFile, json.dump(2, ' ', false, io::Json::error_handler_t::replace) + "\n");
 }
 
 void remove_job(const std::filesystem::path& folder) {

@@ -5,16 +5,15 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <fstream>
 #include <glob.h>
 #include <iostream>
 #include <map>
-#include <nlohmann/json.hpp>
 #include <set>
 #include <sstream>
 
 #include "commands.hpp"
 #include "interrupt.hpp"
+#include "io/formats/json_value.hpp"
 #include "job_record.hpp"
 
 namespace agrisee::cli {
@@ -52,15 +51,13 @@ std::vector<std::string> names_of(fs::path path) {
 
 /// Fill in a summary's columns from the files of a finished result; columns whose values are missing stay empty.
 void add_result(const fs::path& folder, SummaryRow& row) {
-  std::ifstream file(folder / "run.json");
-  const nlohmann::json run = nlohmann::json::parse(file, nullptr, false);
+  const io::Json run = io::load_json_or_null(folder / "run.json");
   if (!run.is_object()) return;
   const auto at = [&](const char* pointer) {
-    const nlohmann::json value = run.value(nlohmann::json::json_pointer(pointer), nlohmann::json());
+    const io::Json value = run.value(io::Json::json_pointer(pointer), io::Json());
     return value.is_string() ? value.get<std::string>() : value.is_null() ? std::string() : value.dump();
   };
-  std::ifstream fruits_file(folder / "fruits.json");
-  const nlohmann::json fruits = nlohmann::json::parse(fruits_file, nullptr, false);
+  const io::Json fruits = io::load_json_or_null(folder / "fruits.json");
   if (fruits.is_array()) row.fruits = std::to_string(fruits.size());
   row.views = at("/views");
   row.stop_reason = at("/stop_reason");

@@ -5,9 +5,9 @@
 #include <agrisee/io/fingerprint.hpp>
 
 #include <algorithm>
-#include <fstream>
-#include <nlohmann/json.hpp>
 #include <system_error>
+
+#include "io/formats/json_value.hpp"
 
 namespace agrisee::season {
 namespace {
@@ -49,8 +49,7 @@ Scan open_result(const fs::path& folder) {
   scan.folder = folder;
   io::Fingerprint print;
   for (const char* name : {"run.json", "fruits.json", "views.csv"}) print.add(io::read_bytes(folder / name).view());
-  std::ifstream file(folder / "job.json");
-  const nlohmann::json job = nlohmann::json::parse(file, nullptr, false);
+  const io::Json job = io::load_json_or_null(folder / "job.json");
   const auto text = [&](const char* key) {
     return job.is_object() && job.contains(key) && job[key].is_string() ? job[key].get<std::string>() : std::string();
   };

@@ -8,7 +8,6 @@
 #include <cstring>
 #include <fcntl.h>
 #include <iterator>
-#include <regex>
 #include <sys/stat.h>
 #include <system_error>
 #include <unistd.h>
@@ -20,6 +19,13 @@ namespace agrisee::io {
 namespace fs = std::filesystem;
 
 namespace {
+
+/// Whether a file is a temporary one of AtomicFile: `.<name>.tmp<process>-<count>`.
+bool is_temporary(std::string_view name) {
+  const std::size_t mark = name.rfind(".tmp"), dash = name.rfind('-');
+  if (mark == name.npos || mark < 2 || dash == name.npos || dash < mark + 4) return false;
+  return name[0] == '.' && is_digits(name.substr(mark + 4, dash - mark - 4)) && is_digits(name.substr(dash + 1));
+}
 
 /// Flush a file, or the list of names of a folder, to the disk. @return false if that fails
 bool sync(const fs::path& path) {
@@ -165,10 +171,9 @@ void make_durable(const fs::path& folder) {
 }
 
 void remove_leftovers(const fs::path& folder) {
-  static const std::regex temporary("\\..+\\.tmp[0-9]+-[0-9]+");
   std::error_code ignored;
   for (const fs::directory_entry& entry : fs::directory_iterator(folder, ignored))
-    if (std::regex_match(entry.path().filename().string(), temporary)) fs::remove(entry.path(), ignored);
+    if (is_temporary(entry.path().filename().string())) fs::remove(entry.path(), ignored);
 }
 
 }  // namespace agrisee::io

@@ -58,6 +58,14 @@ Json load_json(const std::filesystem::path& path, const Bytes& bytes) {
   }
 }
 
+Json load_json_or_null(const std::filesystem::path& path) {
+  try {
+    return load_json(path);
+  } catch (const FileError&) {
+    return nullptr;
+  }
+}
+
 std::string dump(const Json& json) {
   std::string out;
   dump(json, "", out);

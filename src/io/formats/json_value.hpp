@@ -26,6 +26,8 @@ Json parse_json(std::string_view text);
 Json load_json(const std::filesystem::path& path);
 /// The same for the bytes of a file that was read already. @param path for messages
 Json load_json(const std::filesystem::path& path, const Bytes& bytes);
+/// The same, but null for a file that cannot be read or is not JSON.
+Json load_json_or_null(const std::filesystem::path& path);
 
 /// The JSON text, indented, with lists of numbers on one line. Bytes that are not UTF-8 are replaced.
 std::string dump(const Json& json);

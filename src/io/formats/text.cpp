@@ -127,15 +127,18 @@ std::optional<double> to_number(std::string_view text) {
   return value;
 }
 
+bool is_digits(std::string_view text) {
+  for (char c : text)
+    if (!is_digit(c)) return false;
+  return !text.empty();
+}
+
 std::optional<long long> to_integer(std::string_view text) {
   const bool negative = !text.empty() && text[0] == '-';
   if (!text.empty() && (text[0] == '-' || text[0] == '+')) text.remove_prefix(1);
-  if (text.empty() || text.size() > 18) return std::nullopt;
+  if (!is_digits(text) || text.size() > 18) return std::nullopt;
   long long value = 0;
-  for (char c : text) {
-    if (!is_digit(c)) return std::nullopt;
-    value = 10 * value + (c - '0');
-  }
+  for (char c : text) value = 10 * value + (c - '0');
   return negative ? -value : value;
 }
 

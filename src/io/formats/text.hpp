@@ -40,6 +40,9 @@ std::optional<std::string> nearest_word(std::string_view word, const std::vector
 /// "; did you mean 'scan_volume'?", to be added to a message about an unknown word; empty if no word is near.
 std::string did_you_mean(std::string_view word, const std::vector<std::string>& words);
 
+/// Whether `text` consists of decimal digits, at least one.
+bool is_digits(std::string_view text);
+
 inline bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\r' || c == '\n' || c == '\v' || c == '\f'; }
 
 /// Remove the next word from the front of `text` and return it; empty when none is left.

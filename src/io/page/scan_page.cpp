@@ -198,8 +198,8 @@ Json to_json(const View& view, const arm::Mount& mount) {
 std::string page_data(const ScanResult& result, const Workcell& workcell, const RunInfo& info,
                       const ScanHistory& history, std::size_t max_points) {
   Json j;
-  j["run"] = Json::parse(run_text(result, info));
-  j["fruits"] = Json::parse(fruits_text(result.fruits));
+  j["run"] = parse_json(run_text(result, info));
+  j["fruits"] = parse_json(fruits_text(result.fruits));
   j["fruits_csv"] = fruits_csv_text(result.fruits);
   if (history.running) j["running"] = true;
   j["colors"] = Json::object();

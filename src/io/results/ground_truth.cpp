@@ -3,12 +3,11 @@
 #include <agrisee/io/ground_truth.hpp>
 
 #include <array>
-#include <nlohmann/json.hpp>
+
+#include "io/formats/json_value.hpp"
 
 namespace agrisee::io {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 Json array(const Eigen::Vector3d& v) { return {v.x(), v.y(), v.z()}; }
 
@@ -42,9 +41,7 @@ void write_ground_truth(const std::filesystem::path& path, const study::GroundTr
 std::optional<study::GroundTruth> read_ground_truth(const std::filesystem::path& path) {
   std::error_code error;
   if (!std::filesystem::exists(path, error)) return std::nullopt;
-  const Bytes bytes = read_bytes(path);
-  const Json root = Json::parse(bytes.view(), nullptr, false);
-  if (root.is_discarded()) fail(path, "not valid JSON");
+  const Json root = load_json(path);
   if (!root.is_object() || !root.contains("format_version") || !root.contains("fruits")) return std::nullopt;
   try {
     if (root.at("format_version") != 1) fail(path, "unknown format_version " + root.at("format_version").dump());

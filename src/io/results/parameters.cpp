@@ -11,7 +11,7 @@
 namespace agrisee::io {
 namespace {
 
-std::string number(double x) { return nlohmann::json(x).dump(); }
+std::string number(double x) { return nlohmann::ordered_json(x).dump(); }
 
 /// Writes every field of a struct, one a line, indented by two spaces a level.
 struct YamlWriter {

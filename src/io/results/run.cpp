@@ -15,7 +15,7 @@ constexpr int kFormatVersion = 1;
 Json parameters_of(const RunInfo& info) {
   if (info.parameters_json.empty()) return Json::object();
   try {
-    return Json::parse(info.parameters_json);
+    return parse_json(info.parameters_json);
   } catch (const nlohmann::json::exception&) {
     throw InputError("write_run: parameters_json is not JSON");
   }

@@ -5,10 +5,10 @@
 #include <agrisee/io/scan_record.hpp>
 
 #include <cstring>
-#include <regex>
 
 #include "io/formats/columns.hpp"
 #include "io/formats/json_value.hpp"
+#include "io/formats/text.hpp"
 
 namespace agrisee::io {
 namespace {
@@ -114,6 +114,12 @@ std::uint64_t checksum(std::string_view bytes) {
   return print.value();
 }
 
+/// Whether a file is named like a view's record: at least four digits, see view_record_path().
+bool is_record(const fs::path& path) {
+  const std::string number = path.stem().string();
+  return path.extension() == ".view" && number.size() >= 4 && is_digits(number);
+}
+
 }  // namespace
 
 std::string ScanTask::fingerprint() const {
@@ -140,7 +146,7 @@ void write_scan_task(const fs::path& path, const ScanTask& task) {
   j["planner"] = task.planner;
   if (task.color) j["color"] = true;
   if (!task.detector.empty()) j["detector"] = task.detector;
-  j["parameters"] = Json::parse(parameters_to_json(task.parameters));
+  j["parameters"] = parse_json(parameters_to_json(task.parameters));
   write_file(path, dump(j), Durability::now);
 }
 
@@ -233,7 +239,6 @@ std::optional<ViewRecord> read_view_record(const fs::path& folder, std::size_t v
 }
 
 void remove_scan_records(const fs::path& folder) {
-  static const std::regex record("[0-9]{4,}\\.view");
   std::error_code error;
   const auto remove = [&](const fs::path& path) {
     fs::remove(path, error);
@@ -245,7 +250,7 @@ void remove_scan_records(const fs::path& folder) {
   remove_leftovers(views);
   std::vector<fs::path> records;
   for (const fs::directory_entry& entry : fs::directory_iterator(views, error))
-    if (std::regex_match(entry.path().filename().string(), record)) records.push_back(entry.path());
+    if (is_record(entry.path())) records.push_back(entry.path());
   for (const fs::path& path : records) remove(path);
   fs::remove(views, error);  // fails, as it should, if the folder holds other files
 }
