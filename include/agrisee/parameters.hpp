@@ -12,7 +12,6 @@
 #include <agrisee/see/parameters.hpp>
 #include <agrisee/sensor/surface_image.hpp>
 
-#include <algorithm>
 #include <array>
 #include <string>
 
@@ -58,74 +57,24 @@ struct Parameters {
   see::Parameters see;                            ///< planner `see`
 
   /// The stages of [1] with its values.
-  static Parameters paper() {
-    Parameters p;
-    p.preset = "paper";
-    p.planner = "see";
-    p.max_views = 50;
-    p.fuse_surfaces = false;
-    p.register_views = false;
-    p.filter_each_view = true;
-    p.adaptive_normals = false;
-    p.max_incidence = kPi / 2;
-    p.growth_axis = false;
-    p.icp = IcpParameters::paper();
-    p.sor = SorParameters::paper();
-    p.normals = NormalParameters::paper();
-    p.split = SplitParameters::paper();
-    p.picking = pick::PickingParameters::paper();
-    p.see = see::Parameters::paper();
-    return p;
-  }
+  static Parameters paper();
 
   /// SEE++ as published: it chooses the views and merges their raw points, without smoothing, registration or filtering
   /// between views. After the scan the points are cleaned and segmented with the default parameters.
-  static Parameters see_alone() {
-    Parameters p;
-    p.preset = "see";
-    p.planner = "see";
-    p.max_views = 50;
-    p.fuse_surfaces = false;
-    p.register_views = false;
-    p.see = see::Parameters::published();
-    return p;
-  }
+  static Parameters see_alone();
 
   /// The preset of that name. @throws FieldError if there is none
-  static Parameters named(const std::string& preset) {
-    if (preset == kPresetNames[0]) return {};
-    if (preset == kPresetNames[1]) return paper();
-    if (preset == kPresetNames[2]) return see_alone();
-    throw FieldError("preset", "must be " + OneOf(kPresetNames).text() + ", got " + preset);
-  }
+  static Parameters named(const std::string& preset);
 
   /// Expect fruit with radii from `smallest` to `largest` (m). Sets the range of radii of the bodies and, for radii
   /// below the 20 mm for which the defaults are made, scales the lengths at which surfaces are sampled, fused and
   /// fitted. Half the length gives four times the points and takes about four times as long.
   /// @throws FieldError if the range is empty or `largest` is more than 20 times `smallest`
-  void expect_radii(double smallest, double largest) {
-    BodyParameters bodies = split.bodies;
-    bodies.radius_min = smallest;
-    bodies.radius_max = largest;
-    check_fields(bodies, "split.bodies.");
-    constexpr double kSmallest = 0.020, kLargest = 0.050;  // m; from here on the defaults are fine enough
-    const double scale = std::min(1.0, std::max(smallest / kSmallest, largest / kLargest));
-    bodies.min_tolerance = scale * BodyParameters().min_tolerance;
-    split.bodies = bodies;
-    surface.spacing = scale * sensor::SurfaceParameters().spacing;
-    surface.smallest_radius = scale * sensor::SurfaceParameters().smallest_radius;
-    surfels.separation = scale * fuse::SurfelParameters().separation;
-    surfels.agreement = scale * fuse::SurfelParameters().agreement;
-  }
+  void expect_radii(double smallest, double largest);
 
   /// The segmentation parameters of a scan: several views saw each body, so a lower probability is accepted, and
   /// sizes need no comparison.
-  SplitParameters scan_split() const {
-    SplitParameters out = split;
-    out.bodies.min_confidence = std::min(out.bodies.min_confidence, scan_confidence);
-    out.bodies.alike = 0.0;
-    return out;
-  }
+  SplitParameters scan_split() const;
 
   /// The parameters of fuse::FusedViews.
   fuse::FusionParameters fusion() const { return {surface, surfels, icp, free_space, register_views}; }
@@ -133,22 +82,7 @@ struct Parameters {
   /// @throws FieldError for the first field that is out of its range; it names the whole key, e.g. `gain.min_gain`. The
   /// lengths of surfaces and neighborhoods must be below 20 times the largest expected radius, as otherwise nothing can
   /// be found.
-  void check() const {
-    check_fields(*this);
-    const Limit most{20.0 * split.bodies.radius_max, "20 times split.bodies.radius_max"};
-    const auto below_most = [&](const char* key, double length) {
-      detail::check_field("", key, length, Range::finite().below(most).in_metres());
-    };
-    below_most("surface.spacing", surface.spacing);
-    below_most("surface.smallest_radius", surface.smallest_radius);
-    below_most("surfels.separation", surfels.separation);
-    below_most("surfels.agreement", surfels.agreement);
-    below_most("icp.max_distance", icp.max_distance);
-    below_most("normals.radius", normals.radius);
-    below_most("split.growing.radius", split.growing.radius);
-    below_most("split.clustering.eps", split.clustering.eps);
-    below_most("split.bodies.fit.noise", split.bodies.fit.noise);
-  }
+  void check() const;
 
   /// f(name, field, range) for every field; without a range where there is none. Nested structs list their fields the
   /// same way.
