@@ -11,6 +11,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "cloud_searches.hpp"
+
 namespace agrisee {
 namespace {
 

@@ -16,6 +16,8 @@
 #include <tuple>
 #include <utility>
 
+#include "cloud_searches.hpp"
+
 namespace agrisee {
 namespace {
 

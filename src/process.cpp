@@ -20,6 +20,7 @@
 #include <utility>
 
 #include "cloud_normals.hpp"
+#include "cloud_searches.hpp"
 #include "fruit_ripeness.hpp"
 
 namespace agrisee {

@@ -10,6 +10,8 @@
 #include <numeric>
 #include <utility>
 
+#include "cloud_searches.hpp"
+
 namespace agrisee::fuse {
 
 FusedViews::FusedViews(const Aabb& scan_volume, const FusionParameters& parameters, int threads)

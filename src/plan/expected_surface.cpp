@@ -13,6 +13,8 @@
 #include <cmath>
 #include <limits>
 
+#include "cloud_searches.hpp"
+
 namespace agrisee::plan {
 
 namespace {

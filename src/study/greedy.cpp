@@ -7,6 +7,8 @@
 #include <bitset>
 #include <cmath>
 
+#include "cloud_searches.hpp"
+
 namespace agrisee::study {
 
 std::size_t most_frontal(const Observability& observed, const Eigen::Vector3d& target, const Eigen::Vector3d& forward,
