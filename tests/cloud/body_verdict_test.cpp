@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <agrisee/cloud/body_verdict.hpp>
 
+#include <optional>
 #include <random>
 
 #include "catch.hpp"
@@ -65,6 +66,36 @@ TEST_CASE("normals that differ, and points nearby that do not fit, are counted")
     cloud.normals.push_back(cloud.normals[i]);
   }
   CHECK(verdict_of(cloud).clutter == Approx(0.5).margin(0.01));
+}
+
+TEST_CASE("points all around a fruit are round, those of the end of a post are not") {
+  CHECK(verdict_of(cap(kPi)).roundness > 0.95);
+  Cloud post;  // upright, cut off 0.8 radii above its middle, as by the border of the scan volume
+  for (int i = 0; i < 2000; ++i) {
+    const double angle = 2.4 * i, z = kRadius * (0.8 - 1.6 * (i + 0.5) / 2000);
+    const Eigen::Vector3d out(std::cos(angle), std::sin(angle), 0.0);
+    post.points.push_back((0.95 * kRadius * out + z * Eigen::Vector3d::UnitZ()).cast<float>());
+    post.normals.push_back(out.cast<float>());
+  }
+  const Verdict v = verdict_of(post);
+  CHECK(v.coverage > 0.4);  // so that of all evidence its curvature alone speaks against it
+  CHECK(v.roundness < BodyParameters().min_roundness);
+}
+
+TEST_CASE("fewer points on a smaller body count as much in several views, but not in a single one") {
+  Verdict v = verdict_of(cap(kPi / 2));
+  const auto believed = [&](double radius, std::size_t support, std::optional<double> seen_on) {
+    EllipsoidFit fit;
+    fit.body = Ellipsoid(Sphere{Eigen::Vector3d::Zero(), radius});
+    v.support = support;
+    v.seen_on = seen_on;
+    BodyParameters bodies;
+    bodies.radius_max = radius;  // so that the size itself counts the same
+    return fruit_probability(v, fit, bodies);
+  };
+  CHECK(believed(0.0125, 50, {}) == Approx(believed(0.025, 200, {})));
+  CHECK(believed(0.0125, 50, 1.0) < believed(0.025, 200, 1.0));
+  CHECK(believed(0.05, 200, {}) == Approx(believed(0.025, 200, {})));
 }
 
 TEST_CASE("whatever speaks against a fruit lowers its probability") {

@@ -202,7 +202,7 @@ struct BodyParameters {
   double min_tolerance = 0.0014;  ///< on small bodies, points within this distance from the surface (m)
   double max_angle = deg(35);     ///< if their normals are also within this angle of the body's (rad)
   double min_coverage = 0.08;     ///< least share of the surface that is covered by points, minus contradictions
-  double min_roundness = 0.35;    ///< least ratio of the smaller to the larger principal curvature of its points
+  double min_roundness = 0.35;    ///< least ratio of the smallest to the largest curvature of its points
   double min_confidence = 0.5;    ///< least probability that it is a fruit (detail::fruit_probability)
   double normal_noise = 0.0;      ///< standard deviation of the angle of a normal due to the sensor alone (rad)
   double alike = 0.7;             ///< how much it counts that the fruit of a single cloud are alike in size (0..1)
