@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <agrisee/cloud/body_verdict.hpp>
 
+#include <numeric>
 #include <optional>
 #include <random>
 
@@ -80,6 +81,18 @@ TEST_CASE("points all around a fruit are round, those of the end of a post are n
   const Verdict v = verdict_of(post);
   CHECK(v.coverage > 0.4);  // so that of all evidence its curvature alone speaks against it
   CHECK(v.roundness < BodyParameters().min_roundness);
+}
+
+TEST_CASE("in a single view the curvatures of a patch decide alone") {
+  const Cloud half = cap(kPi / 2);
+  const Ellipsoid body = fit_of(0.0).body;
+  Indices near(half.size());
+  std::iota(near.begin(), near.end(), Index{0});
+  const std::vector<char> free(half.size(), 0);
+  Cloud deep = half;  // its sides reach farther back than a ball's
+  for (Eigen::Vector3f& n : deep.normals) n.y() *= 0.1f, n.normalize();
+  CHECK(judge_quickly(deep, near, free, body, BodyParameters(), true).roundness > 0.9);
+  CHECK(judge_quickly(deep, near, free, body, BodyParameters(), false).roundness < 0.5);
 }
 
 TEST_CASE("fewer points on a smaller body count as much in several views, but not in a single one") {

@@ -232,7 +232,7 @@ class Competition {
 
   /// Whether a rough fit, to the points of near_, is so unlike a fruit that a better one is not worth its time.
   bool hopeless(const EllipsoidFit& fit) const {
-    const Verdict v = judge_quickly(cloud_, near_, taken_, fit.body, parameters_);
+    const Verdict v = judge_quickly(cloud_, near_, taken_, fit.body, parameters_, static_cast<bool>(seen_on_));
     const double least = 0.1 * kHopeless * parameters_.min_confidence;
     const auto below = [&](double prior) { return fruit_probability(v, fit, parameters_, prior) < least; };
     if (!masks_.log_odds) return below(0.0);

@@ -61,11 +61,12 @@ struct SupportSums {
 
   /// Smallest over largest curvature, 0 where the smallest is not positive. The normals are taken as a linear function
   /// of position. Its eigenvalues in the plane of the points' two longest directions are the principal curvatures of a
-  /// patch. Of points on several sides there is a third curvature, across that plane: that of a ring of points around a
-  /// post is zero. Where the points hardly spread across the plane, the mean of the other two stands for it.
+  /// patch. Of points seen from several sides there is a third curvature, across that plane: that of a ring of points
+  /// around a post is zero. Where the points hardly spread across the plane, the mean of the other two stands for it.
   /// @param radius of the body (m)
-  double roundness(double radius) {
-    constexpr double kAcross = 0.27;  // points that spread across the plane by this share of the radius count half
+  /// @param single_view whether all points were seen from one side, so that there are but two curvatures
+  double roundness(double radius, bool single_view) {
+    constexpr double kAcross = 0.2;  // points that spread across the plane by this share of the radius count half
     p_mean /= count;
     n_mean /= count;
     pp -= count * p_mean * p_mean.transpose();
@@ -78,7 +79,7 @@ struct SupportSums {
     const double half = std::hypot(0.5 * (k(0, 0) - k(1, 1)), 0.5 * (k(0, 1) + k(1, 0)));
     const Eigen::Vector3d across = axes.col(0);
     const double variance = across.dot(pp * across) / count, half_known = std::pow(kAcross * radius, 2);
-    const double known = variance * variance / (variance * variance + half_known * half_known);
+    const double known = single_view ? 0.0 : variance * variance / (variance * variance + half_known * half_known);
     const double third = known > 0.0 ? mean + known * (across.dot(np * across) / (count * variance) - mean) : mean;
     const double least = std::min(mean - half, third), most = std::max(mean + half, third);
     return least > 0.0 ? least / most : 0.0;
@@ -89,9 +90,10 @@ struct SupportSums {
 /// @param visit visit(f) calls f(index) for points within kNearBody radii of the body's center
 /// @param each number of points that each of these represents
 /// @param taken whether a point belongs to a body that has won already
+/// @param single_view whether all points were seen from one side
 template <typename S, typename Visit>
 Verdict judge_points(const PointCloud<S>& cloud, Visit&& visit, std::size_t each, const std::vector<char>& taken,
-                     const Ellipsoid& body, const BodyParameters& parameters) {
+                     const Ellipsoid& body, const BodyParameters& parameters, bool single_view) {
   Verdict v;
   const double r = body.mean_radius();
   const double near = parameters.near(r);
@@ -127,7 +129,7 @@ Verdict judge_points(const PointCloud<S>& cloud, Visit&& visit, std::size_t each
   }
   v.support = each * on;
   if (v.support < kLeastSupport) return v;
-  v.roundness = sums.roundness(r);
+  v.roundness = sums.roundness(r, single_view);
   v.normal_spread = std::sqrt(std::max(sines_sq, 0.0) / static_cast<double>(on));
   v.clutter = static_cast<double>(off) / static_cast<double>(on);
   return v;
@@ -141,7 +143,7 @@ Verdict judge(const PointCloud<S>& cloud, const Grid<S>& grid, const std::vector
   const auto visit = [&](auto&& f) {
     grid.visit(body.center.cast<S>(), static_cast<S>(kNearBody * body.mean_radius()), [&](Index i, S) { f(i); });
   };
-  Verdict v = judge_points(cloud, visit, 1, taken, body, parameters);
+  Verdict v = judge_points(cloud, visit, 1, taken, body, parameters, static_cast<bool>(seen_on));
   if (seen_through && v.support >= kLeastSupport) v.seen_through = seen_through(body);
   if (seen_on && v.support >= kLeastSupport) v.seen_on = seen_on(body);
   return v;
@@ -149,15 +151,16 @@ Verdict judge(const PointCloud<S>& cloud, const Grid<S>& grid, const std::vector
 
 /// Judge a body quickly, by at most kQuick of the points near it, evenly picked.
 /// @param near points within kNearBody radii of about its center
+/// @param single_view whether all points were seen from one side
 template <typename S>
 Verdict judge_quickly(const PointCloud<S>& cloud, const Indices& near, const std::vector<char>& taken,
-                      const Ellipsoid& body, const BodyParameters& parameters) {
+                      const Ellipsoid& body, const BodyParameters& parameters, bool single_view) {
   constexpr std::size_t kQuick = 600;
   const std::size_t step = (near.size() + kQuick - 1) / kQuick;
   const auto visit = [&](auto&& f) {
     for (std::size_t k = 0; k < near.size(); k += step) f(near[k]);
   };
-  return judge_points(cloud, visit, step, taken, body, parameters);
+  return judge_points(cloud, visit, step, taken, body, parameters, single_view);
 }
 
 /// The probability (0 to 1) that a body is a fruit, by logistic regression on its evidence. On leaves and stems normals
