@@ -97,18 +97,19 @@ TEST_CASE("in a single view the curvatures of a patch decide alone") {
 
 TEST_CASE("fewer points on a smaller body count as much in several views, but not in a single one") {
   Verdict v = verdict_of(cap(kPi / 2));
+  const double usual = 0.42 * BodyParameters().radius_max;
   const auto believed = [&](double radius, std::size_t support, std::optional<double> seen_on) {
     EllipsoidFit fit;
     fit.body = Ellipsoid(Sphere{Eigen::Vector3d::Zero(), radius});
     v.support = support;
     v.seen_on = seen_on;
-    BodyParameters bodies;
-    bodies.radius_max = radius;  // so that the size itself counts the same
-    return fruit_probability(v, fit, bodies);
+    const double p = fruit_probability(v, fit, BodyParameters());
+    return std::log(p / (1.0 - p)) -
+           1.7 * std::min(radius / BodyParameters().radius_max, 0.5);  // without the size itself
   };
-  CHECK(believed(0.0125, 50, {}) == Approx(believed(0.025, 200, {})));
-  CHECK(believed(0.0125, 50, 1.0) < believed(0.025, 200, 1.0));
-  CHECK(believed(0.05, 200, {}) == Approx(believed(0.025, 200, {})));
+  CHECK(believed(0.5 * usual, 50, {}) == Approx(believed(usual, 200, {})));
+  CHECK(believed(0.5 * usual, 50, 1.0) < believed(usual, 200, 1.0) - 1.0);
+  CHECK(believed(2.0 * usual, 200, {}) == Approx(believed(usual, 200, {})));
 }
 
 TEST_CASE("whatever speaks against a fruit lowers its probability") {

@@ -177,11 +177,11 @@ inline double fruit_probability(const Verdict& v, const EllipsoidFit& fit, const
                                 double prior = 0.0) {
   if (v.support == 0 || !(v.coverage > 0.0)) return 0.0;
   constexpr double kMostPoints = 1500.0, kMostMisfit = 0.08, kRoundEnough = 0.8, kLarge = 0.5;  // more changes nothing
-  constexpr double kSingleView = -0.4, kSeenOn = 2.8, kUsualRadius = 0.025;
+  constexpr double kSingleView = -0.4, kSeenOn = 2.8, kUsual = 0.42;
   const double radius = fit.body.mean_radius();
   // The same share of a smaller surface has fewer points. Where several views agree on a body they count as on one of
-  // 25 mm radius; in a single view scraps of leaves are small, too.
-  const double larger = v.seen_on ? 1.0 : std::max(1.0, kUsualRadius / radius);
+  // 0.42 times the largest expected radius; in a single view scraps of leaves are small, too.
+  const double larger = v.seen_on ? 1.0 : std::max(1.0, kUsual * parameters.radius_max / radius);
   const double points = std::min(larger * larger * static_cast<double>(v.support), kMostPoints);
   const double through = v.seen_through / (v.coverage + v.seen_through);
   const double spread =
