@@ -3,6 +3,8 @@
 #include <agrisee/cloud/bodies.hpp>
 
 #include <algorithm>
+#include <numeric>
+#include <optional>
 
 #include "catch.hpp"
 #include "spheres.hpp"
@@ -73,10 +75,11 @@ TEST_CASE("a doubtful body beside fruit of another size is not believed, beside 
       candidates.push_back({Ellipsoid(Sphere{center, radii[i]}), "test"});
     }
     add_front(cloud, doubtful, 0.011, 0.45, 0.0006);
+    const SeenOn single_view = [](const Ellipsoid&) { return 1.0; };
     BodyParameters parameters;
     parameters.alike = alike;
     parameters.min_confidence = 0.95;
-    for (const FoundBody& f : find_bodies(cloud, candidates, parameters))
+    for (const FoundBody& f : find_bodies(cloud, candidates, parameters, {}, nullptr, {}, single_view))
       if ((f.fit.body.center - doubtful).norm() < 0.005) return f.confidence;
     return 0.0;
   };
@@ -84,4 +87,36 @@ TEST_CASE("a doubtful body beside fruit of another size is not believed, beside 
   CHECK(confidence(apples, 0.0) > 0.95);
   CHECK(confidence(apples, 0.7) == 0.0);
   CHECK(confidence(truss, 0.7) > 0.95);
+}
+
+TEST_CASE("the other fruit tell the size of one, whatever a few say") {
+  const Ellipsoid other(Sphere{{0.0, 1.0, 0.0}, 0.02});
+  const auto apples = fruit_of({0.036, 0.033, 0.038, 0.035, 0.037, 0.060, 0.034});
+  const auto prior = size_prior(apples, other);
+  REQUIRE(prior);
+  CHECK(prior->radius == Approx(0.036));
+  CHECK(prior->spread == Approx(0.15));  // no size is known better than that
+  CHECK_FALSE(size_prior(fruit_of({0.036, 0.035}), other));
+  CHECK_FALSE(size_prior(fruit_of({0.04, 0.03, 0.02, 0.014, 0.010}), other));
+  const auto three = fruit_of({0.036, 0.035, 0.034});
+  CHECK_FALSE(size_prior(three, three.front().body));  // two others
+}
+
+TEST_CASE("a size that is known decides where points leave it open, and only there") {
+  const Sphere truth{{0.0, 0.5, 0.0}, 0.036};
+  const auto radius = [&](double least, double noise, const std::optional<SizePrior>& prior) {
+    Cloud cloud;
+    add_front(cloud, truth.center, truth.radius, least, noise);
+    Indices all(cloud.size());
+    std::iota(all.begin(), all.end(), Index{0});
+    FitParameters parameters;
+    parameters.noise = 0.003;
+    const auto fit = fit_ellipsoid(cloud, all, Ellipsoid(truth), parameters, prior);
+    REQUIRE(fit);
+    return fit->body.mean_radius();
+  };
+  const SizePrior larger{0.045, 0.05};
+  CHECK(radius(0.0, 0.0, larger) < 0.038);
+  CHECK(radius(0.9, 0.0, larger) > 0.042);
+  CHECK(radius(0.9, 0.0, {}) == Approx(truth.radius).margin(0.001));
 }

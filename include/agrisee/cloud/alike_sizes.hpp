@@ -9,6 +9,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
+#include <utility>
 #include <vector>
 
 namespace agrisee {
@@ -18,6 +20,25 @@ struct KnownSize {
   Ellipsoid body;       ///< its ellipsoid (m)
   double weight = 1.0;  ///< its probability of being a fruit
 };
+
+namespace detail {
+
+/// Whether neither body contains the other's center.
+inline bool are_apart(const Ellipsoid& a, const Ellipsoid& b) {
+  return (a.center - b.center).norm() >= std::max(a.mean_radius(), b.mean_radius());
+}
+
+/// The value at which half of the weight is reached. @param values pairs of value and weight, at least one
+inline double weighted_median(std::vector<std::pair<double, double>> values) {
+  std::sort(values.begin(), values.end());
+  double all = 0.0, sum = 0.0;
+  for (const auto& v : values) all += v.second;
+  for (const auto& v : values)
+    if ((sum += v.second) >= 0.5 * all) return v.first;
+  return values.back().first;
+}
+
+}  // namespace detail
 
 /// Evidence for or against a fruit from the size of a body, given the sizes of the other fruit.
 ///
@@ -35,9 +56,7 @@ inline double alike_log_odds(const std::vector<KnownSize>& known, const Ellipsoi
   constexpr double kNarrowest = 0.15;  // least blur: errors of fits to little surface
   constexpr double kMixed = 0.4;       // standard deviation of the logarithms from which on sizes say nothing
   const double radius = body.mean_radius(), x = std::log(radius);
-  const auto is_other = [&](const KnownSize& k) {
-    return (k.body.center - body.center).norm() >= std::max(radius, k.body.mean_radius());
-  };
+  const auto is_other = [&](const KnownSize& k) { return detail::are_apart(k.body, body); };
   double weights = 0.0, mean = 0.0, variance = 0.0;
   for (const KnownSize& k : known)
     if (is_other(k)) weights += k.weight, mean += k.weight * std::log(k.body.mean_radius());
@@ -53,6 +72,25 @@ inline double alike_log_odds(const std::vector<KnownSize>& known, const Ellipsoi
   const double range = std::log(radius_max / radius_min);
   const double agreement = std::max(0.0, 1.0 - variance / (kMixed * kMixed));
   return agreement * std::log((kNew + density * range) / (kNew + weights));
+}
+
+/// What the other fruit of a cloud say of the size of one: their weighted median, and how far they spread about it. A
+/// few that are far off, as fits to little surface can be, do not count.
+/// @param known fruit; those that overlap the body (it itself, found before) are left out
+/// @return empty if there are fewer than three others, or if their sizes vary by more than 40 %
+inline std::optional<SizePrior> size_prior(const std::vector<KnownSize>& known, const Ellipsoid& body) {
+  constexpr std::size_t kFewest = 3;
+  constexpr double kNarrowest = 0.15, kMixed = 0.4;  // of the spread
+  constexpr double kNormal = 1.4826;                 // standard deviation over median absolute deviation
+  std::vector<std::pair<double, double>> sizes;      // logarithms of the radii, and weights
+  for (const KnownSize& k : known)
+    if (detail::are_apart(k.body, body)) sizes.emplace_back(std::log(k.body.mean_radius()), k.weight);
+  if (sizes.size() < kFewest) return std::nullopt;
+  const double middle = detail::weighted_median(sizes);
+  for (auto& [size, weight] : sizes) size = std::abs(size - middle);
+  const double spread = std::max(kNarrowest, kNormal * detail::weighted_median(sizes));
+  if (spread > kMixed) return std::nullopt;
+  return SizePrior{std::exp(middle), spread};
 }
 
 }  // namespace agrisee

@@ -128,6 +128,7 @@ class Competition {
       assess(e);
     }
     decide(found);
+    tell_sizes(found);
   }
 
   /// Let the masks that no body explains propose bodies for what is left. @param found receives those that are taken
@@ -164,6 +165,13 @@ class Competition {
     std::optional<double> mask_log_odds = {};  // its fit is that of an outline, which the points do not change
     double prior = 0.0;                        // log-odds by the masks
   };
+
+  /// Tell each fruit the sizes of the others, for its last fit.
+  static void tell_sizes(std::vector<FoundBody>& found) {
+    std::vector<KnownSize> sizes;
+    for (const FoundBody& f : found) sizes.push_back({f.fit.body, f.confidence});
+    for (FoundBody& f : found) f.fit.size_prior = size_prior(sizes, f.fit.body);
+  }
 
   /// Log-odds against a body that masks of several views proposed, from sight lines through it and points inside it.
   /// Those of a single view were weighed when the body was proposed.

@@ -79,6 +79,13 @@ inline std::pair<Eigen::Vector3d, Eigen::Matrix3d> semi_axes(const Ellipsoid& e)
   return {solver.eigenvalues().cwiseInverse(), axes};
 }
 
+/// What is known of a body's size before its points are looked at: the logarithm of its mean radius is normally
+/// distributed.
+struct SizePrior {
+  double radius = 0.0;  ///< median of the mean radius (m)
+  double spread = 0.0;  ///< standard deviation of its logarithm
+};
+
 /// The result of a fit.
 struct EllipsoidFit {
   Ellipsoid body;                                                        ///< the fitted ellipsoid
@@ -86,8 +93,9 @@ struct EllipsoidFit {
   Eigen::Matrix3d center_covariance_by_shape = Eigen::Matrix3d::Zero();  ///< the part of it that the prior causes (m2)
   /// Covariance of body.A as (xx, yy, zz, xy, xz, yz) (1/m2), with the prior on its shape.
   Eigen::Matrix<double, 6, 6> shape_covariance = Eigen::Matrix<double, 6, 6>::Zero();
-  double rms = 0.0;         ///< root mean square distance of the inliers (m)
-  std::size_t inliers = 0;  ///< points within three standard deviations whose normals agree
+  double rms = 0.0;                          ///< root mean square distance of the inliers (m)
+  std::size_t inliers = 0;                   ///< points within three standard deviations whose normals agree
+  std::optional<SizePrior> size_prior = {};  ///< what is known of its size, from other fruit
 };
 
 /// The sphere through points with outward normals: p = c + r n is linear in c and r, so r is the slope of the
@@ -162,6 +170,14 @@ inline Matrix9 shape_information(const Ellipsoid& body, double size, double shap
   return prior;
 }
 
+/// Row of the prior on the size: derivatives of the mean inverse semi-axis, in units of 1 / size.
+inline Vector9 size_row() { return (Vector9() << 0, 0, 0, 1, 1, 1, 0, 0, 0).finished() / 3.0; }
+
+/// Information of the prior on the mean inverse semi-axis, in units of 1 / size.
+inline double size_information(const SizePrior& prior, double size) {
+  return std::pow(prior.radius / (prior.spread * size), 2);
+}
+
 /// A point and its normal.
 struct FitSample {
   Eigen::Vector3d point, normal;
@@ -209,9 +225,11 @@ inline FitSums fit_sums(const std::vector<FitSample>& samples, const Ellipsoid& 
   return {products.topLeftCorner<9, 9>(), -products.topRightCorner<9, 1>(), weights, squares, inliers};
 }
 
-/// Multiply the normal equations by the samples' information and add the prior on the shape.
+/// Multiply the normal equations by the samples' information and add the priors on the shape and, if there is one, on
+/// the size.
 /// @param certainty information of one sample of full weight (1/m2)
-inline void add_prior(FitSums& sums, const Ellipsoid& body, double size, double certainty, double shape_prior) {
+inline void add_prior(FitSums& sums, const Ellipsoid& body, double size, double certainty, double shape_prior,
+                      const std::optional<SizePrior>& size_prior = {}) {
   sums.normal_matrix *= certainty;
   sums.rhs *= certainty;
   const Eigen::Matrix3d B = body.A * size - Eigen::Matrix3d::Identity();
@@ -220,6 +238,12 @@ inline void add_prior(FitSums& sums, const Ellipsoid& body, double size, double 
   b.tail<6>() << B(0, 0), B(1, 1), B(2, 2), B(0, 1), B(0, 2), B(1, 2);
   sums.rhs -= prior * b;
   sums.normal_matrix += prior;
+  if (size_prior) {
+    const Vector9 row = size_row();
+    const double information = size_information(*size_prior, size);
+    sums.normal_matrix += (information * row).lazyProduct(row.transpose());
+    sums.rhs -= information * (size / body.mean_radius() - size / size_prior->radius) * row;
+  }
   sums.normal_matrix.diagonal().array() += 1e-9 * sums.normal_matrix.diagonal().maxCoeff();
 }
 
@@ -243,11 +267,13 @@ inline std::optional<double> apply_step(Ellipsoid& body, const Vector9& step, do
 
 /// Fit an ellipsoid to the points `indices` of a cloud with normals, starting from `start`.
 ///
+/// @param size_prior what is known of its size, which decides as far as the points leave it open; usually nothing
 /// @return empty if fewer than `parameters.independent / 10 + 4` points support the body or the fit degenerates
 /// @throws InputError if the cloud has no normals; ParameterError
 template <typename S>
 std::optional<EllipsoidFit> fit_ellipsoid(const PointCloud<S>& cloud, const Indices& indices, const Ellipsoid& start,
-                                          const FitParameters& parameters = {}) {
+                                          const FitParameters& parameters = {},
+                                          const std::optional<SizePrior>& size_prior = {}) {
   parameters.check();
   check_input(cloud.normals.size() == cloud.points.size(), "fit_ellipsoid: the cloud has no normals");
   const std::size_t least = static_cast<std::size_t>(parameters.independent / 10 + 4);
@@ -260,6 +286,7 @@ std::optional<EllipsoidFit> fit_ellipsoid(const PointCloud<S>& cloud, const Indi
   // Unknowns: the center in units of `size`, and B = A * size - I as (xx, yy, zz, xy, xz, yz).
   EllipsoidFit fit;
   fit.body = start;
+  fit.size_prior = size_prior;
   const double size = start.mean_radius();
   const double noise = parameters.noise_of(size);
   const double inlier = 3.0 * std::max(noise, 0.01 * size);
@@ -269,7 +296,7 @@ std::optional<EllipsoidFit> fit_ellipsoid(const PointCloud<S>& cloud, const Indi
     detail::FitSums sums = detail::fit_sums(samples, fit.body, size, gate, cos_max, inlier);
     if (share * sums.weights < 0.3 * static_cast<double>(least)) return std::nullopt;
     const double certainty = std::min(share, parameters.independent / sums.weights) / (noise * noise);
-    detail::add_prior(sums, fit.body, size, certainty, parameters.shape_prior);
+    detail::add_prior(sums, fit.body, size, certainty, parameters.shape_prior, size_prior);
     const detail::Vector9 step = Eigen::LDLT<detail::Matrix9>(sums.normal_matrix).solve(sums.rhs);
     const auto longest = detail::apply_step(fit.body, step, size);
     if (!longest) return std::nullopt;
@@ -283,8 +310,11 @@ std::optional<EllipsoidFit> fit_ellipsoid(const PointCloud<S>& cloud, const Indi
   const detail::Matrix9 covariance = Eigen::LDLT<detail::Matrix9>(information).solve(detail::Matrix9::Identity());
   fit.center_covariance = covariance.topLeftCorner<3, 3>() * size * size;
   const Eigen::Matrix<double, 3, 9> center = covariance.topRows<3>();
-  fit.center_covariance_by_shape =
-      center * detail::shape_information(fit.body, size, parameters.shape_prior) * center.transpose() * size * size;
+  detail::Matrix9 prior = detail::shape_information(fit.body, size, parameters.shape_prior);
+  if (size_prior)
+    prior +=
+        detail::size_information(*size_prior, size) * detail::size_row().lazyProduct(detail::size_row().transpose());
+  fit.center_covariance_by_shape = center * prior * center.transpose() * size * size;
   fit.shape_covariance = covariance.bottomRightCorner<6, 6>() / (size * size);
   return fit;
 }

@@ -219,8 +219,9 @@ void refit(const PointCloud<S>& cloud, const BodyParameters& bodies, Split& out)
     own.resize(out.found.size());
     for (std::size_t b = 0; b < out.found.size(); ++b) {
       if (out.found[b].by_mask) continue;
-      if (const auto fit = fit_ellipsoid(cloud, own[b], out.found[b].fit.body, last_fit))
-        if (plausible(fit->body, bodies)) out.found[b].fit = *fit;
+      EllipsoidFit& last = out.found[b].fit;
+      if (const auto fit = fit_ellipsoid(cloud, own[b], last.body, last_fit, last.size_prior))
+        if (plausible(fit->body, bodies)) last = *fit;
     }
     out.labels = assign_to_bodies(cloud, out.found, bodies);
   }
