@@ -104,9 +104,9 @@ TEST_CASE("the other fruit tell the size of one, whatever a few say") {
 
 TEST_CASE("a size that is known decides where points leave it open, and only there") {
   const Sphere truth{{0.0, 0.5, 0.0}, 0.036};
-  const auto radius = [&](double least, double noise, const std::optional<SizePrior>& prior) {
+  const auto radius = [&](double least, const std::optional<SizePrior>& prior) {
     Cloud cloud;
-    add_front(cloud, truth.center, truth.radius, least, noise);
+    add_front(cloud, truth.center, truth.radius, least);
     Indices all(cloud.size());
     std::iota(all.begin(), all.end(), Index{0});
     FitParameters parameters;
@@ -116,7 +116,7 @@ TEST_CASE("a size that is known decides where points leave it open, and only the
     return fit->body.mean_radius();
   };
   const SizePrior larger{0.045, 0.05};
-  CHECK(radius(0.0, 0.0, larger) < 0.038);
-  CHECK(radius(0.9, 0.0, larger) > 0.042);
-  CHECK(radius(0.9, 0.0, {}) == Approx(truth.radius).margin(0.001));
+  CHECK(radius(0.0, larger) < 0.038);
+  CHECK(radius(0.9, larger) > 0.042);
+  CHECK(radius(0.9, {}) == Approx(truth.radius).margin(0.001));
 }

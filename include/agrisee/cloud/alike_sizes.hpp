@@ -23,6 +23,9 @@ struct KnownSize {
 
 namespace detail {
 
+constexpr double kNarrowestSizes = 0.15;  ///< least standard deviation of logarithms: errors of fits to little surface
+constexpr double kMixedSizes = 0.4;       ///< standard deviation of logarithms from which on sizes say nothing
+
 /// Whether neither body contains the other's center.
 inline bool are_apart(const Ellipsoid& a, const Ellipsoid& b) {
   return (a.center - b.center).norm() >= std::max(a.mean_radius(), b.mean_radius());
@@ -52,10 +55,8 @@ inline double weighted_median(std::vector<std::pair<double, double>> values) {
 /// @return difference of log-odds; 0 if there is no other fruit
 inline double alike_log_odds(const std::vector<KnownSize>& known, const Ellipsoid& body, double radius_min,
                              double radius_max) {
-  constexpr double kNew = 3.0;         // weight of another kind, in fruit
-  constexpr double kNarrowest = 0.15;  // least blur: errors of fits to little surface
-  constexpr double kMixed = 0.4;       // standard deviation of the logarithms from which on sizes say nothing
-  const double radius = body.mean_radius(), x = std::log(radius);
+  constexpr double kNew = 3.0;  // weight of another kind, in fruit
+  const double x = std::log(body.mean_radius());
   const auto is_other = [&](const KnownSize& k) { return detail::are_apart(k.body, body); };
   double weights = 0.0, mean = 0.0, variance = 0.0;
   for (const KnownSize& k : known)
@@ -64,13 +65,13 @@ inline double alike_log_odds(const std::vector<KnownSize>& known, const Ellipsoi
   mean /= weights;
   for (const KnownSize& k : known)
     if (is_other(k)) variance += k.weight * std::pow(std::log(k.body.mean_radius()) - mean, 2) / weights;
-  const double blur = std::max(kNarrowest, std::sqrt(variance));
+  const double blur = std::max(detail::kNarrowestSizes, std::sqrt(variance));
   double density = 0.0;  // of the others' logarithms at x, times their weight
   for (const KnownSize& k : known)
     if (is_other(k)) density += k.weight * std::exp(-0.5 * std::pow((x - std::log(k.body.mean_radius())) / blur, 2));
   density /= blur * std::sqrt(2.0 * kPi);
   const double range = std::log(radius_max / radius_min);
-  const double agreement = std::max(0.0, 1.0 - variance / (kMixed * kMixed));
+  const double agreement = std::max(0.0, 1.0 - variance / (detail::kMixedSizes * detail::kMixedSizes));
   return agreement * std::log((kNew + density * range) / (kNew + weights));
 }
 
@@ -80,16 +81,15 @@ inline double alike_log_odds(const std::vector<KnownSize>& known, const Ellipsoi
 /// @return empty if there are fewer than three others, or if their sizes vary by more than 40 %
 inline std::optional<SizePrior> size_prior(const std::vector<KnownSize>& known, const Ellipsoid& body) {
   constexpr std::size_t kFewest = 3;
-  constexpr double kNarrowest = 0.15, kMixed = 0.4;  // of the spread
-  constexpr double kNormal = 1.4826;                 // standard deviation over median absolute deviation
-  std::vector<std::pair<double, double>> sizes;      // logarithms of the radii, and weights
+  constexpr double kNormal = 1.4826;             // standard deviation over median absolute deviation
+  std::vector<std::pair<double, double>> sizes;  // logarithms of the radii, and weights
   for (const KnownSize& k : known)
     if (detail::are_apart(k.body, body)) sizes.emplace_back(std::log(k.body.mean_radius()), k.weight);
   if (sizes.size() < kFewest) return std::nullopt;
   const double middle = detail::weighted_median(sizes);
   for (auto& [size, weight] : sizes) size = std::abs(size - middle);
-  const double spread = std::max(kNarrowest, kNormal * detail::weighted_median(sizes));
-  if (spread > kMixed) return std::nullopt;
+  const double spread = std::max(detail::kNarrowestSizes, kNormal * detail::weighted_median(sizes));
+  if (spread > detail::kMixedSizes) return std::nullopt;
   return SizePrior{std::exp(middle), spread};
 }
 

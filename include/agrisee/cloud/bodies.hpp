@@ -117,7 +117,7 @@ class Competition {
   /// Hold the competition once more, now that the sizes of the fruit are known.
   /// @param found what was found; receives what is found now
   void decide_by_size(std::vector<FoundBody>& found) {
-    for (const FoundBody& f : found) sizes_.push_back({f.fit.body, f.confidence});
+    sizes_ = sizes_of(found);
     found.clear();
     counts_.taken = counts_.overlapping = 0;
     std::fill(taken_.begin(), taken_.end(), 0);
@@ -128,7 +128,8 @@ class Competition {
       assess(e);
     }
     decide(found);
-    tell_sizes(found);
+    const std::vector<KnownSize> sizes = sizes_of(found);  // for the last fit of each
+    for (FoundBody& f : found) f.fit.size_prior = size_prior(sizes, f.fit.body);
   }
 
   /// Let the masks that no body explains propose bodies for what is left. @param found receives those that are taken
@@ -166,11 +167,10 @@ class Competition {
     double prior = 0.0;                        // log-odds by the masks
   };
 
-  /// Tell each fruit the sizes of the others, for its last fit.
-  static void tell_sizes(std::vector<FoundBody>& found) {
+  static std::vector<KnownSize> sizes_of(const std::vector<FoundBody>& found) {
     std::vector<KnownSize> sizes;
     for (const FoundBody& f : found) sizes.push_back({f.fit.body, f.confidence});
-    for (FoundBody& f : found) f.fit.size_prior = size_prior(sizes, f.fit.body);
+    return sizes;
   }
 
   /// Log-odds against a body that masks of several views proposed, from sight lines through it and points inside it.
