@@ -210,17 +210,23 @@ bool has_changed(const Grid<S>& grid, const Ellipsoid& body, const std::vector<c
 }
 
 /// Fit each body once more to all points of its own label, and assign the points anew; twice. Bodies by masks stay.
+/// A body of a single cloud that has a size prior is seen from one side: the errors of its points are alike over larger
+/// parts of it than where several views were fused, so they count as fewer, and the priors decide more.
 template <typename S>
 void refit(const PointCloud<S>& cloud, const BodyParameters& bodies, Split& out) {
   FitParameters last_fit = bodies.fit;
   last_fit.max_points = std::max(last_fit.max_points, static_cast<int>(cloud.size()));
+  constexpr int kIndependentOnOneSide = 60;
+  FitParameters one_sided = last_fit;
+  one_sided.independent = std::min(last_fit.independent, kIndependentOnOneSide);
   for (int round = 0; round < 2; ++round) {
     auto own = indices_by_label(out.labels);
     own.resize(out.found.size());
     for (std::size_t b = 0; b < out.found.size(); ++b) {
       if (out.found[b].by_mask) continue;
       EllipsoidFit& last = out.found[b].fit;
-      if (const auto fit = fit_ellipsoid(cloud, own[b], last.body, last_fit, last.size_prior))
+      const FitParameters& how = last.size_prior ? one_sided : last_fit;
+      if (const auto fit = fit_ellipsoid(cloud, own[b], last.body, how, last.size_prior))
         if (plausible(fit->body, bodies)) last = *fit;
     }
     out.labels = assign_to_bodies(cloud, out.found, bodies);
