@@ -152,16 +152,21 @@ std::optional<ClosedSurface> closed_surface(const PointCloud<S>& cloud, const In
                                             0.04};  // relative distances beyond which points lose weight
   constexpr int kSteps = 4;                         // as a body of revolution, then with its lobes
   constexpr double kGoodFit = 0.006;                // misfit of a fit after which no other start is tried
+  constexpr double kFar = 0.5;                      // points farther off than this do not tell fits apart
   constexpr std::array<int, 8> kLobes = {0, 3, 4, 5, 6, 7, 8, 9};
   std::vector<detail::SurfaceModel> models;
   for (const int n : kLobes) models.emplace_back(n, parameters);
 
-  std::vector<Eigen::Vector3d> starts{axis};
+  // The points at the stem may be those of a calyx that stands out; one start leaves them out at first, and has to
+  // explain all points clearly better.
+  constexpr double kWithoutStem = 0.3, kClearly = 10.0;  // cosine; nats
+  std::vector<detail::SurfaceFit::Start> starts{{axis}, {axis, kWithoutStem}};
   for (int k = 0; k < 3; ++k)
-    if (std::abs(axes.col(k).dot(axis)) < 0.9) starts.push_back(axes.col(k));
+    if (std::abs(axes.col(k).dot(axis)) < 0.9) starts.push_back({axes.col(k)});
   std::optional<detail::SurfaceFit> best;
   std::size_t best_model = 0;
-  for (const Eigen::Vector3d& start : starts) {
+  double best_evidence = 0.0;
+  for (const detail::SurfaceFit::Start& start : starts) {
     throw_if_cancelled();
     detail::SurfaceFit fit(samples, body, start, models[0], parameters);
     bool good = true;
@@ -182,9 +187,13 @@ std::optional<ClosedSurface> closed_surface(const PointCloud<S>& cloud, const In
     if (model > 0) fit.set_weights(plain);
     for (std::size_t k = 0; k < kSteps && good; ++k)
       good = fit.step(models[model], kGates[std::min<std::size_t>(k + 1, 3)], true);
-    if (!good || (best && !(fit.misfit() < best->misfit()))) continue;
+    if (!good) continue;
+    const double evidence =
+        fit.evidence(models[model], fit.radial_bins(fit.plain_weights(kFar)), detail::kEvidenceNoise);
+    if (best && !(evidence > best_evidence + (start.cosine < 1.0 ? kClearly : 0.0))) continue;
     best.emplace(fit);
     best_model = model;
+    best_evidence = evidence;
     if (best->misfit() < kGoodFit) break;
   }
   if (!best) return std::nullopt;

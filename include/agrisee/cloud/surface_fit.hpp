@@ -123,22 +123,31 @@ class SurfaceFit {
 
   static constexpr int kExtra = 4;  ///< unknowns beside the harmonics: shift and tilt of the axis, two each
 
+  /// A first guess of the axis of symmetry.
+  struct Start {
+    Eigen::Vector3d axis;  ///< towards the stem
+    /// Points whose direction from the center is nearer to the axis than this cosine are left out of the first step.
+    double cosine = 1.0;
+  };
+
   /// @param model of revolution
-  SurfaceFit(const Samples& samples, const Ellipsoid& start, const Eigen::Vector3d& axis, const SurfaceModel& model,
+  SurfaceFit(const Samples& samples, const Ellipsoid& body, const Start& start, const SurfaceModel& model,
              const ClosedSurfaceParameters& parameters)
-      : samples_(samples), parameters_(parameters), center_(start.center), weights_(samples.points.size(), 0.0) {
-    size_ = -std::log(start.A.determinant()) / 3.0;
-    turn_.row(2) = axis.normalized();
-    turn_.row(0) = any_orthogonal<double>(axis.normalized());
+      : samples_(samples), parameters_(parameters), center_(body.center), weights_(samples.points.size(), 0.0) {
+    size_ = -std::log(body.A.determinant()) / 3.0;
+    const Eigen::Vector3d axis = start.axis.normalized();
+    turn_.row(2) = axis;
+    turn_.row(0) = any_orthogonal<double>(axis);
     turn_.row(1) = turn_.row(2).cross(turn_.row(0));
-    std::fill_n(weights_.begin(), samples.own, 1.0);
+    for (std::size_t i = 0; i < samples.own; ++i)
+      weights_[i] = axis.dot((samples.points[i] - center_).normalized()) <= start.cosine ? 1.0 : 0.0;
     constexpr int kDirections = 200;  // to project the ellipsoid onto the harmonics of order 0
     coefficients_ = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(model.basis.size()));
     Eigen::VectorXd values(coefficients_.size());
     for (int i = 0; i < kDirections; ++i) {
       const Eigen::Vector3d u = spiral_direction(i, kDirections);
       model.basis.values(u, values.data());
-      coefficients_ += (log_distance(start, center_, turn_.transpose() * u) - size_) / kDirections * values;
+      coefficients_ += (log_distance(body, center_, turn_.transpose() * u) - size_) / kDirections * values;
     }
     coefficients_.tail(coefficients_.size() - SurfaceModel::kProfile - 1).setZero();
     residuals_.assign(samples.points.size(), 0.0);
@@ -164,14 +173,19 @@ class SurfaceFit {
     return weigh(model, gate, join);
   }
 
-  /// Evidence for `model` from the fruit's points, and its coefficients become those of `from` where it has them.
+  /// Evidence for `model` about the present axis and center.
+  double evidence(const SurfaceModel& model, const std::vector<RadialBin>& bins, double noise) const {
+    return robust_evidence(problem(model, bins, noise, 1.0));
+  }
+
+  /// Evidence for `model`, with the coefficients of `from` where it has them.
   double evidence_for(const SurfaceModel& model, const SurfaceModel& from, const std::vector<RadialBin>& bins,
                       double noise) {
     const Eigen::VectorXd kept = coefficients_;
     coefficients_ = mapped(model, from, kept);
-    const double evidence = robust_evidence(problem(model, bins, noise, 1.0));
+    const double out = evidence(model, bins, noise);
     coefficients_ = kept;
-    return evidence;
+    return out;
   }
 
   /// Go on with another model.
