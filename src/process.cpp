@@ -220,7 +220,9 @@ ScanResult process(Cloud&& cloud, const Parameters& parameters, const CloudOrigi
   result.bodies = found.bodies;
 
   // Locate: centroids, pose frames, fitted bodies.
-  timed(t.locate, [&] { result.fruits = locate(result.cloud, found, result.cluster_origin, fitted, result.labels); });
+  timed(t.locate, [&] {
+    result.fruits = locate(result.cloud, found, result.cluster_origin, fitted, result.labels, seen_through);
+  });
   result.trusses = found_trusses(result.fruits);
   timed(t.locate, [&] {
     if (result.cloud.colors.empty()) result.cloud.colors = fuse::colors_of(result.cloud, origin.detected);

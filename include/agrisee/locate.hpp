@@ -4,6 +4,7 @@
 /// `agrisee::agrisee`.
 #pragma once
 
+#include <agrisee/cloud/seen_through.hpp>
 #include <agrisee/core/cloud.hpp>
 #include <agrisee/geometry/aabb.hpp>
 #include <agrisee/parameters.hpp>
@@ -43,7 +44,8 @@ Ellipsoid ellipsoid_of(const Body& body);
 /// @param cluster_origin the origin of the cluster frame {R} in world (m)
 /// @param parameters of all stages
 /// @param labels receives one label per point: the fruit's id, or 0
+/// @param seen_through evidence of free space, or empty
 std::vector<Fruit> locate(const Cloud& cloud, const Split& split, const Eigen::Vector3d& cluster_origin,
-                          const Parameters& parameters, Labels& labels);
+                          const Parameters& parameters, Labels& labels, const SeenThrough& seen_through = {});
 
 }  // namespace agrisee

@@ -12,11 +12,12 @@
 /// least-squares problem and are applied after each step. Points far from the surface, or with other normals, lose
 /// their weight (Tukey's biweight). Evidence is robust as well: a sepal that lies on a round fruit is no reason to give
 /// up the ellipsoid. Unlabeled points on the surface join the fruit: the neck of a pear is too far from any ellipsoid
-/// to be labeled before.
+/// to be labeled before. Where no point was seen, sight lines can show that the surface lies farther inside.
 ///
 /// Metres, any frame. Cost: 5 to 20 ms; points are thinned, so it hardly grows with them.
 #pragma once
 
+#include <agrisee/cloud/seen_through.hpp>
 #include <agrisee/cloud/surface_fit.hpp>
 #include <agrisee/core/cancellation.hpp>
 #include <agrisee/core/cloud.hpp>
@@ -110,6 +111,57 @@ inline void integrate(const SurfaceModel& model, const SurfaceFit& fit, const Li
   out.axis = turn.row(2);
 }
 
+/// First guesses of a fruit's surface: the ellipsoid with the given axis and with each of its own. The points at the
+/// stem may be those of a calyx that stands out; the second guess leaves them out and is nearly a sphere.
+template <typename S>
+std::vector<SurfaceFit::Start> first_guesses(const PointCloud<S>& cloud, const Indices& own, const Ellipsoid& body,
+                                             const Eigen::Vector3d& axis) {
+  constexpr double kTop = 0.3, kNearlySphere = 0.02;
+  std::vector<SurfaceFit::Start> out{{body, axis}};
+  Indices below;
+  for (const Index i : own) {
+    const Eigen::Vector3d q = cloud.points[static_cast<std::size_t>(i)].template cast<double>() - body.center;
+    if (q.dot(axis) <= kTop * q.norm() * axis.norm()) below.push_back(i);
+  }
+  FitParameters rounder;
+  rounder.shape_prior = kNearlySphere;
+  const auto fit = fit_ellipsoid(cloud, below, body, rounder);
+  out.push_back({fit ? fit->body : body, axis, kTop});
+  const Eigen::Matrix3d axes = semi_axes(body).second;
+  for (int k = 0; k < 3; ++k)
+    if (std::abs(axes.col(k).dot(axis)) < 0.9) out.push_back({body, axes.col(k)});
+  return out;
+}
+
+/// Where the surface lies in space that sight lines passed through, and no point was seen: the distance up to which
+/// they leave room for it.
+/// @return in the axis' frame; their weights are small, since free space is known with an error of some millimetres
+inline std::vector<RadialBin> free_space_limits(const SurfaceFit& fit, const SurfaceModel& model,
+                                                const SeenThrough& seen_through) {
+  constexpr int kDirections = 200;
+  constexpr double kSeen = 0.96;     // cosine of the angle from a bin with points within which the surface was seen
+  constexpr double kProbe = 0.0015;  // m, radius of the ball by which a place is probed
+  constexpr double kFree = 0.1;      // share of the ball's surface: half of it at most faces a view
+  constexpr double kStep = 0.03, kDeepest = 0.5;  // of the surface's distance
+  constexpr double kWeight = 0.1;                 // in points
+  const std::vector<RadialBin> bins = fit.radial_bins(fit.weights());
+  std::vector<RadialBin> out;
+  for (int i = 0; i < kDirections; ++i) {
+    const Eigen::Vector3d u = spiral_direction(i, kDirections);
+    if (std::any_of(bins.begin(), bins.end(),
+                    [&](const RadialBin& b) { return b.weight > 0.5 && b.direction.dot(u) > kSeen; }))
+      continue;
+    const double distance = fit.distance(model, u);
+    const auto is_free = [&](double d) {
+      return seen_through(Ellipsoid(Sphere{fit.center() + d * (fit.turn().transpose() * u), kProbe})) > kFree;
+    };
+    double room = distance;
+    while (room > kDeepest * distance && is_free(room)) room -= kStep * distance;
+    if (room < distance && room > kDeepest * distance) out.push_back({u, std::log(room), kWeight});
+  }
+  return out;
+}
+
 }  // namespace detail
 
 /// Reconstructs the closed surface of a fruit.
@@ -117,19 +169,21 @@ inline void integrate(const SurfaceModel& model, const SurfaceFit& fit, const Li
 /// @param own the fruit's points
 /// @param others points that belong to no fruit; those far away are not used
 /// @param body the fitted ellipsoid
-/// @param axis first guess of the axis of symmetry; the ellipsoid's own axes are tried too
+/// @param axis first guess of the axis of symmetry, towards the stem; the ellipsoid's own axes are tried too
 /// @param parameters see their struct
+/// @param seen_through evidence of free space; empty if nothing is known
 /// @return empty if the points are too few or fit no closed surface
 /// @throws InputError if the cloud has no normals; ParameterError; Cancelled
 template <typename S>
 std::optional<ClosedSurface> closed_surface(const PointCloud<S>& cloud, const Indices& own, const Indices& others,
                                             const Ellipsoid& body, const Eigen::Vector3d& axis,
-                                            const ClosedSurfaceParameters& parameters = {}) {
+                                            const ClosedSurfaceParameters& parameters = {},
+                                            const SeenThrough& seen_through = {}) {
   parameters.check();
   check_input(cloud.normals.size() == cloud.points.size(), "closed_surface: the cloud has no normals");
   constexpr std::size_t kLeast = 30;
   if (own.size() < kLeast) return std::nullopt;
-  const auto [radii, axes] = semi_axes(body);
+  const Eigen::Vector3d radii = semi_axes(body).first;
 
   detail::SurfaceFit::Samples samples;
   Indices near;  // of `others`
@@ -157,18 +211,13 @@ std::optional<ClosedSurface> closed_surface(const PointCloud<S>& cloud, const In
   std::vector<detail::SurfaceModel> models;
   for (const int n : kLobes) models.emplace_back(n, parameters);
 
-  // The points at the stem may be those of a calyx that stands out; one start leaves them out at first, and has to
-  // explain all points clearly better.
-  constexpr double kWithoutStem = 0.3, kClearly = 10.0;  // cosine; nats
-  std::vector<detail::SurfaceFit::Start> starts{{axis}, {axis, kWithoutStem}};
-  for (int k = 0; k < 3; ++k)
-    if (std::abs(axes.col(k).dot(axis)) < 0.9) starts.push_back({axes.col(k)});
+  constexpr double kClearly = 10.0;  // nats by which the guess without the points at the stem has to be better
   std::optional<detail::SurfaceFit> best;
   std::size_t best_model = 0;
   double best_evidence = 0.0;
-  for (const detail::SurfaceFit::Start& start : starts) {
+  for (const detail::SurfaceFit::Start& start : detail::first_guesses(cloud, own, body, axis)) {
     throw_if_cancelled();
-    detail::SurfaceFit fit(samples, body, start, models[0], parameters);
+    detail::SurfaceFit fit(samples, start, models[0], parameters);
     bool good = true;
     for (int k = 0; k < kSteps && good; ++k) good = fit.step(models[0], kGates[static_cast<std::size_t>(k)], k >= 2);
     if (!good) continue;
@@ -190,7 +239,7 @@ std::optional<ClosedSurface> closed_surface(const PointCloud<S>& cloud, const In
     if (!good) continue;
     const double evidence =
         fit.evidence(models[model], fit.radial_bins(fit.plain_weights(kFar)), detail::kEvidenceNoise);
-    if (best && !(evidence > best_evidence + (start.cosine < 1.0 ? kClearly : 0.0))) continue;
+    if (best && !(evidence > best_evidence + (start.top < 1.0 ? kClearly : 0.0))) continue;
     best.emplace(fit);
     best_model = model;
     best_evidence = evidence;
@@ -199,10 +248,17 @@ std::optional<ClosedSurface> closed_surface(const PointCloud<S>& cloud, const In
   if (!best) return std::nullopt;
   const detail::SurfaceModel& model = models[best_model];
 
+  constexpr int kLimited = 3;  // steps with the limits by free space
+  for (int k = 0; seen_through && k < kLimited; ++k) {
+    best->set_limits(detail::free_space_limits(*best, model, seen_through));
+    if (!best->step(model, kGates.back(), true)) return std::nullopt;
+  }
+
   ClosedSurface out;
   out.lobes = kLobes[best_model];
-  const std::vector<detail::RadialBin> bins = best->radial_bins(best->weights());
+  std::vector<detail::RadialBin> bins = best->radial_bins(best->weights());
   if (bins.size() < 12) return std::nullopt;
+  bins.insert(bins.end(), best->limits().begin(), best->limits().end());
   detail::integrate(model, *best, detail::linear_posterior(best->problem(model, bins, best->noise(), 1.0)),
                     parameters.error_scale, out);
   const double ratio = out.volume / (4.0 / 3.0 * kPi * radii.prod());

@@ -123,31 +123,31 @@ class SurfaceFit {
 
   static constexpr int kExtra = 4;  ///< unknowns beside the harmonics: shift and tilt of the axis, two each
 
-  /// A first guess of the axis of symmetry.
+  /// A first guess.
   struct Start {
-    Eigen::Vector3d axis;  ///< towards the stem
-    /// Points whose direction from the center is nearer to the axis than this cosine are left out of the first step.
-    double cosine = 1.0;
+    Ellipsoid body;
+    Eigen::Vector3d axis;  ///< of symmetry, towards the stem
+    double top = 1.0;      ///< points in directions nearer to the axis than this cosine are left out of the first step
   };
 
   /// @param model of revolution
-  SurfaceFit(const Samples& samples, const Ellipsoid& body, const Start& start, const SurfaceModel& model,
+  SurfaceFit(const Samples& samples, const Start& start, const SurfaceModel& model,
              const ClosedSurfaceParameters& parameters)
-      : samples_(samples), parameters_(parameters), center_(body.center), weights_(samples.points.size(), 0.0) {
-    size_ = -std::log(body.A.determinant()) / 3.0;
+      : samples_(samples), parameters_(parameters), center_(start.body.center), weights_(samples.points.size(), 0.0) {
+    size_ = -std::log(start.body.A.determinant()) / 3.0;
     const Eigen::Vector3d axis = start.axis.normalized();
     turn_.row(2) = axis;
     turn_.row(0) = any_orthogonal<double>(axis);
     turn_.row(1) = turn_.row(2).cross(turn_.row(0));
     for (std::size_t i = 0; i < samples.own; ++i)
-      weights_[i] = axis.dot((samples.points[i] - center_).normalized()) <= start.cosine ? 1.0 : 0.0;
+      weights_[i] = axis.dot((samples.points[i] - center_).normalized()) <= start.top ? 1.0 : 0.0;
     constexpr int kDirections = 200;  // to project the ellipsoid onto the harmonics of order 0
     coefficients_ = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(model.basis.size()));
     Eigen::VectorXd values(coefficients_.size());
     for (int i = 0; i < kDirections; ++i) {
       const Eigen::Vector3d u = spiral_direction(i, kDirections);
       model.basis.values(u, values.data());
-      coefficients_ += (log_distance(body, center_, turn_.transpose() * u) - size_) / kDirections * values;
+      coefficients_ += (log_distance(start.body, center_, turn_.transpose() * u) - size_) / kDirections * values;
     }
     coefficients_.tail(coefficients_.size() - SurfaceModel::kProfile - 1).setZero();
     residuals_.assign(samples.points.size(), 0.0);
@@ -156,8 +156,9 @@ class SurfaceFit {
   /// Steps with `model`; see the constants of closed_surface.
   /// @return false if the surface degenerates
   bool step(const SurfaceModel& model, double gate, bool join) {
-    const std::vector<RadialBin> bins = radial_bins(weights_);
+    std::vector<RadialBin> bins = radial_bins(weights_);
     if (bins.size() < 12) return false;
+    bins.insert(bins.end(), limits_.begin(), limits_.end());
     const LinearPosterior posterior = linear_posterior(problem(model, bins, noise_, 1.0));
     if (!posterior.mean.allFinite()) return false;
     const Eigen::Vector4d extra = posterior.mean.tail<kExtra>();
@@ -193,6 +194,9 @@ class SurfaceFit {
     coefficients_ = mapped(model, from, coefficients_);
     noise_ = 0.01;
   }
+
+  /// Distances that count in the next steps beside those of the points, in the axis' frame.
+  void set_limits(std::vector<RadialBin> limits) { limits_ = std::move(limits); }
 
   /// Points closer to the surface than `far` (relative) count fully, others not; only the fruit's.
   std::vector<double> plain_weights(double far) const {
@@ -231,6 +235,13 @@ class SurfaceFit {
       out.push_back(bin);
     }
     return out;
+  }
+
+  /// Distance (m) of the surface from the center in a direction of the axis' frame (unit).
+  double distance(const SurfaceModel& model, const Eigen::Vector3d& u) const {
+    Eigen::VectorXd values(coefficients_.size());
+    model.basis.values(u, values.data());
+    return std::exp(size_ + values.dot(coefficients_));
   }
 
   /// Values of the harmonics, and of the shift and tilt, in a direction of the axis' frame.
@@ -279,6 +290,7 @@ class SurfaceFit {
   double size() const { return size_; }
   double noise() const { return noise_; }
   const std::vector<double>& weights() const { return weights_; }
+  const std::vector<RadialBin>& limits() const { return limits_; }
   const std::vector<double>& residuals() const { return residuals_; }
 
  private:
@@ -340,6 +352,7 @@ class SurfaceFit {
   double noise_ = 0.02;  ///< standard deviation of a point, relative
   Eigen::VectorXd coefficients_;
   std::vector<double> weights_, residuals_;
+  std::vector<RadialBin> limits_;
 };
 
 }  // namespace detail
