@@ -88,14 +88,14 @@ Indices range(std::size_t from, std::size_t to) {
 }
 
 /// The surface through all points of a cloud; the first guess of the axis is 20 degrees off.
-std::optional<ClosedSurface> close(const Cloud& cloud) {
+std::optional<ClosedSurface> close(const Cloud& cloud, const SeenThrough& seen_through = {}) {
   const auto sphere = sphere_from_normals(cloud, range(0, cloud.size()));
   REQUIRE(sphere);
   const auto fit = fit_ellipsoid(cloud, range(0, cloud.size()), Ellipsoid(*sphere));
   REQUIRE(fit);
   const Eigen::Vector3d guess =
       world_T_body().linear() * Eigen::AngleAxisd(deg(20), Eigen::Vector3d::UnitX()) * Eigen::Vector3d::UnitZ();
-  return closed_surface(cloud, range(0, cloud.size()), {}, fit->body, guess);
+  return closed_surface(cloud, range(0, cloud.size()), {}, fit->body, guess, {}, seen_through);
 }
 
 }  // namespace
@@ -135,6 +135,49 @@ TEST_CASE("the ellipsoid stays where it explains the points") {
       CHECK((surface->center - world_T_body() * center).norm() < 0.0006);
       CHECK(surface->volume == Approx(volume).epsilon(0.03));
     }
+  }
+}
+
+TEST_CASE("a calyx that stands out of the top is not taken for the fruit's own top") {
+  const auto [volume, center] = truth(pepper);
+  Cloud cloud = seen(pepper, 0.4);
+  const Pose pose = world_T_body();
+  for (std::size_t i = 0; i < cloud.size(); ++i) {  // the cap rises from its rim to a stalk of 24 mm
+    const Eigen::Vector3d q = pose.inverse() * cloud.points[i].cast<double>(), d = q.normalized();
+    const double rim = std::cos(deg(40)), rise = (d.z() - rim) / (1.0 - rim);
+    if (rise <= 0.0 || i % 3 == 0) continue;  // skin shows between the sepals
+    cloud.points[i] = (pose * (q + (0.004 + 0.02 * rise * rise) * d)).cast<float>();
+  }
+  const auto surface = close(cloud);
+  REQUIRE(surface);
+  CHECK((surface->center - pose * center).norm() < 0.001);
+  CHECK(surface->volume == Approx(volume).epsilon(0.05));
+}
+
+TEST_CASE("sight lines bound the side that was not seen") {
+  struct Case {
+    Radius radius;
+    double beyond, top;  // cosine of the angle from the axis above which nothing was seen
+  };
+  const Pose pose = world_T_body();
+  for (const Case& c : {Case{tomato, 0.4, 0.0}, Case{strawberry, 1.0, 0.5}}) {
+    const auto [volume, center] = truth(c.radius);
+    Cloud cloud = seen(c.radius, c.beyond);
+    Indices below;
+    for (std::size_t i = 0; i < cloud.size(); ++i)
+      if ((pose.inverse() * cloud.points[i].cast<double>()).normalized().z() < c.top)
+        below.push_back(static_cast<Index>(i));
+    cloud = select(cloud, below);
+    const auto unbounded = close(cloud), bounded = close(cloud, [&](const Ellipsoid&probe) {
+                                           const Eigen::Vector3d q = pose.inverse() * probe.center;
+                                           return q.norm() > c.radius(q.normalized()) + 0.002 ? 0.5 : 0.0;
+                                         });
+    REQUIRE(unbounded);
+    REQUIRE(bounded);
+    CHECK(unbounded->volume > 1.1 * volume);
+    CHECK(bounded->volume == Approx(volume).epsilon(0.07));
+    CHECK((bounded->center - pose * center).norm() < 0.5 * (unbounded->center - pose * center).norm());
+    CHECK(bounded->center_covariance.trace() < unbounded->center_covariance.trace());
   }
 }
 
