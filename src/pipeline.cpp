@@ -156,6 +156,7 @@ ScanResult Pipeline::result() const {
   CloudOrigin origin;
   for (const View& v : views_) origin.sensors.push_back(v.world_T_optical.translation());
   origin.cluster_origin = cluster_origin(workcell_.scan_volume, workcell_.world_T_base.translation());
+  origin.volume = workcell_.scan_volume;
   origin.detected = detected_views();
   SeenThrough seen_through;
   if (!map_->images().empty())

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <agrisee/cloud/convexity.hpp>
+#include <agrisee/cloud/cut_bodies.hpp>
 #include <agrisee/cloud/hidden_points.hpp>
+#include <agrisee/cloud/labels.hpp>
 #include <agrisee/cloud/sight_lines.hpp>
 #include <agrisee/cloud/sor.hpp>
 #include <agrisee/cloud/spacing.hpp>
@@ -130,6 +132,18 @@ void check_side(const Cloud& cloud, const Parameters& parameters, const CloudOri
           *convex >= kLeast, origin, warnings);
 }
 
+/// Take the points from bodies that go on beyond the volume; those that a mask shows stay.
+void forget_cut_bodies(const Cloud& cloud, const Aabb& volume, Split& split) {
+  std::vector<Indices> members = indices_by_label(split.labels);
+  members.resize(split.found.size());
+  for (std::size_t b = 0; b < members.size(); ++b) {
+    if (split.found[b].by_mask || !goes_on_beyond(cloud, members[b], split.found[b].fit.body, volume)) continue;
+    for (const Index i : members[b]) split.labels[static_cast<std::size_t>(i)] = 0;
+    --split.bodies.taken;
+    ++split.bodies.too_flat;
+  }
+}
+
 /// Without the points of surfaces that are seen at a larger angle of incidence than `max_incidence` (rad), or from
 /// behind: most of them are flying pixels, which trail from the rim of a fruit along the sight lines and would lengthen
 /// it. Only for one viewpoint; where views are merged, the point kept of a place may be the one seen at a slant.
@@ -206,7 +220,7 @@ ScanResult process(Cloud&& cloud, const Parameters& parameters, const CloudOrigi
   constexpr double kAlike = 5.0;  // errors of neighbors are alike, so a body that they carry is off by more than one's
   bodies.fit.sensor_noise = std::max(bodies.fit.sensor_noise, kAlike * noise.points);
   bodies.normal_noise = std::max(bodies.normal_noise, 1.2 * noise.normals);
-  const Split found = timed(t.segment, [&] {
+  Split found = timed(t.segment, [&] {
     std::vector<fuse::DetectedView> views = origin.detected;
     if (parameters.color_prior.enabled)
       for (fuse::DetectedView& v : views)
@@ -217,6 +231,7 @@ ScanResult process(Cloud&& cloud, const Parameters& parameters, const CloudOrigi
                  seen_through ? seen_through : free_space_of(result.cloud, parameters, origin, noise.points), threads,
                  masks, seen_through ? SeenOn() : seen_on_of(result.raw, parameters, origin, noise.points));
   });
+  if (origin.volume) timed(t.segment, [&] { forget_cut_bodies(result.cloud, *origin.volume, found); });
   result.bodies = found.bodies;
 
   // Locate: centroids, pose frames, fitted bodies.

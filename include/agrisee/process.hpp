@@ -8,6 +8,7 @@
 
 #include <agrisee/cloud/seen_through.hpp>
 #include <agrisee/fuse/masks.hpp>
+#include <agrisee/geometry/aabb.hpp>
 #include <agrisee/parameters.hpp>
 #include <agrisee/result.hpp>
 
@@ -29,6 +30,8 @@ struct CloudOrigin {
   fuse::MaskOrder mask_order = fuse::MaskOrder::masks_first;  ///< points_first if several views show each fruit
   /// Origin of the cluster frame {R} in world (m); empty: that of the box around the cloud, seen from the origin.
   std::optional<Eigen::Vector3d> cluster_origin;
+  /// The box that the cloud was cut to (m); what goes on beyond it is no fruit (cloud/cut_bodies.hpp). Empty: unknown.
+  std::optional<Aabb> volume;
 };
 
 /// Check that a cloud can have been seen from its origin. `process` calls it.
