@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The models of real cameras against what was measured on real frames: an L515 before a wall, a D405 above a desk, an
-// Azure Kinect in an orchard, and a leaf. docs/sensors.md has the same figures. All hold within 20 %.
+// Azure Kinect in an orchard, and a leaf. All hold within 20 %.
 #include <agrisee/study/depth_noise.hpp>
 
 #include <array>

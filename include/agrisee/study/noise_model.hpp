@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// @file
-/// The noise models of the simulated depth cameras, and their figures. docs/sensors.md compares these with real
-/// cameras. Ranges are in metres along the ray, angles in radians.
+/// The noise models of the simulated depth cameras, and their figures, compared with those of real cameras by
+/// tests/study/sensor_figures_test.cpp. Ranges are in metres along the ray, angles in radians.
 #pragma once
 
 #include <agrisee/core/error.hpp>
