@@ -95,7 +95,7 @@ def sites(line):
     elif match := STATEMENT.match(code):
         space, statement = match.groups()
         if not statement.startswith(("return", "break", "continue")):
-            yield ("removed: " + statement, lambda n: f"{space}if (!mutant({n})) {statement}")
+            yield ("removed: " + statement, lambda n: f"{space}{{ if (!mutant({n})) {statement} }}")  # braces: an else may follow
     if match := CONDITION.match(code):
         head, condition, tail = match.groups()
         if "; " not in condition and " = " not in condition:

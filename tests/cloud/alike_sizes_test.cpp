@@ -102,6 +102,26 @@ TEST_CASE("the other fruit tell the size of one, whatever a few say") {
   CHECK_FALSE(size_prior(three, three.front().body));  // two others
 }
 
+TEST_CASE("fruit are fitted with the size of the others, however little their sizes count, unless not at all") {
+  Cloud cloud;
+  std::vector<BodyCandidate> candidates;
+  for (int i = 0; i < 5; ++i) {
+    const Sphere apple{{0.12 * i, 0.5, 0.0}, 0.036};
+    add_front(cloud, apple.center, apple.radius, 0.2);
+    candidates.push_back({Ellipsoid(apple), "test"});
+  }
+  for (const double alike : {0.0, 0.0005, 1.0}) {
+    BodyParameters parameters;
+    parameters.alike = alike;
+    const auto found = find_bodies(cloud, candidates, parameters);
+    REQUIRE(found.size() == 5);
+    for (const FoundBody& f : found) {
+      CHECK(f.fit.size_prior.has_value() == (alike > 0.0));
+      if (alike > 0.0) CHECK(f.fit.size_prior->radius == Approx(0.036).epsilon(0.01));
+    }
+  }
+}
+
 TEST_CASE("a size that is known decides where points leave it open, and only there") {
   const Sphere truth{{0.0, 0.5, 0.0}, 0.036};
   const auto radius = [&](double least, const std::optional<SizePrior>& prior) {

@@ -144,6 +144,14 @@ TEST_CASE("the split does not depend on threads, with bodies or without") {
     CHECK(one.labels == three.labels);
     CHECK(one.regions == three.regions);
     CHECK(one.clusters_found == three.clusters_found);
+    if (!bodies) {  // the regions come first, then the clusters
+      std::vector<std::string> by(static_cast<std::size_t>(one.regions_found), "region_growing");
+      by.resize(by.size() + static_cast<std::size_t>(one.clusters_found), "dbscan");
+      REQUIRE(one.regions_found > 0);
+      REQUIRE(one.clusters_found > 0);
+      REQUIRE(one.found.size() == by.size());
+      for (std::size_t b = 0; b < by.size(); ++b) CHECK(one.found[b].found_by == by[b]);
+    }
     REQUIRE(one.found.size() == three.found.size());
     for (std::size_t b = 0; b < one.found.size(); ++b) {
       CHECK(one.found[b].found_by == three.found[b].found_by);

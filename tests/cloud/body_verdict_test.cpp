@@ -57,6 +57,12 @@ TEST_CASE("a verdict measures what it says, on half a sphere") {
   CHECK(v.inside == 0.0);
 }
 
+TEST_CASE("the normals of few points on a ball do not spread") {
+  const Verdict v = verdict_of(cap(deg(20)));
+  CHECK(v.support < 100);
+  CHECK(v.normal_spread < 1e-3);
+}
+
 TEST_CASE("normals that differ, and points nearby that do not fit, are counted") {
   Cloud cloud = cap(kPi / 2, 0.2);
   CHECK(verdict_of(cloud).normal_spread == Approx(std::sin(std::atan(0.2 * std::sqrt(2.0)))).margin(0.05));

@@ -216,6 +216,27 @@ TEST_CASE("evidence: values far off cost little, and others what they cost witho
   CHECK(detail::linear_posterior(model).evidence < clean - 200.0);
 }
 
+TEST_CASE("evidence for an ellipsoid: another size costs little, an uneven surface much") {
+  const ClosedSurfaceParameters parameters;
+  const detail::SurfaceModel model(0, parameters);
+  const Ellipsoid body(Sphere{{0.1, 0.5, 0.2}, 0.03});
+  const auto evidence = [&](auto&& radius) {  // of a body r(direction), m
+    constexpr int kPoints = 2000;
+    detail::SurfaceFit::Samples samples;
+    for (int i = 0; i < kPoints; ++i) {
+      const Eigen::Vector3d d = detail::spiral_direction(i, kPoints);
+      samples.points.push_back(body.center + radius(d) * d);
+      samples.normals.push_back(d);
+    }
+    samples.own = kPoints;
+    const detail::SurfaceFit fit(samples, body, Eigen::Vector3d::UnitZ(), model, parameters);
+    return detail::ellipsoid_evidence(body, fit, fit.radial_bins(fit.weights()), 0.01, parameters.uneven);
+  };
+  const double even = evidence([](const Eigen::Vector3d&) { return 0.03; });
+  CHECK(even - evidence([](const Eigen::Vector3d&) { return 0.03 * 1.01; }) < 2.0);
+  CHECK(even - evidence([](const Eigen::Vector3d& d) { return 0.03 * (1.0 + 0.03 * d.x() * d.y()); }) > 10.0);
+}
+
 TEST_CASE("a closed surface: the covariance of positions inside is that of the body") {
   const auto surface = close(seen(egg, 2.0, 0.0));
   REQUIRE(surface);

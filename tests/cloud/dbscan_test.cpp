@@ -115,5 +115,8 @@ TEST_CASE("DBSCAN of next to nothing, and bad parameters") {
   CHECK(cases::rejects("eps", [&] { dbscan(P{}, {0.0, 60}); }));
   CHECK(cases::rejects("eps", [&] { dbscan(P{}, {-1.0, 60}); }));
   CHECK(cases::rejects("min_points", [&] { dbscan(P{}, {0.007, 0}); }));
+  const Grid<float> search(P{}, 1.0f);
+  CHECK(cases::rejects("eps", [&] { dbscan(P{}, {0.0, 60}, search); }));
+  CHECK(cases::rejects("min_points", [&] { dbscan(P{}, {0.007, 0}, search); }));
   CHECK_THROWS_AS(dbscan(P{}, {}, Grid<float>(P(2, {0, 0, 0}), 1.0f)), InputError);
 }

@@ -225,6 +225,28 @@ TEST_CASE("ICP drops what it cannot believe") {
   CHECK(none.iterations == 0);
 }
 
+TEST_CASE("ICP finds more matches at the end than at the start") {
+  const auto target = truss<double>(2000, 1, 6, 0.0);
+  IcpParameters parameters;
+  parameters.max_distance = 0.0008;
+  const IcpResult result = align(moved(about_middle({0, 0, 0}, {0, 0.012, 0}), target), target, parameters);
+  CHECK(result.accepted);
+  CHECK(result.matches_before < 1800);
+  CHECK(result.matches == 2000);
+}
+
+TEST_CASE("ICP needs as many matches as it is told, no more") {
+  const auto target = truss<double>(2000, 1, 6, 0.0);
+  const auto source = moved(about_middle({0, -0.0005, 0}, {0, 0, 0}), target);
+  IcpParameters parameters;
+  parameters.min_matches = 2000;  // all
+  const IcpResult all = align(source, target, parameters);
+  CHECK(all.matches == 2000);
+  CHECK(all.accepted);
+  parameters.min_matches = 2001;
+  CHECK_FALSE(align(source, target, parameters).accepted);
+}
+
 TEST_CASE("errors that neighbors share move no pose that was right") {
   // A view whose depths are off by half a millimetre here and there, and a target without errors.
   const auto target = truss<double>(8000, 1, 6, 0.0);
@@ -290,6 +312,8 @@ TEST_CASE("ICP of next to nothing, degenerate clouds and bad input") {
     IcpParameters p;
     change(p);
     CHECK(cases::rejects(name, [&] { align(target, target, p); }));
+    const Grid<float> search(target, 0.01f);
+    CHECK(cases::rejects(name, [&] { register_cloud(target, target.normals, target, target.normals, p, search); }));
   };
   refuses([](auto& p) { p.max_distance = 0; }, "max_distance");
   refuses([](auto& p) { p.max_normal_angle = -1; }, "max_normal_angle");

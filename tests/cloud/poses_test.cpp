@@ -19,6 +19,15 @@ TEST_CASE("centroid and deviation by hand") {
   CHECK(centroid(cloud, {}).mean.norm() == 0.0);
 }
 
+TEST_CASE("the highest point is the first of equally high ones") {
+  Cloud cloud;
+  CHECK(highest_point(cloud) == -1);
+  cloud.points = {{0, 0, 3}, {1, 0, 1}, {2, 0, 3}};
+  CHECK(highest_point(cloud) == 0);
+  cloud.points[0].x() = std::nanf("");
+  CHECK(highest_point(cloud) == 2);
+}
+
 TEST_CASE("the paper's pose frame looks at the highest point of the cloud") {
   Cloud cloud;
   test::add_sphere(cloud, {{0, 0, 0}, 0.03}, 0.004, test::everywhere);

@@ -42,6 +42,18 @@ TEST_CASE("the class of ripeness follows from the share of ripe surface") {
   }
 }
 
+TEST_CASE("a point counts as ripe by the probability that its hue is below the ripe one") {
+  const std::vector<Rgb> colors(100, kRed);
+  const double hue = hue_of(to_lab(kRed));
+  for (const double above : {-2.0, -1.0, 0.0, 1.0, 2.0}) {  // standard deviations of a hue, which are 8 degrees
+    RipenessParameters parameters;
+    parameters.ripe_hue = hue + above * deg(8);
+    const auto r = ripeness_of(colors, 1.0, parameters);
+    REQUIRE(r);
+    CHECK(r->ripe_share == Approx(0.5 * std::erfc(-above / std::sqrt(2.0))));
+  }
+}
+
 TEST_CASE("highlights and shade do not change the ripeness") {
   std::vector<Rgb> colors(100, kRed);
   std::fill_n(colors.begin(), 12, kWhite);

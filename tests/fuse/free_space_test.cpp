@@ -255,4 +255,6 @@ TEST_CASE("a share of returns needs fifty points") {
   Returned sum{10, 40};
   sum += {50, 0};
   CHECK(sum.share() == 0.6);
+  sum += {0, 20};
+  CHECK(sum.share() == 0.5);
 }

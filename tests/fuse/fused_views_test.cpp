@@ -95,6 +95,18 @@ TEST_CASE("a correction that is not accepted leaves the view where it is") {
   CHECK(seen.surface.points == sensor::reconstruct_surface(frame_at(1), reported, kVolume, fine().surface).points);
 }
 
+TEST_CASE("the two sides of something thin are not laid upon one another") {
+  // Two huge balls, whose faces towards the cameras are 3 mm apart.
+  const Sphere far{{0.0, 2.55, 0.2}, 2.0}, near{{0.0, -1.447, 0.2}, 2.0};
+  const Pose front = look_along({0.0, 0.25, 0.2}, {0, 1, 0}), back = look_along({0.0, 0.85, 0.2}, {0, -1, 0});
+  FusedViews map({{-0.06, 0.2, 0.14}, {0.06, 0.9, 0.26}}, fine(), 1);
+  map.take(map.look(frame_from(front, {far}), front), front);
+  const Observation seen = map.look(frame_from(back, {near}), back);
+  CHECK(seen.consistent);
+  CHECK(seen.surface.points.size() > 1000);
+  CHECK(same(seen.surface.world_T_optical, back));
+}
+
 TEST_CASE("views of up to 2500 points are registered by all of their points") {
   const std::vector<Sphere> few{{{-0.03, 0.53, 0.2}, 0.022}, {{0.045, 0.54, 0.21}, 0.022}};
   FusionParameters parameters = fine();

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <agrisee/fuse/masks.hpp>
 #include <agrisee/fuse/paint.hpp>
-#include <agrisee/fuse/silhouette.hpp>
+
+#include <tuple>
 
 #include "catch.hpp"
 
@@ -52,6 +53,17 @@ BodyParameters apples() {
 
 const Ball kLeft{{-0.1, 0.02, 1.0}, 0.035}, kRight{{0.12, -0.03, 1.1}, 0.045};
 
+/// A view of a ball that returns nothing where sight lines pass its center at less than a share of its radius.
+sensor::DepthFrame rim_of(const Ball& ball, double share) {
+  sensor::DepthFrame f = *view_of({ball}).frame;
+  for (int v = 0; v < 300; ++v)
+    for (int u = 0; u < 400; ++u) {
+      const Eigen::Vector3d d = f.intrinsics.ray(u, v).normalized();
+      if (ball.center.cross(d).norm() < share * ball.radius) f.depth[f.intrinsics.index(u, v)] = 0.0f;
+    }
+  return f;
+}
+
 }  // namespace
 
 TEST_CASE("masks propose the bodies under them") {
@@ -100,6 +112,25 @@ TEST_CASE("a box stands for a mask") {
   CHECK_THROWS_WITH(fuse::mask_evidence({{frame, Pose::Identity()}}, apples()), Catch::Contains("listed twice"));
 }
 
+TEST_CASE("a box adds its ellipse where a detection has no mask") {
+  sensor::DepthFrame frame;
+  frame.intrinsics = {7, 3, 1.0, 1.0, 0.0, 0.0};
+  frame.depth.assign(21, 1.0f);
+  frame.instances.assign(21, 0);
+  frame.instances[1] = 5;  // a mask, so its box does not count
+  for (const auto& [instance, score, u] : {std::tuple(5, 1.0, 0.0), std::tuple(6, 0.5, 2.0), std::tuple(7, 0.9, 4.0)}) {
+    sensor::Detection d;
+    d.instance = instance;
+    d.score = score;
+    d.box = sensor::PixelBox{u, 0.0, 3.0, 3.0};
+    frame.detections.push_back(d);
+  }
+  // So small an ellipse has all pixels of its box; where two overlap the larger score wins.
+  CHECK(fuse::instances_of(frame) == std::vector<std::uint16_t>{0, 5, 6, 6, 7, 7, 7,  //
+                                                                0, 0, 6, 6, 7, 7, 7,  //
+                                                                0, 0, 6, 6, 7, 7, 7});
+}
+
 TEST_CASE("masks of several views propose one body together") {
   Pose aside = Pose::Identity();
   aside.translation() = Eigen::Vector3d(0.15, 0.0, 0.1);
@@ -109,6 +140,50 @@ TEST_CASE("masks of several views propose one body together") {
   CHECK((evidence.bodies[0].fit.body.center - kLeft.center).norm() < 0.002);
   const auto alone = fuse::mask_evidence({views[0]}, apples());
   CHECK(evidence.bodies[0].fit.center_covariance.trace() < alone.bodies[0].fit.center_covariance.trace());
+}
+
+TEST_CASE("without depths under a mask its score is all there is") {
+  const auto evidence = fuse::mask_evidence({{rim_of(kLeft, 0.95), Pose::Identity()}}, apples());
+  REQUIRE(evidence.bodies.size() == 1);
+  CHECK(evidence.bodies[0].log_odds == Approx(0.5 * std::log(0.95 / 0.05) - 8.0));
+}
+
+TEST_CASE("the depths under all masks of a body count alike, pixels without depth half") {
+  Pose aside = Pose::Identity();
+  aside.translation() = Eigen::Vector3d(0.15, 0.0, 0.1);
+  sensor::DepthFrame half = *view_of({kLeft}, aside).frame;
+  for (int v = 0; v < 300; ++v)
+    for (int u = v % 2; u < 400; u += 2) half.depth[half.intrinsics.index(u, v)] = 0.0f;
+  const auto evidence = fuse::mask_evidence({view_of({kLeft}), {half, aside}}, apples());
+  REQUIRE(evidence.bodies.size() == 1);
+  const double scores = 2.0 * 0.5 * std::log(0.95 / 0.05) / std::sqrt(2.0), agreement = 0.5 * (1.0 + 0.5 / 0.75);
+  CHECK(evidence.bodies[0].log_odds == Approx(scores + 12.7 * agreement + 1.75 - 8.0).margin(0.3));
+}
+
+TEST_CASE("a mask proposes a body from twelve depths on") {
+  const auto proposed = [](int depths) {
+    sensor::DepthFrame frame = *view_of({kLeft}).frame;
+    const sensor::DepthFrame inner = rim_of(kLeft, 0.3);
+    for (std::size_t i = 0; i < frame.depth.size(); ++i)
+      if (frame.instances[i] && (inner.depth[i] > 0.0f || --depths < 0)) frame.depth[i] = 0.0f;
+    return fuse::mask_evidence({{frame, Pose::Identity()}}, apples()).bodies.size();
+  };
+  CHECK(proposed(11) == 0);
+  CHECK(proposed(12) == 1);
+}
+
+TEST_CASE("a mask with the outline of two bodies that touch proposes both") {
+  const Ball left{{-0.035, 0.01, 1.0}, 0.035}, right{{0.022, 0.01, 0.987}, 0.022};  // their fronts are equally far
+  sensor::DepthFrame frame = *view_of({left, right}).frame;
+  for (std::uint16_t& i : frame.instances) i = i ? 1 : 0;
+  const auto evidence = fuse::mask_evidence({{frame, Pose::Identity()}}, apples());
+  REQUIRE(evidence.bodies.size() == 2);
+  const std::size_t first = evidence.bodies[0].fit.body.center.x() < 0.0 ? 0 : 1;
+  const Ellipsoid &a = evidence.bodies[first].fit.body, &b = evidence.bodies[1 - first].fit.body;
+  CHECK((a.center - left.center).norm() < 0.003);
+  CHECK((b.center - right.center).norm() < 0.003);
+  CHECK(a.mean_radius() == Approx(left.radius).margin(0.001));
+  CHECK(b.mean_radius() == Approx(right.radius).margin(0.001));
 }
 
 TEST_CASE("with points first, masks that a body explains propose nothing") {
@@ -125,6 +200,29 @@ TEST_CASE("with points first, masks that a body explains propose nothing") {
     CHECK((rest[0].fit.body.center - kRight.center).norm() < 0.003);
     CHECK(evidence.log_odds(rest[0].fit.body) > 0.0);
   }
+}
+
+TEST_CASE("a tail of a mask is no second body") {
+  sensor::DepthFrame frame = *view_of({kLeft}).frame;
+  for (int v = 158; v <= 164; ++v)  // from its center at (139.5, 161.5) to as far outside as it is wide
+    for (int u = 139; u < 185; ++u) frame.instances[frame.intrinsics.index(u, v)] = 1;
+  const auto evidence = fuse::mask_evidence({{frame, Pose::Identity()}}, apples());
+  REQUIRE(evidence.bodies.size() == 1);
+  CHECK((evidence.bodies[0].fit.body.center - kLeft.center).norm() < 0.003);
+  CHECK(evidence.bodies[0].fit.body.mean_radius() == Approx(kLeft.radius).margin(0.001));
+}
+
+TEST_CASE("a stalk of a mask makes no large body that one sees through") {
+  const Ball near{{-0.08, 0.0, 0.5}, 0.0375};  // 45 pixels
+  sensor::DepthFrame frame = *view_of({near}).frame;
+  for (int v = 148; v <= 150; ++v)
+    for (int u = 103; u < 270; ++u) frame.instances[frame.intrinsics.index(u, v)] = 1;
+  BodyParameters large = apples();
+  large.radius_max = 0.1;
+  const auto evidence = fuse::mask_evidence({{frame, Pose::Identity()}}, large);
+  REQUIRE(evidence.bodies.size() == 1);
+  CHECK((evidence.bodies[0].fit.body.center - near.center).norm() < 0.003);
+  CHECK(evidence.bodies[0].fit.body.mean_radius() == Approx(near.radius).margin(0.001));
 }
 
 TEST_CASE("depths overrule a mask on a wall") {
@@ -162,39 +260,6 @@ TEST_CASE("views that no detector looked at say nothing") {
   const auto evidence = fuse::mask_evidence({{frame, Pose::Identity()}}, apples());
   CHECK(evidence.bodies.empty());
   CHECK_FALSE(evidence.log_odds);
-}
-
-TEST_CASE("an ellipsoid is fitted to its outline") {
-  Ellipsoid body;
-  body.center = {0.1, -0.05, 0.9};
-  body.A = Eigen::Vector3d(1 / 0.040, 1 / 0.032, 1 / 0.036).asDiagonal();
-  fuse::Silhouette outline;
-  outline.angle_error = 2e-3;
-  for (int i = 0; i < 90; ++i) {  // rays that graze it: bisect between the center and far outside
-    const double turn = kTwoPi * i / 90;
-    const Eigen::Vector3d aside(std::cos(turn), std::sin(turn), 0.0);
-    double in = 0.0, out = 0.1;
-    for (int step = 0; step < 50; ++step) {
-      const double middle = 0.5 * (in + out);
-      const Eigen::Vector3d d = (body.center + middle * aside).normalized();
-      const Eigen::Vector3d a = body.A * d, c = body.A * body.center;
-      const double nearest = (c - a * (a.dot(c) / a.squaredNorm())).norm();
-      (nearest < 1.0 ? in : out) = middle;
-    }
-    outline.rays.push_back((body.center + in * aside).normalized());
-    outline.weights.push_back(1.0);
-  }
-  outline.front.push_back(body.surface(-body.center.normalized()));
-  const auto fit = fuse::fit_silhouettes({outline}, Ellipsoid(Sphere{body.center * 1.003, 0.036}), std::nullopt, 0.3);
-  REQUIRE(fit);
-  CHECK((fit->body.center - body.center).norm() < 0.002);
-  const Eigen::Vector3d axes = semi_axes(fit->body).first;
-  CHECK(axes[0] == Approx(0.040).margin(0.001));
-  CHECK(axes[2] == Approx(0.032).margin(0.001));
-  const auto drawn =
-      fuse::fit_silhouettes({outline}, Ellipsoid(Sphere{body.center, 0.036}), fuse::ExpectedRadius{0.04, 1e-4}, 0.3);
-  REQUIRE(drawn);
-  CHECK(drawn->body.mean_radius() > fit->body.mean_radius() + 0.002);
 }
 
 TEST_CASE("a cloud takes the colours that views saw, and only those") {

@@ -94,6 +94,14 @@ TEST_CASE("views without points, or without others, agree with nothing") {
   CHECK(check_poses(views, kNowhere).mistake.empty());
 }
 
+TEST_CASE("agreement is the mean share of points that another view has") {
+  ViewSample a, b;
+  a.points = {{0, 0, 1}, {0.5f, 0, 1}};
+  b.points = {{0, 0, 1}, {5, 0, 1}, {6, 0, 1}, {7, 0, 1}};
+  CHECK(agreement({a, a}, 0.01) == 1.0);
+  CHECK(agreement({a, b}, 0.01) == 0.5 * (0.5 + 0.25));
+}
+
 TEST_CASE("of many views some are compared, and poses far away are no trouble") {
   std::vector<ViewSample> many;
   for (int i = 0; i < 50; ++i) many.push_back(sample_of(frame_at(i % 5), place(i % 5)));
@@ -111,4 +119,12 @@ TEST_CASE("a sample is spread over the whole image") {
   CHECK(sample.points.size() < 10000);
   CHECK(sample.points.front().x() < -0.17f);
   CHECK(sample.points.back().x() > 0.17f);
+}
+
+TEST_CASE("of a small frame every pixel is taken") {
+  sensor::DepthFrame frame;
+  frame.intrinsics = {3, 2, 1.0, 1.0, 0.0, 0.0};
+  frame.depth.assign(6, 1.0f);
+  CHECK(sample_of(frame, place(0)).points ==
+        std::vector<Vector3f>{{0, 0, 1}, {1, 0, 1}, {2, 0, 1}, {0, 1, 1}, {1, 1, 1}, {2, 1, 1}});
 }

@@ -271,37 +271,6 @@ TEST_CASE("expected surface: each view that should have shown a sample lowers it
   CHECK(ExpectedSurfaceParameters().missed_factor == 0.35);
 }
 
-TEST_CASE("expected surface: how far it can be relied on follows from what views showed of what they promised") {
-  // Half of a fruit is known. A view of the other half promises much of it.
-  ExpectedSurfaceParameters p = bare();
-  p.cover_radius = 0.005;
-  const auto front = [](const Vector3d& d) { return d.y() < 0.0; };
-  const auto model_after = [&](auto&& shown, std::size_t points = 1000, bool discarded = false) {
-    Scan scan;
-    add_fruit(scan, kFruit, front, 0.002);
-    ExpectedSurface model = model_of(scan, p);
-    CHECK(model.reliability() == 1.0);
-    add_fruit(scan, kFruit, shown, 0.002);
-    View behind;
-    behind.world_T_optical = look_at(kFruit, {0, 0.885, 0.2});
-    REQUIRE(model.gain(behind.world_T_optical) > 0.2 * kSurface);
-    behind.points_in = points;
-    behind.discarded = discarded;
-    scan.views.push_back(behind);
-    model.update(scan.progress(), {}, {});
-    return model.reliability();
-  };
-  CHECK(model_after([](const Vector3d& d) { return d.y() >= 0.0; }) == Approx(1.0));
-  const auto nothing = [](const Vector3d&) { return false; };
-  CHECK(model_after(nothing) < 0.02);
-  // A frame without returns and a view that was discarded say nothing of what can be seen.
-  CHECK(model_after(nothing, 0) == 1.0);
-  CHECK(model_after(nothing, 1000, true) == 1.0);
-  const double half = model_after([](const Vector3d& d) { return d.y() >= 0.0 && d.x() > 0.0; });
-  CHECK(half > 0.45);
-  CHECK(half < 0.65);
-}
-
 TEST_CASE("expected surface: a view that lost a part of its returns lowers areas by less") {
   ExpectedSurfaceParameters p = bare();
   Scan scan;

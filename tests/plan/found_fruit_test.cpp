@@ -65,22 +65,26 @@ TEST_CASE("found fruit: fruit are tracked until the cloud has grown by a quarter
 }
 
 TEST_CASE("found fruit: points without normals get them from the views that saw them") {
-  Scan scan;
-  add_fruit(scan, kFruit, [](const Vector3d& d) { return d.y() < 0.2; });
-  scan.cloud.normals.clear();
-  scan.cloud.views.assign(scan.cloud.size(), 1);
-  scan.views.resize(2);
-  scan.views[1].world_T_optical = look_at(kFruit, {0, 0.1, 0.2});
-  const ExpectedSurface model = model_of(scan);
-  Cloud estimated = scan.cloud;
-  NormalParameters normals;
-  normals.radius = 3.0 * estimate_spacing(estimated);
-  estimated.normals = orient_normals_to_views(estimate_normals(estimated, normals), estimated, estimated.views,
-                                              {Vector3d::Zero(), Vector3d(0, 0.1, 0.2)});
-  const auto expected = split(estimated);
-  REQUIRE(model.bodies().size() == 1);
-  CHECK(model.bodies()[0].fit.body.center == expected.found.at(0).fit.body.center);
-  CHECK((model.bodies()[0].fit.body.center - kFruit).norm() < 0.002);
+  for (const double scale : {1.0, 0.3}) {  // 3 mm apart, and less than 1 mm
+    CAPTURE(scale);
+    Scan scan;
+    test::add_sphere(scan.cloud, {kFruit, scale * kRadius}, scale * 0.003,
+                     [](const Vector3d& d) { return d.y() < 0.2; });
+    scan.cloud.normals.clear();
+    scan.cloud.views.assign(scan.cloud.size(), 1);
+    scan.views.resize(2);
+    scan.views[1].world_T_optical = look_at(kFruit, {0, 0.1, 0.2});
+    const ExpectedSurface model = model_of(scan);
+    Cloud estimated = scan.cloud;
+    NormalParameters normals;
+    normals.radius = 3.0 * estimate_spacing(estimated);
+    estimated.normals = orient_normals_to_views(estimate_normals(estimated, normals), estimated, estimated.views,
+                                                {Vector3d::Zero(), Vector3d(0, 0.1, 0.2)});
+    const auto expected = split(estimated);
+    REQUIRE(model.bodies().size() == 1);
+    CHECK(model.bodies()[0].fit.body.center == expected.found.at(0).fit.body.center);
+    CHECK((model.bodies()[0].fit.body.center - kFruit).norm() < 0.002);
+  }
 }
 
 TEST_CASE("found fruit: bodies are fitted whatever stages the segmentation has") {
@@ -100,4 +104,33 @@ TEST_CASE("found fruit: what a sight line went through is no fruit") {
   CHECK(model_of(scan).bodies().size() == 1);
   scan.images.back() = flat_image(front, 2.0);
   CHECK(model_of(scan).bodies().empty());
+}
+
+TEST_CASE("found fruit: a body that may be one counts by twice its probability, but as no fruit yet") {
+  Scan scan;
+  add_fruit(scan, kFruit);
+  const auto model_with = [&](double log_odds) {  // of a second body, which masks propose
+    MaskEvidence masks;
+    masks.log_odds = [](const Ellipsoid&) { return 0.0; };
+    masks.most = 4.0;
+    masks.remaining = [&](const std::vector<Ellipsoid>&) {
+      MaskBody body;
+      body.fit.body = Ellipsoid(Sphere{{0.07, 0.5, 0.2}, kRadius});
+      body.log_odds = log_odds;
+      return std::vector<MaskBody>{body};
+    };
+    const Progress plain = scan.progress();
+    ExpectedSurface model(camera(), box(kFruit, 0.12), bare());
+    model.update({plain.cloud, plain.images, plain.views, plain.added, plain.observed, plain.kept, &masks}, {}, {});
+    return model;
+  };
+  const auto fruits = [](const ExpectedSurface& model) {
+    return model.completeness(std::vector<char>(model.areas().size(), 1)).fruits.size();
+  };
+  const ExpectedSurface sure = model_with(1.0), unsure = model_with(-1.0), hopeless = model_with(-3.0);
+  CHECK(sure.area() == Approx(2 * kSurface).epsilon(1e-3));
+  CHECK(fruits(sure) == 2);
+  CHECK(unsure.area() == Approx((1.0 + 2.0 / (1.0 + std::exp(1.0))) * kSurface).epsilon(1e-3));
+  CHECK(fruits(unsure) == 1);
+  CHECK(hopeless.bodies().size() == 1);
 }

@@ -160,6 +160,34 @@ TEST_CASE("see planner: the explorer gets all points of the view, not only those
   CHECK((!other || (other->position - expected->position).norm() > 1e-6));
 }
 
+TEST_CASE("see planner: after a turned view the explorer goes on from where the sensor was") {
+  see::Parameters slow = parameters();
+  slow.min_move = 0.0;
+  Twins twins(slow);
+  twins.observe(kSensor);
+  const auto p = twins.proposal();
+  Flight flight;
+  flight.passes = [&](const ViewRequest& r) { return angle(r.direction, p.direction) > deg(10); };
+  const auto view = twins.next(flight.reach());
+  REQUIRE(view);
+  see::Explorer unmoved(twins.explorer);
+  unmoved.next_view(twins.sensor);
+  unmoved.take(p);
+  twins.take(p, *view);
+  const Vector3d at = view->world_T_optical.translation();
+  twins.scan.added = {(p.position + 0.4 * p.direction + Vector3d(0.0, 0.0, 0.012)).cast<float>()};
+  twins.scan.observed = twins.scan.cloud.points;
+  twins.scan.views.emplace_back();
+  twins.scan.views.back().world_T_optical = look_along(at, kFruit - at);
+  twins.planner.observe(twins.scan.progress());
+  for (see::Explorer* explorer : {&twins.explorer, &unmoved})
+    explorer->observe(twins.scan.added, twins.scan.observed, at);
+  const auto expected = twins.explorer.next_view(at), other = unmoved.next_view(at);
+  REQUIRE(expected);
+  check_taken(twins.next(fly), *expected);
+  CHECK((!other || (other->position - expected->position).norm() > 1e-6));
+}
+
 TEST_CASE("see planner: points that a filter removed are no longer there") {
   Twins twins;
   twins.observe(kSensor, false, true);

@@ -388,7 +388,7 @@ Labels assign_to_bodies(const PointCloud<S>& cloud, const std::vector<FoundBody>
   Labels labels(cloud.size(), 0);
   if (bodies.empty()) return labels;
   const Grid<S> grid(cloud, static_cast<S>(parameters.cell()));
-  std::vector<float> best(cloud.size(), std::numeric_limits<float>::infinity());
+  std::vector<double> best(cloud.size(), std::numeric_limits<double>::infinity());
   const double cos_loose = detail::loose_cosine(parameters);
   for (std::size_t b = 0; b < bodies.size(); ++b) {
     throw_if_cancelled();
@@ -399,9 +399,9 @@ Labels assign_to_bodies(const PointCloud<S>& cloud, const std::vector<FoundBody>
       const Eigen::Vector3d p = cloud.points[i].template cast<double>();
       const auto foot = body.foot(p);
       const double d = std::abs(foot.distance);
-      if (d > parameters.near(r) || d >= double(best[i])) return;
+      if (d > parameters.near(r) || d >= best[i]) return;
       if (foot.normal.dot(cloud.normals[i].template cast<double>()) < cos_loose) return;
-      best[i] = static_cast<float>(d);
+      best[i] = d;
       labels[i] = static_cast<int>(b) + 1;
     });
   }

@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// How far promises of the planner's model can be relied on.
+#include <agrisee/plan/expected_surface.hpp>
+
+#include "plan/fruit_cases.hpp"
+
+using namespace cases;
+
+TEST_CASE("expected surface: how far it can be relied on follows from what views showed of what they promised") {
+  // Half of a fruit is known. A view of the other half promises much of it.
+  ExpectedSurfaceParameters p = bare();
+  p.cover_radius = 0.005;
+  const auto front = [](const Vector3d& d) { return d.y() < 0.0; };
+  const auto model_after = [&](auto&& shown, std::size_t points = 1000, bool discarded = false) {
+    Scan scan;
+    add_fruit(scan, kFruit, front, 0.002);
+    ExpectedSurface model = model_of(scan, p);
+    CHECK(model.reliability() == 1.0);
+    add_fruit(scan, kFruit, shown, 0.002);
+    View behind;
+    behind.world_T_optical = look_at(kFruit, {0, 0.885, 0.2});
+    REQUIRE(model.gain(behind.world_T_optical) > 0.2 * kSurface);
+    behind.points_in = points;
+    behind.discarded = discarded;
+    scan.views.push_back(behind);
+    model.update(scan.progress(), {}, {});
+    return model.reliability();
+  };
+  CHECK(model_after([](const Vector3d& d) { return d.y() >= 0.0; }) == Approx(1.0));
+  const auto nothing = [](const Vector3d&) { return false; };
+  CHECK(model_after(nothing) < 0.02);
+  // A frame without returns and a view that was discarded say nothing of what can be seen.
+  CHECK(model_after(nothing, 0) == 1.0);
+  CHECK(model_after(nothing, 1000, true) == 1.0);
+  const double half = model_after([](const Vector3d& d) { return d.y() >= 0.0 && d.x() > 0.0; });
+  CHECK(half > 0.45);
+  CHECK(half < 0.65);
+}
+
+TEST_CASE("expected surface: older views count less for how far it can be relied on") {
+  // The fronts of two fruit are known. Of two views from behind one shows all of its fruit, the other nothing.
+  const Vector3d fruit[] = {kFruit, kFruit + Vector3d(0.6, 0.0, 0.0)};
+  const auto after = [&](bool first, bool second) {
+    ExpectedSurfaceParameters p = bare();
+    p.cover_radius = 0.005;
+    Scan scan;
+    for (const Vector3d& f : fruit)
+      add_fruit(
+          scan, f, [](const Vector3d& d) { return d.y() < 0.0; }, 0.002);
+    ExpectedSurface model = model_of(scan, p);
+    for (const int i : {0, 1}) {
+      View behind;
+      behind.world_T_optical = look_at(fruit[i], fruit[i] + Vector3d(0.0, 0.385, 0.0));
+      behind.points_in = 1000;
+      CHECK(model.gain(behind.world_T_optical) == Approx(0.3286 * kSurface).epsilon(0.05));
+      if (i == 0 ? first : second)
+        add_fruit(
+            scan, fruit[i], [](const Vector3d& d) { return d.y() >= 0.0; }, 0.002);
+      scan.views.push_back(behind);
+      model.update(scan.progress(), {}, {});
+    }
+    return model.reliability();
+  };
+  CHECK(after(true, true) == Approx(1.0));
+  const double before = after(true, false), now = after(false, true);
+  CHECK(before > 0.1);
+  CHECK(before < 0.45);
+  CHECK(now > 0.55);
+  CHECK(now < 0.9);
+}
