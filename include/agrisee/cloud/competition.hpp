@@ -1,0 +1,345 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// @file
+/// The competition of bodies for the points of one cloud; bodies.hpp says how it is held. Metres.
+#pragma once
+
+#include <agrisee/cloud/alike_sizes.hpp>
+#include <agrisee/cloud/body_verdict.hpp>
+#include <agrisee/cloud/fit.hpp>
+#include <agrisee/cloud/mask_evidence.hpp>
+#include <agrisee/cloud/parameters.hpp>
+#include <agrisee/cloud/seen_through.hpp>
+#include <agrisee/core/body_counts.hpp>
+#include <agrisee/neighbors/grid.hpp>
+
+#include <algorithm>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace agrisee {
+
+/// A proposed body, and the stage that proposed it.
+struct BodyCandidate {
+  Ellipsoid body;        ///< first guess
+  std::string found_by;  ///< the stage that proposed it; see Fruit::found_by
+  /// The count to raise if its points do not support it, for example because they suggest an unexpected radius.
+  std::size_t BodyCounts::*doubt = nullptr;
+  std::optional<EllipsoidFit> fit = {};      ///< fit to the present points, if already known
+  std::optional<double> mask_log_odds = {};  ///< set if masks proposed it; `fit` is then that of their outlines
+};
+
+/// A body that won its points.
+struct FoundBody {
+  EllipsoidFit fit;         ///< the body with its uncertainty
+  std::string found_by;     ///< the stage that found it; see Fruit::found_by
+  double coverage = 0.0;    ///< share of its surface covered by its points
+  double confidence = 0.0;  ///< probability that it is a fruit, see detail::fruit_probability
+  bool by_mask = false;     ///< `fit` is that of a mask's outline, because few points were seen
+};
+
+namespace detail {
+
+/// Whether the size of an ellipsoid is that of a fruit, by either definition of its mean radius.
+inline bool plausible(const Ellipsoid& body, const BodyParameters& parameters) {
+  return parameters.plausible(body.mean_radius()) && parameters.plausible(body.mean_semi_axis());
+}
+
+/// How deep two bodies penetrate each other along the line between their centers (m); negative when apart.
+inline double overlap(const Ellipsoid& a, const Ellipsoid& b) {
+  const Eigen::Vector3d d = b.center - a.center;
+  const double length = d.norm();
+  if (!(length > 1e-9)) return a.mean_radius() + b.mean_radius();
+  const Eigen::Vector3d u = d / length;
+  return (a.surface(u) - a.center).norm() + (b.surface(-u) - b.center).norm() - length;
+}
+
+/// The competition for the points of one cloud; see find_bodies.
+template <typename S>
+class Competition {
+ public:
+  Competition(const PointCloud<S>& cloud, const BodyParameters& parameters, const SeenThrough& seen_through,
+              const MaskEvidence& masks, const SeenOn& seen_on)
+      : cloud_(cloud),
+        parameters_(parameters),
+        seen_through_(seen_through),
+        masks_(masks),
+        seen_on_(seen_on),
+        grid_(cloud, static_cast<S>(parameters.cell())),
+        taken_(cloud.size(), 0) {}
+
+  /// Fit and judge the candidates. Those that score enough enter the competition.
+  void enter(const std::vector<BodyCandidate>& candidates) {
+    std::vector<Ellipsoid> known;  // where proposals ended up; many end up at the same place
+    for (const BodyCandidate& c : candidates) {
+      throw_if_cancelled();
+      if (!parameters_.plausible(c.body.mean_radius())) {
+        ++(c.body.mean_radius() < parameters_.radius_min ? counts_.too_small : counts_.too_large);
+        continue;
+      }
+      const auto fit = c.fit ? c.fit : fitted(c, known);
+      if (!fit) continue;
+      Entry e{*fit, &c.found_by, {}, 0.0, true, c.mask_log_odds, 0.0};
+      e.prior = prior_of(e.fit.body);
+      if (e.mask_log_odds) prefer_points(e);
+      if (std::size_t BodyCounts::*const fault = assess(e)) {
+        ++(counts_.*(c.doubt ? c.doubt : fault));
+        continue;
+      }
+      entries_.push_back(std::move(e));
+    }
+  }
+
+  /// Take the best body again and again until none is left. @param found receives the bodies taken, best first
+  void decide(std::vector<FoundBody>& found) {
+    while (Entry* best = best_entry()) {
+      best->alive = false;
+      if (clashes(best->fit.body, found)) {
+        ++counts_.overlapping;
+        continue;
+      }
+      ++counts_.taken;
+      found.push_back(
+          {best->fit, *best->found_by, best->verdict.coverage, best->confidence, best->mask_log_odds.has_value()});
+      take_points(best->fit.body);
+      judge_anew(best->fit.body);
+    }
+  }
+
+  /// Keep the entries as they are, for decide_by_size().
+  void remember() { entered_ = entries_; }
+
+  /// Hold the competition once more, now that the sizes of the fruit are known.
+  /// @param found what was found; receives what is found now
+  void decide_by_size(std::vector<FoundBody>& found) {
+    sizes_ = sizes_of(found);
+    found.clear();
+    counts_.taken = counts_.overlapping = 0;
+    std::fill(taken_.begin(), taken_.end(), 0);
+    entries_ = entered_;
+    for (Entry& e : entries_) {
+      throw_if_cancelled();
+      e.prior = prior_of(e.fit.body);
+      assess(e);
+    }
+    decide(found);
+    const std::vector<KnownSize> sizes = sizes_of(found);  // for the last fit of each
+    for (FoundBody& f : found) f.fit.size_prior = size_prior(sizes, f.fit.body);
+  }
+
+  /// Let the masks that no body explains propose bodies for what is left. @param found receives those that are taken
+  void fill_gaps(std::vector<FoundBody>& found) {
+    std::vector<Ellipsoid> known;
+    for (const FoundBody& f : found) known.push_back(f.fit.body);
+    std::vector<BodyCandidate> candidates;
+    for (const MaskBody& m : masks_.remaining(known))
+      candidates.push_back({m.fit.body, "mask", nullptr, m.fit, m.log_odds});
+    if (candidates.empty()) return;
+    enter(candidates);
+    decide(found);
+  }
+
+  /// Count the bodies that are left when all is decided.
+  void close() {
+    for (const Entry& e : entries_) counts_.doubtful += e.alive;
+  }
+
+  /// What became of the candidates so far.
+  const BodyCounts& counts() const { return counts_; }
+
+ private:
+  /// An entry with less than this share of the required confidence does not compete. Those above it may gain confidence
+  /// later: points that a better body takes are no longer clutter around them.
+  static constexpr double kHopeless = 0.2;
+
+  struct Entry {
+    EllipsoidFit fit;
+    const std::string* found_by;
+    Verdict verdict;
+    double confidence = 0.0;
+    bool alive = true;
+    std::optional<double> mask_log_odds = {};  // its fit is that of an outline, which the points do not change
+    double prior = 0.0;                        // log-odds by the masks
+  };
+
+  static std::vector<KnownSize> sizes_of(const std::vector<FoundBody>& found) {
+    std::vector<KnownSize> sizes;
+    for (const FoundBody& f : found) sizes.push_back({f.fit.body, f.confidence});
+    return sizes;
+  }
+
+  /// Log-odds against a body that masks of several views proposed, from sight lines through it and points inside it.
+  /// Those of a single view were weighed when the body was proposed.
+  double against_masks(const Ellipsoid& body, const Verdict& v) const {
+    constexpr double kThrough = 25.0, kUnsure = 0.02, kInside = 10.0;
+    if (!masks_.remaining) return 0.0;
+    const double through = seen_through_ ? seen_through_(body) : 0.0;
+    return kThrough * std::max(0.0, through - kUnsure) + kInside * v.inside;
+  }
+
+  /// Log-odds of a body by the masks and by the sizes of the other fruit.
+  double prior_of(const Ellipsoid& body) const {
+    const double by_size =
+        sizes_.empty() ? 0.0 : alike_log_odds(sizes_, body, parameters_.radius_min, parameters_.radius_max);
+    return (masks_.log_odds ? masks_.log_odds(body) : 0.0) + parameters_.alike * by_size;
+  }
+
+  /// Fit a body that a mask proposed to its points if these cover half of it, as they then describe it better than its
+  /// outline.
+  void prefer_points(Entry& e) {
+    constexpr double kEnough = 0.5;
+    const auto fit = refine(e.fit.body, parameters_.fit);
+    if (!fit || !plausible(fit->body, parameters_)) return;
+    if (judge(cloud_, grid_, taken_, fit->body, parameters_, {}).coverage < kEnough) return;
+    e.fit = *fit;
+    e.mask_log_odds.reset();
+  }
+
+  /// Fit a body to the free points near it.
+  std::optional<EllipsoidFit> refine(const Ellipsoid& start, const FitParameters& fit) {
+    near_.clear();
+    grid_.visit(start.center.cast<S>(), static_cast<S>(kNearBody * start.mean_radius()), [&](Index i, S) {
+      if (!taken_[static_cast<std::size_t>(i)]) near_.push_back(i);
+    });
+    return fit_ellipsoid(cloud_, near_, start, fit);
+  }
+
+  /// Whether two bodies agree in center and size to within 5 % of the radius.
+  static bool alike(const Ellipsoid& a, const Ellipsoid& b) {
+    const double r = a.mean_radius(), gate = 0.05 * r;
+    return (a.center - b.center).norm() < gate && std::abs(b.mean_radius() - r) < gate;
+  }
+
+  /// Fit a candidate, first roughly to see where it ends up.
+  /// @param known where others ended up; receives this one's place
+  /// @return empty if it ends up where another did, or is not worth a better fit, or has none
+  std::optional<EllipsoidFit> fitted(const BodyCandidate& candidate, std::vector<Ellipsoid>& known) {
+    FitParameters rough = parameters_.fit;
+    rough.max_points = std::min(120, rough.max_points);
+    const auto first = refine(candidate.body, rough);
+    if (!first) {
+      ++(counts_.*(candidate.doubt ? candidate.doubt : &BodyCounts::not_fitted));
+      return std::nullopt;
+    }
+    if (std::any_of(known.begin(), known.end(), [&](const Ellipsoid& k) { return alike(k, first->body); }))
+      return std::nullopt;
+    known.push_back(first->body);
+    if (hopeless(*first)) {
+      ++(counts_.*(candidate.doubt ? candidate.doubt : &BodyCounts::doubtful));
+      return std::nullopt;
+    }
+    auto fit = refine(first->body, parameters_.fit);
+    if (!fit) ++(counts_.*(candidate.doubt ? candidate.doubt : &BodyCounts::not_fitted));
+    return fit;
+  }
+
+  /// Whether a rough fit, to the points of near_, is so unlike a fruit that a better one is not worth its time.
+  bool hopeless(const EllipsoidFit& fit) const {
+    const Verdict v = judge_quickly(cloud_, near_, taken_, fit.body, parameters_, static_cast<bool>(seen_on_));
+    const double least = 0.1 * kHopeless * parameters_.min_confidence;
+    const auto below = [&](double prior) { return fruit_probability(v, fit, parameters_, prior) < least; };
+    if (!masks_.log_odds) return below(0.0);
+    if (below(masks_.most)) return true;  // whatever the masks say
+    return below(-masks_.most) && below(prior_of(fit.body));
+  }
+
+  /// Judge an entry by the free points; it is alive while it may win.
+  /// @return the count of the first test that it fails; null when it is alive
+  std::size_t BodyCounts::*assess(Entry& e) const {
+    const bool right_size = plausible(e.fit.body, parameters_);
+    e.verdict = judge(cloud_, grid_, taken_, e.fit.body, parameters_, seen_through_, seen_on_);
+    e.confidence = fruit_probability(e.verdict, e.fit, parameters_, e.prior);
+    if (e.mask_log_odds) {  // little of it may show: the depths under the masks have decided
+      e.confidence = 1.0 / (1.0 + std::exp(against_masks(e.fit.body, e.verdict) - *e.mask_log_odds));
+      e.alive = right_size && e.confidence >= parameters_.min_confidence;
+      return e.alive ? nullptr : &BodyCounts::doubtful;
+    }
+    e.alive = right_size && e.verdict.score() >= parameters_.min_coverage &&
+              e.verdict.roundness >= parameters_.min_roundness &&
+              e.confidence >= kHopeless * parameters_.min_confidence;
+    if (e.alive) return nullptr;
+    if (!right_size)
+      return e.fit.body.mean_radius() < parameters_.radius_min ? &BodyCounts::too_small : &BodyCounts::too_large;
+    if (!(e.verdict.coverage >= parameters_.min_coverage)) return &BodyCounts::little_seen;
+    if (!(e.verdict.score() >= parameters_.min_coverage)) return &BodyCounts::contradicted;
+    if (!(e.verdict.roundness >= parameters_.min_roundness)) return &BodyCounts::too_flat;
+    return &BodyCounts::doubtful;
+  }
+
+  /// Of the living entries with enough confidence that with the largest score times radius squared times confidence,
+  /// the first of equals; null if there is none. Those that masks proposed come first, the surest before the others.
+  Entry* best_entry() {
+    const auto area = [](const Entry& e) {
+      const double r = e.fit.body.mean_radius();
+      return e.verdict.score() * r * r * e.confidence;
+    };
+    Entry* best = nullptr;
+    for (Entry& e : entries_)
+      if (e.alive && e.mask_log_odds && (!best || e.confidence > best->confidence)) best = &e;
+    if (best) return best;
+    for (Entry& e : entries_)
+      if (e.alive && e.confidence >= parameters_.min_confidence && (!best || area(e) > area(*best))) best = &e;
+    return best;
+  }
+
+  /// Whether a body goes too deep into one of those found.
+  bool clashes(const Ellipsoid& body, const std::vector<FoundBody>& found) const {
+    return std::any_of(found.begin(), found.end(), [&](const FoundBody& f) {
+      const double smaller = std::min(f.fit.body.mean_radius(), body.mean_radius());
+      return overlap(f.fit.body, body) > parameters_.max_overlap * smaller;
+    });
+  }
+
+  /// Take the points that a body explains: those on it within a margin, and everything inside it, such as points in the
+  /// dimple at its calyx.
+  void take_points(const Ellipsoid& body) {
+    const double margin = 1.5 * parameters_.near(body.mean_radius());
+    const double cos_loose = loose_cosine(parameters_);
+    grid_.visit(body.center.cast<S>(), static_cast<S>(kNearBody * body.mean_radius()), [&](Index index, S) {
+      const auto i = static_cast<std::size_t>(index);
+      const Eigen::Vector3d p = cloud_.points[i].template cast<double>();
+      const auto foot = body.foot(p);
+      if (foot.distance < margin &&
+          (foot.distance < -margin || foot.normal.dot(cloud_.normals[i].template cast<double>()) >= cos_loose))
+        taken_[i] = 1;
+    });
+  }
+
+  /// Judge the living entries near a body that has just won, and fit those again that lost points to it.
+  void judge_anew(const Ellipsoid& body) {
+    for (Entry& e : entries_) {
+      throw_if_cancelled();
+      if (!e.alive) continue;
+      const double gap = (e.fit.body.center - body.center).norm() - e.fit.body.mean_radius() - body.mean_radius();
+      if (gap > 0.5 * body.mean_radius()) continue;
+      const std::size_t support = e.verdict.support;
+      assess(e);  // most end here: their points are taken
+      if (!e.alive || e.mask_log_odds || e.verdict.support == support) continue;
+      if (const auto again = refine(e.fit.body, parameters_.fit)) {
+        e.fit = *again;
+        e.prior = prior_of(e.fit.body);
+        assess(e);
+      } else {
+        e.alive = false;
+      }
+    }
+  }
+
+  const PointCloud<S>& cloud_;
+  const BodyParameters& parameters_;
+  const SeenThrough& seen_through_;
+  const MaskEvidence& masks_;
+  const SeenOn& seen_on_;
+  Grid<S> grid_;
+  std::vector<char> taken_;  // whether a point belongs to a body that has won
+  std::vector<Entry> entries_;
+  std::vector<Entry> entered_;    // as they were before the first body won
+  std::vector<KnownSize> sizes_;  // of the fruit found then
+  BodyCounts counts_;
+  Indices near_;  // scratch of refine()
+};
+
+}  // namespace detail
+
+}  // namespace agrisee
