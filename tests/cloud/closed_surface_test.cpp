@@ -229,7 +229,7 @@ TEST_CASE("evidence for an ellipsoid: another size costs little, an uneven surfa
       samples.normals.push_back(d);
     }
     samples.own = kPoints;
-    const detail::SurfaceFit fit(samples, body, Eigen::Vector3d::UnitZ(), model, parameters);
+    const detail::SurfaceFit fit(samples, {body, Eigen::Vector3d::UnitZ()}, model, parameters);
     return detail::ellipsoid_evidence(body, fit, fit.radial_bins(fit.weights()), 0.01, parameters.uneven);
   };
   const double even = evidence([](const Eigen::Vector3d&) { return 0.03; });
