@@ -4,14 +4,16 @@
 ///
 /// A point p with outward normal n lies on a sphere of radius r about p - r n. Every point votes for the centers of all
 /// radii in the expected range; the votes meet at the centers of spheres (a Hough transform, cf. Rabbani & van den
-/// Heuvel, 2005), even if little of each sphere is seen and spheres touch. Cost: linear in points times radii, and a
-/// sort of the votes; memory linear in the votes. If points were added to a cloud, their votes alone show which places
-/// to examine again.
+/// Heuvel, 2005), even if little of each sphere is seen and spheres touch. Cost and memory: linear in points times
+/// radii. If points were added to a cloud, their votes alone show which places to examine again.
 #pragma once
 
 #include <agrisee/core/cancellation.hpp>
 #include <agrisee/core/cloud.hpp>
 #include <agrisee/core/error.hpp>
+#include <agrisee/core/uninitialized.hpp>
+#include <agrisee/geometry/aabb.hpp>
+#include <agrisee/neighbors/detail/radix_sort.hpp>
 
 #include <algorithm>
 #include <array>
@@ -28,22 +30,57 @@ struct VotedCenter {
 
 namespace detail {
 
-/// The cells that are voted for: a cell is packed into one integer, 21 bits an axis about the origin, z first.
-struct VoteGrid {
-  static constexpr std::int64_t kHalf = 1 << 20;
+/// The cells that are voted for. Their coordinates are counted from one in each axis, and packed into one integer, z
+/// first, with as many bits an axis as the voters need.
+class VoteGrid {
+ public:
   using Cell = Eigen::Matrix<std::int64_t, 3, 1>;
 
-  Eigen::Vector3d origin;  ///< the first finite point (m)
-  double pitch;            ///< edge length of a cell (m)
+  /// @param cloud the points that vote (m) and their normals
+  /// @param radius_max largest radius that is voted for (m)
+  /// @param edge edge length of a cell (m)
+  template <typename S>
+  VoteGrid(const PointCloud<S>& cloud, double radius_max, double edge) : pitch(edge) {
+    bool first = true;
+    Aabb box;
+    for (std::size_t i = 0; i < cloud.size(); ++i) {
+      if (!is_finite(cloud.points[i])) continue;
+      if (first) origin = cloud.points[i].template cast<double>();
+      first = false;
+      const Eigen::Vector3d p = cloud.points[i].template cast<double>() - origin;
+      if (p.cwiseAbs().maxCoeff() <= widest(radius_max)) box.extend(p);
+    }
+    if (box.empty()) return;
+    const auto cell_of = [&](const Eigen::Vector3d& p) -> Cell {
+      return (p / pitch).array().floor().cast<std::int64_t>();
+    };
+    const Eigen::Vector3d reach = Eigen::Vector3d::Constant(radius_max);
+    before = cell_of(box.min - reach) - Cell::Constant(2);
+    const Cell most = cell_of(box.max + reach) - before + Cell::Constant(3);
+    while (most.x() >> y_shift_ != 0) ++y_shift_;
+    z_shift_ = y_shift_;
+    while (most.y() >> (z_shift_ - y_shift_) != 0) ++z_shift_;
+  }
 
-  static std::uint64_t pack(std::int64_t x, std::int64_t y, std::int64_t z) {
-    return (static_cast<std::uint64_t>(z + kHalf) << 42) | (static_cast<std::uint64_t>(y + kHalf) << 21) |
-           static_cast<std::uint64_t>(x + kHalf);
+  /// Points farther from the origin than this along an axis (m) do not vote: 21 bits an axis hold no more.
+  double widest(double radius_max) const { return pitch * double((1 << 20) - 8) - radius_max; }
+
+  std::uint64_t pack(std::uint64_t x, std::uint64_t y, std::uint64_t z) const {
+    return z << z_shift_ | y << y_shift_ | x;
   }
-  static Cell unpack(std::uint64_t key) {
-    return {static_cast<std::int64_t>(key & 0x1FFFFF) - kHalf,
-            static_cast<std::int64_t>((key >> 21) & 0x1FFFFF) - kHalf, static_cast<std::int64_t>(key >> 42) - kHalf};
+  Cell unpack(std::uint64_t key) const {
+    const auto low = [](std::uint64_t value, unsigned bits) {
+      return static_cast<std::int64_t>(value & ((1ull << bits) - 1));
+    };
+    return {low(key, y_shift_), low(key >> y_shift_, z_shift_ - y_shift_), static_cast<std::int64_t>(key >> z_shift_)};
   }
+
+  Eigen::Vector3d origin = Eigen::Vector3d::Zero();  ///< the first finite point (m), the center of cell `-before`
+  double pitch;                                      ///< edge length of a cell (m)
+  Cell before = Cell::Zero();                        ///< cell of the origin's grid that would be number 0
+
+ private:
+  unsigned y_shift_ = 0, z_shift_ = 0;
 };
 
 /// A cell and the number of its votes.
@@ -59,39 +96,35 @@ struct VoteSum {
   Eigen::Vector3d center;  ///< their mean place (m)
 };
 
-template <typename S>
-Eigen::Vector3d first_finite_point(const PointCloud<S>& cloud) {
-  for (const auto& p : cloud.points)
-    if (is_finite(p)) return p.template cast<double>();
-  return Eigen::Vector3d::Zero();
-}
-
 /// The votes of the points that `votes(i)` admits, as the packed cells they are for, ascending; those that
 /// `keeps(cell)` refuses are left out.
 template <typename S, typename Votes, typename Keeps>
-std::vector<std::uint64_t> cast_votes(const PointCloud<S>& cloud, const VoteGrid& grid, double radius_min,
-                                      double radius_max, Votes&& votes, Keeps&& keeps) {
+Uninitialized<std::uint64_t> cast_votes(const PointCloud<S>& cloud, const VoteGrid& grid, double radius_min,
+                                        double radius_max, Votes&& votes, Keeps&& keeps) {
   const int steps = std::max(1, static_cast<int>(std::lround((radius_max - radius_min) / grid.pitch)) + 1);
-  std::vector<std::uint64_t> cells;
-  const double limit = grid.pitch * double(VoteGrid::kHalf - 4) - radius_max;  // points beyond it do not vote
+  Uninitialized<std::uint64_t> cells;
+  const double limit = grid.widest(radius_max);
+  const Eigen::Vector3d half = Eigen::Vector3d::Constant(0.5) - grid.before.template cast<double>();
   for (std::size_t i = 0; i < cloud.size(); ++i) {
     if ((i & 0xFFF) == 0) throw_if_cancelled();
     if (!votes(i) || !is_finite(cloud.points[i]) || !(cloud.normals[i].squaredNorm() > S(0.5))) continue;
     const Eigen::Vector3d p = cloud.points[i].template cast<double>() - grid.origin;
     if (p.cwiseAbs().maxCoeff() > limit) continue;
     const Eigen::Vector3d n = cloud.normals[i].template cast<double>();
+    const Eigen::Vector3d first = (p - radius_min * n) / grid.pitch + half;
     for (int s = 0; s < steps; ++s) {
-      const Eigen::Vector3d c = (p - (radius_min + grid.pitch * s) * n) / grid.pitch;
-      const std::uint64_t cell = VoteGrid::pack(std::llround(c.x()), std::llround(c.y()), std::llround(c.z()));
+      const Eigen::Vector3d c = first - double(s) * n;
+      const std::uint64_t cell = grid.pack(static_cast<std::uint64_t>(c.x()), static_cast<std::uint64_t>(c.y()),
+                                           static_cast<std::uint64_t>(c.z()));
       if (keeps(cell)) cells.push_back(cell);
     }
   }
-  sort_cancellably(cells.begin(), cells.end());
+  radix_sort(cells, [](std::uint64_t cell) { return cell; });
   return cells;
 }
 
 /// The cells that have votes, ascending.
-inline std::vector<VotedCell> count_votes(const std::vector<std::uint64_t>& votes) {
+inline std::vector<VotedCell> count_votes(const Uninitialized<std::uint64_t>& votes) {
   std::vector<VotedCell> cells;
   for (std::size_t i = 0; i < votes.size();) {
     std::size_t j = i;
@@ -103,51 +136,53 @@ inline std::vector<VotedCell> count_votes(const std::vector<std::uint64_t>& vote
 }
 
 /// A center's votes spread over neighboring cells: sum the 27 cells about each one that could have `min_votes` in all.
-/// @return the sums of at least `min_votes`, most votes first; equal ones in the order of their cells
+/// @return the sums of at least `min_votes`, in the order of their cells
 inline std::vector<VoteSum> sum_votes(const std::vector<VotedCell>& cells, const VoteGrid& grid, double min_votes) {
   std::vector<VoteSum> sums;
   // The 27 cells are nine rows of three. The cells of a row are consecutive in the list, and move forward in it as the
   // cell does.
   std::array<std::size_t, 9> rows{};
+  std::array<std::uint64_t, 9> back;  // from a cell's key to that of the first cell of each row
+  for (std::uint64_t row = 0; row < 9; ++row) back[row] = grid.pack(1, 1, 1) - grid.pack(0, row % 3, row / 3);
   for (const VotedCell& c : cells) {
     if (((&c - cells.data()) & 0xFFFF) == 0) throw_if_cancelled();
     if (double(c.votes) < min_votes / 27.0) continue;
-    double total = 0.0;
-    Eigen::Vector3d mean = Eigen::Vector3d::Zero();
-    const VoteGrid::Cell cell = VoteGrid::unpack(c.key);
-    const std::int64_t x = cell.x(), y = cell.y(), z = cell.z();
+    float total = 0.0f;  // of whole numbers
     for (std::size_t row = 0; row < 9; ++row) {
-      const auto dy = static_cast<std::int64_t>(row % 3) - 1, dz = static_cast<std::int64_t>(row / 3) - 1;
-      const std::uint64_t first = VoteGrid::pack(x - 1, y + dy, z + dz);
+      const std::uint64_t first = c.key - back[row];
       std::size_t& at = rows[row];
       while (at < cells.size() && cells[at].key < first) ++at;
-      for (std::size_t k = at; k < cells.size() && cells[k].key <= first + 2; ++k) {
-        const double v = double(cells[k].votes);
-        total += v;
-        mean += v * Eigen::Vector3d(double(x - 1) + static_cast<double>(cells[k].key - first), double(y + dy),
-                                    double(z + dz));
-      }
+      for (std::size_t k = at; k < cells.size() && cells[k].key <= first + 2; ++k) total += cells[k].votes;
     }
-    if (total >= min_votes) sums.push_back({c.key, total, grid.origin + grid.pitch * mean / total});
+    if (double(total) < min_votes) continue;
+    Eigen::Vector3d mean = Eigen::Vector3d::Zero();
+    for (std::size_t row = 0; row < 9; ++row)
+      for (std::size_t k = rows[row]; k < cells.size() && cells[k].key <= c.key - back[row] + 2; ++k)
+        mean += double(cells[k].votes) * (grid.unpack(cells[k].key) + grid.before).template cast<double>();
+    sums.push_back({c.key, double(total), grid.origin + grid.pitch * mean / double(total)});
   }
+  return sums;
+}
+
+/// Most votes first; equal ones in the order of their cells.
+inline void sort_by_votes(std::vector<VoteSum>& sums) {
   std::sort(sums.begin(), sums.end(), [](const VoteSum& a, const VoteSum& b) {
     return a.votes > b.votes || (a.votes == b.votes && a.key < b.key);
   });
-  return sums;
 }
 
 /// The cells about which some votes meet, and a quick test of whether a cell is one of them or next to one.
 class VotedPlaces {
  public:
-  explicit VotedPlaces(const std::vector<VoteSum>& sums) : bits_(kBits, false) {
+  /// @param sums in the order of their cells
+  VotedPlaces(const std::vector<VoteSum>& sums, const VoteGrid& grid) : bits_(kBits, false) {
+    const std::uint64_t first = grid.pack(1, 1, 1);
     for (const VoteSum& s : sums) {
       cells_.push_back(s.key);
-      const VoteGrid::Cell c = VoteGrid::unpack(s.key);
-      for (std::int64_t z = c.z() - 1; z <= c.z() + 1; ++z)
-        for (std::int64_t y = c.y() - 1; y <= c.y() + 1; ++y)
-          for (std::int64_t x = c.x() - 1; x <= c.x() + 1; ++x) bits_[bit(VoteGrid::pack(x, y, z))] = true;
+      for (const std::uint64_t z : {0, 1, 2})
+        for (const std::uint64_t y : {0, 1, 2})
+          for (const std::uint64_t x : {0, 1, 2}) bits_[bit(s.key - first + grid.pack(x, y, z))] = true;
     }
-    std::sort(cells_.begin(), cells_.end());
   }
 
   /// Whether a cell is one of the places.
@@ -195,7 +230,7 @@ std::vector<VotedCenter> vote_for_centers(const PointCloud<S>& cloud, double rad
   check_input(fresh.empty() || fresh.size() == cloud.size(), "vote_for_centers: fresh needs one value a point");
   if (cloud.empty()) return {};
   constexpr double kFreshShare = 0.1;
-  const detail::VoteGrid grid{detail::first_finite_point(cloud), radius_min / 5.0};
+  const detail::VoteGrid grid(cloud, radius_max, radius_min / 5.0);
   const auto all = [](auto) { return true; };
   const auto sums_of = [&](const auto& votes, const auto& keeps, double least) {
     const auto cells = detail::cast_votes(cloud, grid, radius_min, radius_max, votes, keeps);
@@ -206,11 +241,12 @@ std::vector<VotedCenter> vote_for_centers(const PointCloud<S>& cloud, double rad
     sums = sums_of(all, all, min_votes);
   } else {
     const auto is_fresh = [&](std::size_t i) { return fresh[i] != 0; };
-    const detail::VotedPlaces places(sums_of(is_fresh, all, kFreshShare * min_votes));
+    const detail::VotedPlaces places(sums_of(is_fresh, all, kFreshShare * min_votes), grid);
     sums = sums_of(
         all, [&](std::uint64_t cell) { return places.may_touch(cell); }, min_votes);
     sums.erase(std::remove_if(sums.begin(), sums.end(), [&](const auto& s) { return !places.has(s.key); }), sums.end());
   }
+  detail::sort_by_votes(sums);
   return detail::thin_out(sums, 0.6 * radius_min);
 }
 
