@@ -43,8 +43,9 @@ struct IcpResult {
 
 namespace detail {
 
-/// Edge length (m) of the cells of a grid over the target: the target's spacing, as most matches are no farther away
-/// than that, but large enough that there are not many more cells than points.
+/// Edge length (m) of the cells of a grid over the target: at most the largest distance of a match, as half of a new
+/// view may have none and is searched that far; less for a dense target, but so large that there are not many more
+/// cells than points.
 template <typename Target>
 scalar_t<Target> icp_cell(const Target& target, const IcpParameters& parameters, int threads) {
   using S = scalar_t<Target>;
@@ -53,7 +54,7 @@ scalar_t<Target> icp_cell(const Target& target, const IcpParameters& parameters,
     if (is_finite(point(target, i))) box.extend(point(target, i).template cast<double>());
   const double few = box.empty() ? 0.0 : std::cbrt(box.size().prod() / (8.0 * double(agrisee::size(target))));
   return static_cast<S>(
-      std::min(0.5 * parameters.max_distance, std::max(few, double(typical_distance(target, kFew, threads)))));
+      std::min(parameters.max_distance, std::max(few, double(typical_distance(target, kFew, threads)))));
 }
 
 /// The scale (m) of the residuals of matched points.
