@@ -139,6 +139,31 @@ TEST_CASE("whatever speaks against a fruit lowers its probability") {
   CHECK(fruit_probability(Verdict(), fit_of(0.0), BodyParameters()) == 0.0);
 }
 
+TEST_CASE("several views show that a stump is no fruit, a single view hardly does") {
+  const auto odds = [](double roundness, std::optional<double> seen_on) {
+    Verdict v = verdict_of(cap(kPi / 2));
+    v.roundness = roundness;
+    v.seen_on = seen_on;
+    const double p = fruit_probability(v, fit_of(0.0005), BodyParameters());
+    return std::log(p / (1.0 - p));
+  };
+  CHECK(odds(0.7, {}) - odds(0.6, {}) == Approx(odds(0.7, 1.0) - odds(0.6, 1.0)));
+  CHECK(odds(0.5, {}) - odds(0.4, {}) > 3.0 * (odds(0.5, 1.0) - odds(0.4, 1.0)));
+}
+
+TEST_CASE("a body larger than fruit are expected to be is less likely one") {
+  const EllipsoidFit fit = fit_of(0.0005);
+  const Verdict v = verdict_of(cap(kPi / 2));
+  BodyParameters parameters;
+  const auto odds = [&](double share_of_radius) {
+    parameters.radius_max = fit.body.mean_semi_axis() / share_of_radius;
+    const double p = fruit_probability(v, fit, parameters);
+    return std::log(p / (1.0 - p));
+  };
+  CHECK(odds(1.0) == Approx(odds(0.99)));
+  CHECK(odds(1.1) < odds(1.0) - 2.0);
+}
+
 TEST_CASE("the spread of normals that the sensor accounts for does not speak against a fruit") {
   Verdict v = verdict_of(cap(kPi / 2));
   v.normal_spread = 0.3;
