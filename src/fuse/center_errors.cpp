@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <agrisee/core/cancellation.hpp>
 #include <agrisee/fuse/center_errors.hpp>
+#include <agrisee/geometry/direction_bins.hpp>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <optional>
 
@@ -21,6 +23,13 @@ constexpr std::size_t kLeastPoints = 10;
 /// With fewer views of a body their disagreement tells nothing.
 constexpr std::size_t kLeastViews = 3;
 
+/// What the points of a view say that lie in one direction from a body's center.
+struct Patch {
+  Vector9 pull = Vector9::Zero();  // sum of the weighted derivatives
+  double weights = 0.0;            // sum of the weights
+  double residual = 0.0;           // mean (m)
+};
+
 /// What a view's points say of a body.
 struct Share {
   Matrix9 normal_matrix = Matrix9::Zero();           // of the weighted derivatives
@@ -29,6 +38,7 @@ struct Share {
   Eigen::Vector3d normal = Eigen::Vector3d::Zero();  // weighted mean
   double residual = 0.0;                             // mean, as registered (m)
   Eigen::Vector3d shift = Eigen::Vector3d::Zero();   // from where the reported pose puts the points (m)
+  std::vector<Patch> patches;
 };
 
 std::optional<Share> share_of(const Ellipsoid& body, const RegisteredView& view, const FitParameters& parameters) {
@@ -39,6 +49,7 @@ std::optional<Share> share_of(const Ellipsoid& body, const RegisteredView& view,
   const double reach = body.mean_semi_axis() * 3.0 + gate;  // no semi-axis is longer than three times their mean
   Share out;
   std::size_t points = 0;
+  std::array<Patch, DirectionBins::kCount> patches;
   for (std::size_t i = 0; i < image.points.size(); ++i) {
     const Eigen::Vector3d p = image.points[i].cast<double>();
     if ((p - body.center).squaredNorm() > reach * reach) continue;
@@ -52,12 +63,21 @@ std::optional<Share> share_of(const Ellipsoid& body, const RegisteredView& view,
     out.weights += row.weight;
     out.normal += row.weight * normal;
     out.residual += row.weight * row.residual;
+    Patch& patch = patches[static_cast<std::size_t>(DirectionBins::bin(p - body.center))];
+    patch.pull += row.weight * row.derivatives;
+    patch.weights += row.weight;
+    patch.residual += row.weight * row.residual;
     out.shift += row.weight * shift;
   }
   if (points < kLeastPoints) return std::nullopt;
   out.normal /= out.weights;
   out.residual /= out.weights;
   out.shift /= out.weights;
+  for (Patch& patch : patches) {
+    if (!(patch.weights > 0.0)) continue;
+    patch.residual /= patch.weights;
+    out.patches.push_back(patch);
+  }
   return out;
 }
 
@@ -82,6 +102,18 @@ double shared_variance(const std::vector<std::vector<Share>>& shares) {
   return count > 0.0 ? squares / count : 0.0;
 }
 
+/// Variance of the mean residuals of the patches about those of their views (m2).
+double patch_variance(const std::vector<std::vector<Share>>& shares) {
+  double squares = 0.0, count = 0.0;
+  for (const auto& of_body : shares)
+    for (const Share& s : of_body) {
+      if (s.patches.size() < 2) continue;
+      for (const Patch& patch : s.patches) squares += std::pow(patch.residual - s.residual, 2);
+      count += static_cast<double>(s.patches.size() - 1);
+    }
+  return count > 0.0 ? squares / count : 0.0;
+}
+
 /// Variance of the shifts of the views on one body along an axis (m2), in the mean over the axes and bodies.
 double shift_variance(const std::vector<std::vector<Share>>& shares) {
   double sum = 0.0, count = 0.0;
@@ -95,7 +127,7 @@ double shift_variance(const std::vector<std::vector<Share>>& shares) {
 }
 
 Eigen::Matrix3d covariance_of(const Ellipsoid& body, const std::vector<Share>& shares, double variance,
-                              const FitParameters& parameters) {
+                              double of_patches, const FitParameters& parameters) {
   const double size = body.mean_radius(), noise = parameters.noise_of(size);
   Matrix9 normal_matrix = Matrix9::Zero();
   double weights = 0.0;
@@ -106,6 +138,9 @@ Eigen::Matrix3d covariance_of(const Ellipsoid& body, const std::vector<Share>& s
   const double uneven = kUneven / noise;
   Matrix9 scatter = uneven * uneven * certainty * normal_matrix;
   for (const Share& s : shares) scatter += kUnseen * variance * certainty * certainty * s.pull * s.pull.transpose();
+  for (const Share& s : shares)
+    for (const Patch& patch : s.patches)
+      scatter += of_patches * certainty * certainty * patch.pull * patch.pull.transpose();
   const Matrix9 inverse = Eigen::LDLT<Matrix9>(information).solve(Matrix9::Identity());
   const Matrix9 covariance = inverse * scatter * inverse.transpose();
   const Eigen::Matrix3d of_center = size * size * covariance.topLeftCorner<3, 3>();
@@ -125,11 +160,12 @@ std::vector<Eigen::Matrix3d> center_errors(const std::vector<Ellipsoid>& bodies,
     }
   for (auto& of_body : shares)
     if (of_body.size() < kLeastViews) of_body.clear();
-  const double variance = shared_variance(shares), shifted = shift_variance(shares);
+  const double variance = shared_variance(shares), of_patches = patch_variance(shares);
+  const double shifted = shift_variance(shares);
   std::vector<Eigen::Matrix3d> out(bodies.size(), Eigen::Matrix3d::Zero());
   for (std::size_t b = 0; b < bodies.size(); ++b) {
     if (shares[b].empty()) continue;
-    out[b] = covariance_of(bodies[b], shares[b], variance, parameters);
+    out[b] = covariance_of(bodies[b], shares[b], variance, of_patches, parameters);
     out[b].diagonal().array() += shifted / static_cast<double>(shares[b].size());
   }
   return out;

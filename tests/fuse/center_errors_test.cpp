@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <agrisee/fuse/center_errors.hpp>
+#include <agrisee/geometry/direction_bins.hpp>
 
 #include <cmath>
+#include <map>
 #include <numeric>
 #include <random>
 
@@ -49,10 +51,12 @@ Scan scan_of_ball(int count, double shared, double single, unsigned seed) {
   return scan;
 }
 
-EllipsoidFit fit_of(const Scan& scan) {
+EllipsoidFit fit_of(const Scan& scan, int max_points = FitParameters().max_points) {
   Indices all(scan.cloud.size());
   std::iota(all.begin(), all.end(), Index{0});
-  return *fit_ellipsoid(scan.cloud, all, Ellipsoid(Sphere{kCenter, kRadius}));
+  FitParameters parameters;
+  parameters.max_points = max_points;
+  return *fit_ellipsoid(scan.cloud, all, Ellipsoid(Sphere{kCenter, kRadius}), parameters);
 }
 
 Eigen::Matrix3d errors_of(const Scan& scan) { return center_errors({fit_of(scan).body}, scan.views, {})[0]; }
@@ -75,6 +79,33 @@ TEST_CASE("centres are as far off as the views' shared errors say") {
     CHECK(variances / squares > 1.0);
     CHECK(variances / squares < 4.0);
   }
+}
+
+TEST_CASE("centres are as far off as errors say that only neighboring points share") {
+  constexpr double kError = 0.001;
+  double squares = 0.0, variances = 0.0;
+  constexpr int kScans = 80;
+  for (int k = 0; k < kScans; ++k) {
+    Scan scan = scan_of_ball(10, 0.0, 0.0, static_cast<unsigned>(k));
+    std::mt19937 random(static_cast<unsigned>(k));
+    std::normal_distribution<double> normal(0.0, kError);
+    std::size_t next = 0;
+    for (sensor::SurfaceImage& image : scan.images) {
+      std::map<int, double> of_patch;
+      for (std::size_t i = 0; i < image.points.size(); ++i, ++next) {
+        const int bin = DirectionBins::bin(image.points[i].cast<double>() - kCenter);
+        const double error = of_patch.try_emplace(bin, normal(random)).first->second;
+        image.points[i] += static_cast<float>(error) * image.normals[i];
+        scan.cloud.points[next] = image.points[i];
+      }
+    }
+    const EllipsoidFit fit = fit_of(scan, static_cast<int>(scan.cloud.size()));
+    squares += (fit.body.center - kCenter).squaredNorm() / kScans;
+    variances += center_errors({fit.body}, scan.views, {})[0].trace() / kScans;
+  }
+  INFO("errors of " << 1e3 * std::sqrt(squares) << " mm, predicted " << 1e3 * std::sqrt(variances) << " mm");
+  CHECK(variances / squares > 0.8);
+  CHECK(variances / squares < 3.0);
 }
 
 TEST_CASE("more views with errors of their own make a centre more certain; more points of the same views do not") {
