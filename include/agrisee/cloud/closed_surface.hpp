@@ -112,11 +112,12 @@ inline void integrate(const SurfaceModel& model, const SurfaceFit& fit, const Li
 }
 
 /// First guesses of a fruit's surface: the ellipsoid with the given axis and with each of its own. The points at the
-/// stem may be those of a calyx that stands out; the second guess leaves them out and is nearly a sphere.
+/// stem may be those of a calyx that stands out, and the ellipsoid may have followed them; the second guess is nearly a
+/// sphere, and these points stay out of it until the sides have shaped the surface.
 template <typename S>
 std::vector<SurfaceFit::Start> first_guesses(const PointCloud<S>& cloud, const Indices& own, const Ellipsoid& body,
                                              const Eigen::Vector3d& axis) {
-  constexpr double kTop = 0.3, kNearlySphere = 0.02;
+  constexpr double kTop = 0.3, kNearlySphere = 0.02, kAlike = 0.5;
   std::vector<SurfaceFit::Start> out{{body, axis}};
   Indices below;
   for (const Index i : own) {
@@ -125,7 +126,9 @@ std::vector<SurfaceFit::Start> first_guesses(const PointCloud<S>& cloud, const I
   }
   FitParameters rounder;
   rounder.shape_prior = kNearlySphere;
-  const auto fit = fit_ellipsoid(cloud, below, body, rounder);
+  const auto sphere = sphere_from_normals(cloud, below);
+  const bool usable = sphere && std::abs(std::log(sphere->radius / body.mean_radius())) < kAlike;
+  const auto fit = fit_ellipsoid(cloud, below, usable ? Ellipsoid(*sphere) : body, rounder);
   out.push_back({fit ? fit->body : body, axis, kTop});
   const Eigen::Matrix3d axes = semi_axes(body).second;
   for (int k = 0; k < 3; ++k)
@@ -234,8 +237,10 @@ std::optional<ClosedSurface> closed_surface(const PointCloud<S>& cloud, const In
     }
     fit.change(models[model], models[0]);
     if (model > 0) fit.set_weights(plain);
-    for (std::size_t k = 0; k < kSteps && good; ++k)
+    for (std::size_t k = 0; k < kSteps && good; ++k) {
+      if (k == 1) fit.open_top();
       good = fit.step(models[model], kGates[std::min<std::size_t>(k + 1, 3)], true);
+    }
     if (!good) continue;
     const double evidence =
         fit.evidence(models[model], fit.radial_bins(fit.plain_weights(kFar)), detail::kEvidenceNoise);

@@ -127,20 +127,23 @@ class SurfaceFit {
   struct Start {
     Ellipsoid body;
     Eigen::Vector3d axis;  ///< of symmetry, towards the stem
-    double top = 1.0;      ///< points in directions nearer to the axis than this cosine are left out of the first step
+    double top = 1.0;      ///< points in directions nearer to the axis than this cosine are left out until open_top()
   };
 
   /// @param model of revolution
   SurfaceFit(const Samples& samples, const Start& start, const SurfaceModel& model,
              const ClosedSurfaceParameters& parameters)
-      : samples_(samples), parameters_(parameters), center_(start.body.center), weights_(samples.points.size(), 0.0) {
+      : samples_(samples),
+        parameters_(parameters),
+        center_(start.body.center),
+        top_(start.top),
+        weights_(samples.points.size(), 0.0) {
     size_ = -std::log(start.body.A.determinant()) / 3.0;
     const Eigen::Vector3d axis = start.axis.normalized();
     turn_.row(2) = axis;
     turn_.row(0) = any_orthogonal<double>(axis);
     turn_.row(1) = turn_.row(2).cross(turn_.row(0));
-    for (std::size_t i = 0; i < samples.own; ++i)
-      weights_[i] = axis.dot((samples.points[i] - center_).normalized()) <= start.top ? 1.0 : 0.0;
+    for (std::size_t i = 0; i < samples.own; ++i) weights_[i] = at_top(i) ? 0.0 : 1.0;
     constexpr int kDirections = 200;  // to project the ellipsoid onto the harmonics of order 0
     coefficients_ = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(model.basis.size()));
     Eigen::VectorXd values(coefficients_.size());
@@ -198,10 +201,13 @@ class SurfaceFit {
   /// Distances that count in the next steps beside those of the points, in the axis' frame.
   void set_limits(std::vector<RadialBin> limits) { limits_ = std::move(limits); }
 
+  /// From now on the points at the top count as all others.
+  void open_top() { top_ = 1.0; }
+
   /// Points closer to the surface than `far` (relative) count fully, others not; only the fruit's.
   std::vector<double> plain_weights(double far) const {
     std::vector<double> weights(samples_.points.size(), 0.0);
-    for (std::size_t i = 0; i < samples_.own; ++i) weights[i] = std::abs(residuals_[i]) < far ? 1.0 : 0.0;
+    for (std::size_t i = 0; i < samples_.own; ++i) weights[i] = std::abs(residuals_[i]) < far && !at_top(i) ? 1.0 : 0.0;
     return weights;
   }
   void set_weights(std::vector<double> weights) { weights_ = std::move(weights); }
@@ -294,6 +300,13 @@ class SurfaceFit {
   const std::vector<double>& residuals() const { return residuals_; }
 
  private:
+  /// Whether a point lies at the top, where it does not count.
+  bool at_top(std::size_t i) const {
+    if (!(top_ < 1.0)) return false;
+    const Eigen::Vector3d q = samples_.points[i] - center_;
+    return turn_.row(2).dot(q) > top_ * q.norm();
+  }
+
   static Eigen::VectorXd mapped(const SurfaceModel& model, const SurfaceModel& from, const Eigen::VectorXd& old) {
     Eigen::VectorXd out = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(model.basis.size()));
     const auto& to = model.basis.terms();
@@ -339,7 +352,7 @@ class SurfaceFit {
       const bool own = i < samples_.own;
       const bool counts = own ? cosines[i] > kOwnCosine
                               : join && cosines[i] > kJoinedCosine && std::abs(residuals_[i]) < parameters_.join;
-      weights_[i] = counts && std::abs(t) < 1.0 ? (1.0 - t * t) * (1.0 - t * t) : 0.0;
+      weights_[i] = counts && std::abs(t) < 1.0 && !at_top(i) ? (1.0 - t * t) * (1.0 - t * t) : 0.0;
     }
     return true;
   }
@@ -348,6 +361,7 @@ class SurfaceFit {
   const ClosedSurfaceParameters& parameters_;
   Eigen::Vector3d center_;
   Eigen::Matrix3d turn_ = Eigen::Matrix3d::Identity();
+  double top_;           ///< see Start
   double size_ = 0.0;    ///< logarithm of the start's mean radius (of m)
   double noise_ = 0.02;  ///< standard deviation of a point, relative
   Eigen::VectorXd coefficients_;
