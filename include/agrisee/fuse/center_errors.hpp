@@ -6,10 +6,10 @@
 /// there are. The mean residual of each view on each body, before registration, measures this shared error: the mean of
 /// the squares is its variance. It is propagated through the least-squares fit view by view, as for clustered errors
 /// (Liang & Zeger, Biometrika 1986). An error that is the same in all views causes no disagreement; half of the
-/// variance of an L515's correlated noise is of this kind, so the variance is doubled. Errors that only points near each
-/// other share are propagated in the same way, patch by patch of 15 degrees; their variance is that of the mean
-/// residuals of the patches about that of their view. The scatter of the registration's shifts, divided by the number of
-/// views, is added. Metres, world.
+/// variance of an L515's correlated noise is of this kind, so the variance is doubled. Errors that only points near
+/// each other share are propagated in the same way, patch by patch of 15 degrees; their variance is that of the mean
+/// residuals of the patches about that of their view. The scatter of the registration's shifts, divided by the number
+/// of views, is added. Metres, world.
 #pragma once
 
 #include <agrisee/cloud/fit.hpp>
