@@ -181,7 +181,7 @@ inline double fruit_probability(const Verdict& v, const EllipsoidFit& fit, const
   if (v.support == 0 || !(v.coverage > 0.0)) return 0.0;
   constexpr double kMostPoints = 1500.0, kMostMisfit = 0.08, kRoundEnough = 0.8, kLarge = 0.5;  // more changes nothing
   constexpr double kSingleView = -0.4, kSeenOn = 2.8, kUsual = 0.42;
-  constexpr double kRidge = 6.0, kHardlyRound = 0.5, kBeyond = 30.0;
+  constexpr double kHardlyRound = 0.5, kBeyond = 30.0;
   const double radius = fit.body.mean_radius();
   // The same share of a smaller surface has fewer points. Where several views agree on a body they count as on one of
   // 0.42 times the largest expected radius; in a single view scraps of leaves are small, too.
@@ -195,8 +195,8 @@ inline double fruit_probability(const Verdict& v, const EllipsoidFit& fit, const
                           1.55 * std::min(v.roundness, kRoundEnough) - 3.69 * through - 5.65 * v.inside / v.coverage +
                           1.7 * std::min(radius / parameters.radius_max, kLarge);
   // Several views see that a stump is a cylinder, and one does not.
-  const double view =
-      v.seen_on ? kSingleView + kSeenOn * std::log(*v.seen_on) : kRidge * std::min(0.0, v.roundness - kHardlyRound);
+  const double view = v.seen_on ? kSingleView + kSeenOn * std::log(*v.seen_on)
+                                : parameters.ridge * std::min(0.0, v.roundness - kHardlyRound);
   const double beyond = std::max(0.0, fit.body.mean_semi_axis() / parameters.radius_max - 1.0);
   return 1.0 / (1.0 + std::exp(-(evidence + view - kBeyond * beyond + prior)));
 }

@@ -206,6 +206,7 @@ struct BodyParameters {
   double min_confidence = 0.5;    ///< least probability that it is a fruit (detail::fruit_probability)
   double normal_noise = 0.0;      ///< standard deviation of the angle of a normal due to the sensor alone (rad)
   double alike = 0.7;             ///< how much it counts that the fruit of a single cloud are alike in size (0..1)
+  double ridge = 6.0;             ///< several views: log-odds against a fruit for each unit of roundness below 0.5
   double max_overlap = 0.30;      ///< deepest penetration of two bodies, as a share of the smaller radius
   FitParameters fit;              ///< fit of the ellipsoids
 
@@ -239,6 +240,7 @@ struct BodyParameters {
     f("min_confidence", p.min_confidence, Range::between(0.0, 1.0));
     f("normal_noise", p.normal_noise, Range::not_negative().in_radians());
     f("alike", p.alike, Range::between(0.0, 1.0));
+    f("ridge", p.ridge, Range::not_negative());
     f("max_overlap", p.max_overlap, Range::not_negative());
     f("fit", p.fit);
   }
