@@ -24,7 +24,7 @@ constexpr std::size_t kLeastPoints = 10;
 constexpr std::size_t kLeastViews = 3;
 
 /// What the points of a view say that lie in one direction from a body's center.
-struct Patch {
+struct PatchShare {
   Vector9 pull = Vector9::Zero();  // sum of the weighted derivatives
   double weights = 0.0;            // sum of the weights
   double residual = 0.0;           // mean (m)
@@ -38,7 +38,7 @@ struct Share {
   Eigen::Vector3d normal = Eigen::Vector3d::Zero();  // weighted mean
   double residual = 0.0;                             // mean, as registered (m)
   Eigen::Vector3d shift = Eigen::Vector3d::Zero();   // from where the reported pose puts the points (m)
-  std::vector<Patch> patches;
+  std::vector<PatchShare> patches;
 };
 
 std::optional<Share> share_of(const Ellipsoid& body, const RegisteredView& view, const FitParameters& parameters) {
@@ -49,7 +49,7 @@ std::optional<Share> share_of(const Ellipsoid& body, const RegisteredView& view,
   const double reach = body.mean_semi_axis() * 3.0 + gate;  // no semi-axis is longer than three times their mean
   Share out;
   std::size_t points = 0;
-  std::array<Patch, DirectionBins::kCount> patches;
+  std::array<PatchShare, DirectionBins::kCount> patches;
   for (std::size_t i = 0; i < image.points.size(); ++i) {
     const Eigen::Vector3d p = image.points[i].cast<double>();
     if ((p - body.center).squaredNorm() > reach * reach) continue;
@@ -63,7 +63,7 @@ std::optional<Share> share_of(const Ellipsoid& body, const RegisteredView& view,
     out.weights += row.weight;
     out.normal += row.weight * normal;
     out.residual += row.weight * row.residual;
-    Patch& patch = patches[static_cast<std::size_t>(DirectionBins::bin(p - body.center))];
+    PatchShare& patch = patches[static_cast<std::size_t>(DirectionBins::bin(p - body.center))];
     patch.pull += row.weight * row.derivatives;
     patch.weights += row.weight;
     patch.residual += row.weight * row.residual;
@@ -73,7 +73,7 @@ std::optional<Share> share_of(const Ellipsoid& body, const RegisteredView& view,
   out.normal /= out.weights;
   out.residual /= out.weights;
   out.shift /= out.weights;
-  for (Patch& patch : patches) {
+  for (PatchShare& patch : patches) {
     if (!(patch.weights > 0.0)) continue;
     patch.residual /= patch.weights;
     out.patches.push_back(patch);
@@ -108,7 +108,7 @@ double patch_variance(const std::vector<std::vector<Share>>& shares) {
   for (const auto& of_body : shares)
     for (const Share& s : of_body) {
       if (s.patches.size() < 2) continue;
-      for (const Patch& patch : s.patches) squares += std::pow(patch.residual - s.residual, 2);
+      for (const PatchShare& patch : s.patches) squares += std::pow(patch.residual - s.residual, 2);
       count += static_cast<double>(s.patches.size() - 1);
     }
   return count > 0.0 ? squares / count : 0.0;
@@ -139,7 +139,7 @@ Eigen::Matrix3d covariance_of(const Ellipsoid& body, const std::vector<Share>& s
   Matrix9 scatter = uneven * uneven * certainty * normal_matrix;
   for (const Share& s : shares) scatter += kUnseen * variance * certainty * certainty * s.pull * s.pull.transpose();
   for (const Share& s : shares)
-    for (const Patch& patch : s.patches)
+    for (const PatchShare& patch : s.patches)
       scatter += of_patches * certainty * certainty * patch.pull * patch.pull.transpose();
   const Matrix9 inverse = Eigen::LDLT<Matrix9>(information).solve(Matrix9::Identity());
   const Matrix9 covariance = inverse * scatter * inverse.transpose();
