@@ -508,6 +508,7 @@ class SplitBodiesParameters:
     min_confidence: float
     normal_noise: float
     alike: float
+    ridge: float
     max_overlap: float
     fit: SplitBodiesFitParameters
     __hash__: ClassVar[None]  # type: ignore[assignment]
