@@ -2,6 +2,8 @@
 #include <agrisee/cloud/sphere_voting.hpp>
 
 #include <algorithm>
+#include <array>
+#include <limits>
 
 #include "catch.hpp"
 #include "spheres.hpp"
@@ -44,4 +46,20 @@ TEST_CASE("new points tell where to look for centers") {
   CHECK(vote_for_centers(cloud, 0.02, 0.05, 100, fresh).size() == all.size());
   fresh.pop_back();
   CHECK_THROWS_AS(vote_for_centers(cloud, 0.02, 0.05, 100, fresh), InputError);
+}
+
+TEST_CASE("points whose normals are not of unit length do not vote") {
+  Cloud cloud;
+  test::add_sphere(cloud, {{0.2, -0.1, 0.4}, 0.037}, 0.003, [](const Eigen::Vector3d& d) { return d.x() > 0.6; });
+  Cloud zeros = cloud;
+  const std::array<float, 4> lengths = {0.0f, 3.0f, std::numeric_limits<float>::infinity(),
+                                        std::numeric_limits<float>::quiet_NaN()};
+  for (std::size_t i = 0; i < cloud.size(); i += 3) {
+    zeros.normals[i].setZero();
+    cloud.normals[i] *= lengths[i % lengths.size()];
+  }
+  const auto some = vote_for_centers(cloud, 0.02, 0.05, 20), same = vote_for_centers(zeros, 0.02, 0.05, 20);
+  REQUIRE_FALSE(same.empty());
+  REQUIRE(some.size() == same.size());
+  for (std::size_t k = 0; k < some.size(); ++k) CHECK(some[k].center == same[k].center);
 }

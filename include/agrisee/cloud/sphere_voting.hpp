@@ -54,7 +54,7 @@ class VoteGrid {
     const auto cell_of = [&](const Eigen::Vector3d& p) -> Cell {
       return (p / pitch).array().floor().cast<std::int64_t>();
     };
-    const Eigen::Vector3d reach = Eigen::Vector3d::Constant(radius_max);
+    const Eigen::Vector3d reach = Eigen::Vector3d::Constant(kReach * radius_max);
     before = cell_of(box.min - reach) - Cell::Constant(2);
     const Cell most = cell_of(box.max + reach) - before + Cell::Constant(3);
     while (most.x() >> y_shift_ != 0) ++y_shift_;
@@ -62,8 +62,15 @@ class VoteGrid {
     while (most.y() >> (z_shift_ - y_shift_) != 0) ++z_shift_;
   }
 
+  /// Whether a normal is long enough to show a direction, and so short that its votes lie in the grid.
+  template <typename S>
+  static bool admits(const Vector3<S>& normal) {
+    const S length_sq = normal.squaredNorm();
+    return length_sq > S(0.5) && length_sq < S(2);
+  }
+
   /// Points farther from the origin than this along an axis (m) do not vote: 21 bits an axis hold no more.
-  double widest(double radius_max) const { return pitch * double((1 << 20) - 8) - radius_max; }
+  double widest(double radius_max) const { return pitch * double((1 << 20) - 8) - kReach * radius_max; }
 
   std::uint64_t pack(std::uint64_t x, std::uint64_t y, std::uint64_t z) const {
     return z << z_shift_ | y << y_shift_ | x;
@@ -80,6 +87,7 @@ class VoteGrid {
   Cell before = Cell::Zero();                        ///< cell of the origin's grid that would be number 0
 
  private:
+  static constexpr double kReach = 1.5;  // farthest vote of a point, in largest radii: the longest normal admitted
   unsigned y_shift_ = 0, z_shift_ = 0;
 };
 
@@ -107,7 +115,7 @@ Uninitialized<std::uint64_t> cast_votes(const PointCloud<S>& cloud, const VoteGr
   const Eigen::Vector3d half = Eigen::Vector3d::Constant(0.5) - grid.before.template cast<double>();
   for (std::size_t i = 0; i < cloud.size(); ++i) {
     if ((i & 0xFFF) == 0) throw_if_cancelled();
-    if (!votes(i) || !is_finite(cloud.points[i]) || !(cloud.normals[i].squaredNorm() > S(0.5))) continue;
+    if (!votes(i) || !is_finite(cloud.points[i]) || !VoteGrid::admits<S>(cloud.normals[i])) continue;
     const Eigen::Vector3d p = cloud.points[i].template cast<double>() - grid.origin;
     if (p.cwiseAbs().maxCoeff() > limit) continue;
     const Eigen::Vector3d n = cloud.normals[i].template cast<double>();
@@ -214,7 +222,7 @@ inline std::vector<VotedCenter> thin_out(const std::vector<VoteSum>& sums, doubl
 }  // namespace detail
 
 /// Local maxima of the votes for sphere centers, best first (of equal ones, in the order of their position).
-/// @param cloud points (m) with outward unit normals; points with zero normals do not vote
+/// @param cloud points (m) with outward unit normals; points with other normals, such as zero, do not vote
 /// @param radius_min smallest expected radius (m), positive
 /// @param radius_max largest expected radius (m), at least `radius_min`
 /// @param min_votes weaker maxima are left out
