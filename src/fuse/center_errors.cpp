@@ -23,22 +23,27 @@ constexpr std::size_t kLeastPoints = 10;
 /// With fewer views of a body their disagreement tells nothing.
 constexpr std::size_t kLeastViews = 3;
 
-/// What the points of a view say that lie in one direction from a body's center.
-struct PatchShare {
-  Vector9 pull = Vector9::Zero();  // sum of the weighted derivatives
-  double weights = 0.0;            // sum of the weights
-  double residual = 0.0;           // mean (m)
+/// What some points of a view say of a body.
+struct Pull {
+  Vector9 sum = Vector9::Zero();  // of the weighted derivatives
+  double weights = 0.0;           // their sum
+  double residual = 0.0;          // weighted sum; mean after finish() (m)
+
+  void add(const detail::EllipsoidRow& row) {
+    sum += row.weight * row.derivatives;
+    weights += row.weight;
+    residual += row.weight * row.residual;
+  }
+  void finish() { residual /= weights; }
 };
 
 /// What a view's points say of a body.
 struct Share {
   Matrix9 normal_matrix = Matrix9::Zero();           // of the weighted derivatives
-  Vector9 pull = Vector9::Zero();                    // sum of the weighted derivatives
-  double weights = 0.0;                              // sum of the weights
   Eigen::Vector3d normal = Eigen::Vector3d::Zero();  // weighted mean
-  double residual = 0.0;                             // mean, as registered (m)
   Eigen::Vector3d shift = Eigen::Vector3d::Zero();   // from where the reported pose puts the points (m)
-  std::vector<PatchShare> patches;
+  Pull all;                                          // as registered
+  std::vector<Pull> patches;                         // of the points in one direction from the body's center
 };
 
 std::optional<Share> share_of(const Ellipsoid& body, const RegisteredView& view, const FitParameters& parameters) {
@@ -49,7 +54,7 @@ std::optional<Share> share_of(const Ellipsoid& body, const RegisteredView& view,
   const double reach = body.mean_semi_axis() * 3.0 + gate;  // no semi-axis is longer than three times their mean
   Share out;
   std::size_t points = 0;
-  std::array<PatchShare, DirectionBins::kCount> patches;
+  std::array<Pull, DirectionBins::kCount> patches;
   for (std::size_t i = 0; i < image.points.size(); ++i) {
     const Eigen::Vector3d p = image.points[i].cast<double>();
     if ((p - body.center).squaredNorm() > reach * reach) continue;
@@ -59,23 +64,18 @@ std::optional<Share> share_of(const Ellipsoid& body, const RegisteredView& view,
     ++points;
     const Eigen::Vector3d shift = p - reported_T_registered * p;
     out.normal_matrix += row.weight * row.derivatives * row.derivatives.transpose();
-    out.pull += row.weight * row.derivatives;
-    out.weights += row.weight;
     out.normal += row.weight * normal;
-    out.residual += row.weight * row.residual;
-    PatchShare& patch = patches[static_cast<std::size_t>(DirectionBins::bin(p - body.center))];
-    patch.pull += row.weight * row.derivatives;
-    patch.weights += row.weight;
-    patch.residual += row.weight * row.residual;
     out.shift += row.weight * shift;
+    out.all.add(row);
+    patches[static_cast<std::size_t>(DirectionBins::bin(p - body.center))].add(row);
   }
   if (points < kLeastPoints) return std::nullopt;
-  out.normal /= out.weights;
-  out.residual /= out.weights;
-  out.shift /= out.weights;
-  for (PatchShare& patch : patches) {
+  out.all.finish();
+  out.normal /= out.all.weights;
+  out.shift /= out.all.weights;
+  for (Pull& patch : patches) {
     if (!(patch.weights > 0.0)) continue;
-    patch.residual /= patch.weights;
+    patch.finish();
     out.patches.push_back(patch);
   }
   return out;
@@ -94,7 +94,7 @@ double shared_variance(const std::vector<std::vector<Share>>& shares) {
     if (of_body.empty()) continue;
     const Eigen::Vector3d mean = mean_shift(of_body);
     for (const Share& s : of_body) {
-      const double residual = s.residual - s.normal.dot(s.shift - mean);
+      const double residual = s.all.residual - s.normal.dot(s.shift - mean);
       squares += residual * residual;
     }
     count += static_cast<double>(of_body.size() - 1);
@@ -108,7 +108,7 @@ double patch_variance(const std::vector<std::vector<Share>>& shares) {
   for (const auto& of_body : shares)
     for (const Share& s : of_body) {
       if (s.patches.size() < 2) continue;
-      for (const PatchShare& patch : s.patches) squares += std::pow(patch.residual - s.residual, 2);
+      for (const Pull& patch : s.patches) squares += std::pow(patch.residual - s.all.residual, 2);
       count += static_cast<double>(s.patches.size() - 1);
     }
   return count > 0.0 ? squares / count : 0.0;
@@ -131,16 +131,17 @@ Eigen::Matrix3d covariance_of(const Ellipsoid& body, const std::vector<Share>& s
   const double size = body.mean_radius(), noise = parameters.noise_of(size);
   Matrix9 normal_matrix = Matrix9::Zero();
   double weights = 0.0;
-  for (const Share& s : shares) normal_matrix += s.normal_matrix, weights += s.weights;
+  for (const Share& s : shares) normal_matrix += s.normal_matrix, weights += s.all.weights;
   const double certainty = parameters.independent / (weights * noise * noise);
   Matrix9 information = certainty * normal_matrix + detail::shape_information(body, size, parameters.shape_prior);
   information.diagonal().array() += 1e-9 * information.diagonal().maxCoeff();
   const double uneven = kUneven / noise;
   Matrix9 scatter = uneven * uneven * certainty * normal_matrix;
-  for (const Share& s : shares) scatter += kUnseen * variance * certainty * certainty * s.pull * s.pull.transpose();
   for (const Share& s : shares)
-    for (const PatchShare& patch : s.patches)
-      scatter += of_patches * certainty * certainty * patch.pull * patch.pull.transpose();
+    scatter += kUnseen * variance * certainty * certainty * s.all.sum * s.all.sum.transpose();
+  for (const Share& s : shares)
+    for (const Pull& patch : s.patches)
+      scatter += of_patches * certainty * certainty * patch.sum * patch.sum.transpose();
   const Matrix9 inverse = Eigen::LDLT<Matrix9>(information).solve(Matrix9::Identity());
   const Matrix9 covariance = inverse * scatter * inverse.transpose();
   const Eigen::Matrix3d of_center = size * size * covariance.topLeftCorner<3, 3>();
