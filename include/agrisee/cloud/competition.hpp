@@ -235,16 +235,16 @@ class Competition {
   }
 
   /// Whether a rough fit, to the points of near_, is so unlike a fruit that a better one is not worth its time. Size,
-  /// score or roundness say so of most leaves. In a single view, which nothing follows, only the probability does.
+  /// score or roundness say so of most leaves. In a single view, which nothing follows, and with masks, which may know
+  /// better, only the probability does.
   bool hopeless(const EllipsoidFit& fit) const {
     constexpr double kTooLarge = 1.3, kShareOfLeast = 0.25;  // margins: a better fit may be smaller, or rounder
     constexpr std::size_t kFlatSurely = 60;                  // points that show whether a surface is round
+    const bool strict = !seen_on_ && !masks_.log_odds;
+    if (strict && fit.body.mean_semi_axis() > kTooLarge * parameters_.radius_max) return true;
     const Verdict v = judge_quickly(cloud_, near_, taken_, fit.body, parameters_, static_cast<bool>(seen_on_));
-    if (!seen_on_ && !masks_.log_odds) {
-      if (fit.body.mean_semi_axis() > kTooLarge * parameters_.radius_max) return true;
-      if (v.score() < kShareOfLeast * parameters_.min_coverage) return true;
-      if (v.support >= kFlatSurely && v.roundness < kShareOfLeast * parameters_.min_roundness) return true;
-    }
+    if (strict && v.score() < kShareOfLeast * parameters_.min_coverage) return true;
+    if (strict && v.support >= kFlatSurely && v.roundness < kShareOfLeast * parameters_.min_roundness) return true;
     const double least = 0.1 * kHopeless * parameters_.min_confidence;
     const auto below = [&](double prior) { return fruit_probability(v, fit, parameters_, prior) < least; };
     if (!masks_.log_odds) return below(0.0);

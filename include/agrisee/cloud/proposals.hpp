@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// @file
-/// Proposes spheres as first guesses of the bodies in a cloud: from segments and from votes for centers. How far apart
-/// points are and how many make a fruit follows from the spacing of the cloud. Metres.
+/// Proposes spheres as first guesses of the bodies in a cloud: from segments and from votes for centers. How many
+/// points make a fruit follows from the spacing of the cloud. Metres.
 #pragma once
 
 #include <agrisee/cloud/competition.hpp>
