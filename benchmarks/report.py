@@ -72,14 +72,14 @@ def machine():
 
 
 def comparison(results):
-    rows = ["| stage | size | ours (ms) | fastest peer (ms) | times faster | ours, 2 threads (ms) | 2 threads gain |"
-            " 2 threads, times faster | ns a point | peak MB |",
-            "|---|---|---|---|---|---|---|---|---|---|"]
+    rows = ["| stage | size | ours (ms) | fastest peer (ms) | times faster | ours, 2 threads (ms) | times faster | peak MB |",
+            "|---|---|---|---|---|---|---|---|"]
     names = {}
     for name, value in results.items():
         stage, library, size, threads = name.split("/")
         names.setdefault((stage, int(size)), {})[library, int(threads)] = value
     for stage in STAGES:
+        name = STAGES[stage]  # in its first row only
         for (s, size), found in sorted(names.items()):
             if s != stage or ("ours", 1) not in found:
                 continue
@@ -95,10 +95,10 @@ def comparison(results):
 
             peer, two, peer_two = fastest(1), found.get(("ours", 2)), fastest(2)
             rows.append("| " + " | ".join([
-                STAGES[stage], f"{size:,}", number(ours), f"{number(peer[0])} {peer[1]}" if peer else "",
+                name, f"{size:,}", number(ours), f"{number(peer[0])} {peer[1]}" if peer else "",
                 f"**{peer[0] / ours:.1f}**" if peer else "", number(two[0]) if two else "",
-                f"{ours / two[0]:.2f}" if two else "", f"{peer_two[0] / two[0]:.1f}" if two and peer_two else "",
-                number(1e6 * ours / size), number(peak) if peak else ""]) + " |")
+                f"{peer_two[0] / two[0]:.1f}" if two and peer_two else "", number(peak) if peak else ""]).replace("  ", " ") + " |")
+            name = ""
     return "\n".join(rows)
 
 
@@ -130,10 +130,10 @@ def main():
             own.update({f"{program.name[6:]}: {name}": value for name, value in run(program, ".*", few).items()})
     text = ["# Benchmarks", "", "Written by `make bench`" + (" `LARGE=1`" if large else "") + " at " +
             output_of("git", "-C", str(ROOT), "rev-parse", "--short", "HEAD") + ".", "", machine(), "",
-            "All libraries get the same cloud, a noisy truss, in the same process, and their answers are compared before anything is"
-            f" timed. Wall time, medians of {repetitions} runs ({few} at 1.5 million points). \"Fastest peer\" is the fastest of PCL,"
-            " Open3D, nanoflann and Embree that has the stage. On other machines expect the ratios, not the times. Times of our"
-            f" stages alone: [{stages.name}]({stages.name}).", "", comparison(results)]
+            "All libraries get the same cloud, a noisy truss, in one process; their answers are compared before anything is timed. Wall"
+            f" time, medians of {repetitions} runs ({few} at 1.5 million points). Peers are PCL, Open3D, nanoflann and Embree. On other"
+            f" machines expect the ratios, not the times. [{stages.name}]({stages.name}) has the times of our stages alone.", "",
+            comparison(results)]
     text += ["", f"`examples/01_process_cloud.cpp`, the README's ten lines, compiles in {compile_time():.1f} s (`-O2`)."]
     text += ["", pathlib.Path(__file__).with_name("notes.md").read_text().strip()]
     target.write_text("\n".join(text) + "\n")
