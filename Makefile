@@ -25,7 +25,7 @@ help:
 	@echo "make fuzz    fuzz the readers with clang's libFuzzer, for hours (SECONDS_IN_ALL=60: for a minute)"
 	@echo "make survive kill a scan a hundred times (KILLS=...) and fill its disk: nothing may be lost"
 	@echo "make long    scan a thousand trusses in one process (RUNS=...): memory and time may not grow"
-	@echo "make mutate  change the code at random and list what no test notices (MUTANTS=... a room)"
+	@echo "make mutate  change the code at random and list what no test notices (MUTANTS=... a folder)"
 	@echo "make format  run clang-format on all sources; make format-check: only say what it would change"
 	@echo "make clean   remove build/ and demo/"
 
