@@ -245,7 +245,7 @@ TEST_CASE("the paper's figures are recomputed from its tables and parameters") {
     REQUIRE(cells.size() == 3);
     return cells[1] + ", " + cells[2];
   };
-  // docs/paper.md quotes these.
+  // The paper's tables, and what its text states.
   CHECK(row("mean recall %") == "72.05, 82.8");
   CHECK(row("mean R_obj %") == "82.7, 82.8");
   CHECK(row("mean mIoU %") == "81.5, 80.7");
