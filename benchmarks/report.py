@@ -72,14 +72,14 @@ def machine():
 
 
 def comparison(results):
-    rows = ["| stage | size | ours (ms) | fastest peer (ms) | times faster | ours, 2 threads (ms) | times faster | peak MB |",
+    rows = ["| stage | size | ours (ms) | fastest peer (ms) | times faster | ours, 2 threads (ms) |"
+            " 2 threads, times faster | peak MB |",
             "|---|---|---|---|---|---|---|---|"]
     names = {}
     for name, value in results.items():
         stage, library, size, threads = name.split("/")
         names.setdefault((stage, int(size)), {})[library, int(threads)] = value
     for stage in STAGES:
-        name = STAGES[stage]  # in its first row only
         for (s, size), found in sorted(names.items()):
             if s != stage or ("ours", 1) not in found:
                 continue
@@ -95,10 +95,9 @@ def comparison(results):
 
             peer, two, peer_two = fastest(1), found.get(("ours", 2)), fastest(2)
             rows.append("| " + " | ".join([
-                name, f"{size:,}", number(ours), f"{number(peer[0])} {peer[1]}" if peer else "",
+                STAGES[stage], f"{size:,}", number(ours), f"{number(peer[0])} {peer[1]}" if peer else "",
                 f"**{peer[0] / ours:.1f}**" if peer else "", number(two[0]) if two else "",
-                f"{peer_two[0] / two[0]:.1f}" if two and peer_two else "", number(peak) if peak else ""]).replace("  ", " ") + " |")
-            name = ""
+                f"{peer_two[0] / two[0]:.1f}" if two and peer_two else "", number(peak) if peak else ""]) + " |")
     return "\n".join(rows)
 
 
