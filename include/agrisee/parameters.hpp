@@ -38,7 +38,7 @@ struct Parameters {
                                    ///< points seen at a larger one are dropped; pi/2: keep all
   bool growth_axis = true;  ///< z of the pose frames points to the calyx; off: to the cloud's highest point, as in [1]
   double truss_gap = 1.5;   ///< fruit hang on one truss if the gap between them is at most this many of their radii
-  double scan_confidence = 0.2;  ///< least probability of a fruit in a scan, where several views saw each body; for a
+  double scan_confidence = 0.3;  ///< least probability of a fruit in a scan, where several views saw each body; for a
                                  ///< single cloud it is `split.bodies.min_confidence`
   sensor::SurfaceParameters surface;              ///< how a surface is reconstructed from each frame
   fuse::SurfelParameters surfels;                 ///< how views are fused
