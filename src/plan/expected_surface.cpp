@@ -76,7 +76,7 @@ void ExpectedSurface::update(const Progress& progress, const SplitParameters& sp
   const std::vector<Promise> promised = promises(progress);
   for (; images_read_ < progress.images.size(); ++images_read_) mark_known(progress.images[images_read_], free_space);
   const Labels labels = find_fruit(progress, split_parameters, free_space);
-  collect_samples(progress.cloud);
+  collect_samples(progress, free_space);
   if (shows_anything(progress))
     weigh(promised, progress.cloud, progress.images.empty() ? 1.0 : measured_share(progress.images.back(), free_space));
   PointCloud<float> rest;
@@ -158,7 +158,7 @@ Labels ExpectedSurface::find_fruit(const Progress& progress, const SplitParamete
   return std::move(found.labels);
 }
 
-void ExpectedSurface::collect_samples(const Cloud& cloud) {
+void ExpectedSurface::collect_samples(const Progress& progress, const fuse::FreeSpaceParameters& free_space) {
   samples_.clear();
   areas_.clear();
   occluders_.clear();
@@ -171,15 +171,35 @@ void ExpectedSurface::collect_samples(const Cloud& cloud) {
   area_ = covered_ = 0.0;
   area_of_.clear();
   covered_of_.clear();
-  const Aabb cloud_extent = bounding_box(cloud.points);
+  const Aabb cloud_extent = bounding_box(progress.cloud.points);
   extent_ = cloud_extent.empty() ? volume_ : cloud_extent;
   center_ = extent_.center();
   if (!bodies_.empty()) extent_ = {}, center_.setZero();
-  sample_bodies(cloud);
+  sample_bodies(progress, free_space);
   sample_unknown_space(cloud_extent);
 }
 
-void ExpectedSurface::sample_bodies(const Cloud& cloud) {
+std::optional<Eigen::Vector3d> ExpectedSurface::carved(const Ellipsoid& body, const Eigen::Vector3d& direction,
+                                                       const std::vector<sensor::SurfaceImage>& images,
+                                                       const fuse::FreeSpaceParameters& free_space) const {
+  constexpr double kLeast = 0.5, kStep = 0.07;
+  const Eigen::Vector3d surface = body.surface(direction), normal = body.normal(surface);
+  const auto looked_through = [&](const sensor::SurfaceImage& image, const Eigen::Vector3d& p) {
+    if (fuse::sight(image, p, free_space) != Sight::through) return false;
+    // Surface that faces the sensor may mirror its light: a sight line without return proves nothing there.
+    return image.depth[static_cast<std::size_t>(image.cell(p))] > 0.0f ||
+           normal.dot(image.world_T_optical.translation() - p) < 0.0;
+  };
+  for (double share = 1.0; share > kLeast; share -= kStep) {
+    const Eigen::Vector3d p = body.center + share * (surface - body.center);
+    if (std::none_of(images.begin(), images.end(), [&](const auto& image) { return looked_through(image, p); }))
+      return p;
+  }
+  return std::nullopt;
+}
+
+void ExpectedSurface::sample_bodies(const Progress& progress, const fuse::FreeSpaceParameters& free_space) {
+  const Cloud& cloud = progress.cloud;
   // Any point near a fruit's surface covers it, also points of calyx and stem: no more will be seen behind them.
   const Grid<float> grid(cloud, static_cast<float>(parameters_.cover_radius));
   const std::vector<Eigen::Vector3d> directions = spread_directions(parameters_.samples);
@@ -192,11 +212,19 @@ void ExpectedSurface::sample_bodies(const Cloud& cloud) {
     const double share = weight * 4.0 * kPi * r * r / parameters_.samples;
     double covered = 0.0;
     for (const Eigen::Vector3d& d : directions) {
+      const auto is_covered = [&](const Eigen::Vector3d& p) {
+        return grid.count(p.cast<float>(), static_cast<float>(parameters_.cover_radius), 1) > 0;
+      };
       const Eigen::Vector3d p = body.surface(d);
-      if (grid.count(p.cast<float>(), static_cast<float>(parameters_.cover_radius), 1) > 0)
+      if (is_covered(p)) {
         covered += share;
-      else if (!inside_other(p, static_cast<int>(b)))
-        add_sample(p, body.normal(p), share, static_cast<int>(b));
+        continue;
+      }
+      const auto deeper = carved(body, d, progress.images, free_space);
+      if (deeper && is_covered(*deeper))
+        covered += share;
+      else if (deeper && !inside_other(*deeper, static_cast<int>(b)))
+        add_sample(*deeper, body.normal(p), share, static_cast<int>(b));
     }
     area_of_.push_back(share * parameters_.samples);
     covered_of_.push_back(covered);

@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <utility>
 
 namespace agrisee::plan {
@@ -57,7 +56,7 @@ std::optional<ReachableView> GainPlanner::next(const Progress& progress, const J
     rank_again(current);
     if (ranked_.empty()) return stop(StopReason::no_reachable_view);
   }
-  Scored& chosen = ranked_[first_of_next(current)];
+  Scored& chosen = ranked_.front();
   // From the present joints the view may be reached with others.
   if (const auto view = reach(chosen.request, current)) rate(chosen, *view, current);
   last_ = chosen.request;
@@ -189,59 +188,6 @@ bool GainPlanner::was_refused(const ViewRequest& request) const {
 
 double GainPlanner::least_gain() const {
   return parameters_.min_gain * std::max(model_.area(), 1e-6) / std::max(model_.reliability(), 1e-3);
-}
-
-std::size_t GainPlanner::first_of_next(const Joints& current) const {
-  const std::vector<std::size_t> next = views_ahead(current);
-  double shortest = std::numeric_limits<double>::infinity();
-  std::size_t first = next.front();  // the best view, unless a path that begins with another is shorter
-  for (std::size_t k = 0; k < next.size(); ++k) {
-    if (ranked_[next[k]].score < parameters_.patience * ranked_.front().score) continue;
-    std::vector<std::size_t> rest = next;
-    rest.erase(rest.begin() + static_cast<std::ptrdiff_t>(k));
-    const double begun = joint_distance(ranked_[next[k]].view, current);
-    const double length = begun + shortest_path(next[k], rest, current, shortest - begun);
-    if (length < shortest - 1e-12) shortest = length, first = next[k];
-  }
-  return first;
-}
-
-std::vector<std::size_t> GainPlanner::views_ahead(const Joints& current) const {
-  const double least = least_gain();
-  std::vector<std::size_t> next{0};
-  std::vector<float> areas = model_.areas();  // of what the views planned so far leave unseen
-  while (static_cast<int>(next.size()) < parameters_.lookahead) {
-    for (std::uint32_t i : ranked_[next.back()].shown) areas[i] = 0.0f;
-    const Joints from = ranked_[next.back()].view.joints.value_or(current);
-    double best = 0.0;
-    std::size_t choice = ranked_.size();
-    for (std::size_t c = 0; c < ranked_.size(); ++c) {
-      double gain = 0.0;
-      for (std::uint32_t i : ranked_[c].shown) gain += double(areas[i]);
-      const double score = gain / (parameters_.dwell + joint_distance(ranked_[c].view, from));
-      if (gain >= least && score > best) best = score, choice = c;
-    }
-    if (choice == ranked_.size()) break;
-    next.push_back(choice);
-  }
-  return next;
-}
-
-double GainPlanner::shortest_path(std::size_t at, std::vector<std::size_t>& rest, const Joints& current,
-                                  double bound) const {
-  if (!(bound > 0.0)) return std::numeric_limits<double>::infinity();
-  if (rest.empty()) return 0.0;
-  double shortest = bound;
-  for (std::size_t k = 0; k < rest.size(); ++k) {
-    std::swap(rest[k], rest.back());
-    const std::size_t then = rest.back();
-    rest.pop_back();
-    const double step = joint_distance(ranked_[then].view, ranked_[at].view.joints.value_or(current));
-    shortest = std::min(shortest, step + shortest_path(then, rest, current, shortest - step));
-    rest.push_back(then);
-    std::swap(rest[k], rest.back());
-  }
-  return shortest < bound ? shortest : std::numeric_limits<double>::infinity();
 }
 
 std::optional<ReachableView> GainPlanner::stop(StopReason reason) {

@@ -43,10 +43,17 @@ class ObstacleImage {
     }
   }
 
-  /// Whether the point p (m, optical frame) lies in the image and no obstacle is more than 12 mm in front of it.
+  /// Whether the point p (m, optical frame) lies in the image and no obstacle is more than 12 mm in front of it in the
+  /// four pixels about it: each obstacle counts as two pixels wide, so that a surface of such points has no holes.
   bool shows(const Eigen::Vector3f& p) const {
-    const int c = pixel(fx_ * p.x() / p.z() + cx_, fy_ * p.y() / p.z() + cy_, p.z());
-    return c >= 0 && !(depth_[static_cast<std::size_t>(c)] < p.z() - 0.012f);
+    const float u = fx_ * p.x() / p.z() + cx_, v = fy_ * p.y() / p.z() + cy_;
+    if (pixel(u, v, p.z()) < 0) return false;
+    const float hidden_by = p.z() - 0.012f;
+    for (const float dv : {-0.5f, 0.5f})
+      for (const float du : {-0.5f, 0.5f})
+        if (const int c = pixel(u + du, v + dv, p.z()); c >= 0 && depth_[static_cast<std::size_t>(c)] < hidden_by)
+          return false;
+    return true;
   }
 
  private:

@@ -212,7 +212,7 @@ TEST_CASE("expected surface: what random views show of two fruits and the space 
   CHECK(fruit < 390);
   CHECK(model.area() == Approx(2 * kSurface).epsilon(1e-3));
   for (std::size_t i = 0; i < samples.size(); ++i)
-    CHECK(model.areas()[i] == Approx(i < fruit ? kSurface / 200 : 0.08 * 0.01 * 0.01).epsilon(1e-3));
+    CHECK(model.areas()[i] == Approx(i < fruit ? kSurface / 200 : 0.03 * 0.01 * 0.01).epsilon(1e-3));
   Rng rng(3);
   std::size_t close = 0, seen = 0;
   for (int view = 0; view < 30; ++view) {
@@ -269,6 +269,36 @@ TEST_CASE("expected surface: each view that should have shown a sample lowers it
           Approx((66 * factor * factor + 66 * factor + 68) / 200).epsilon(1e-4));
   }
   CHECK(ExpectedSurfaceParameters().missed_factor == 0.35);
+}
+
+TEST_CASE("expected surface: where sight lines pass, the surface is deeper, or not there") {
+  Scan scan;
+  add_fruit(
+      scan, kFruit, [](const Vector3d& d) { return d.y() < 0.0; }, 0.002);  // its rear half is expected
+  ExpectedSurfaceParameters p = bare();
+  p.cover_radius = 0.004;
+  const auto samples = [&](const std::vector<sensor::SurfaceImage>& images) {
+    Scan seen = scan;
+    seen.images = images;
+    const ExpectedSurface model = model_of(seen, p);
+    REQUIRE(model.bodies().size() == 1);
+    return model.areas().size();
+  };
+  const std::size_t all = samples({});
+  CHECK(all > 70);
+  // From above, at the depth of a plane through the fruit: sight lines end below the expected samples that are at least
+  // 6 mm higher than it.
+  const auto above = [](double height, double fill = 1.0) {
+    return flat_image(look_at(kFruit, kFruit + Vector3d(0, 0, 0.385)), height == 0.0 ? 0.0 : 0.385 - height, fill);
+  };
+  CHECK(samples({above(0.03)}) == all);     // they end above all of it, but for the margin
+  CHECK(samples({above(0.02)}) == all);     // the upper cap is where they end
+  CHECK(samples({above(-0.2)}) < all / 4);  // they pass through all that lies in the image, on both of its sides
+  // Without return, a sight line proves that there is no surface that faces away from it; what faces it may mirror.
+  const std::size_t lower_half = samples({above(0.0)});
+  CHECK(lower_half > 0.4 * double(all));
+  CHECK(lower_half < 0.75 * double(all));
+  CHECK(samples({above(0.0, 0.5)}) == all);  // in a frame that lost many returns it proves nothing
 }
 
 TEST_CASE("expected surface: a view that lost a part of its returns lowers areas by less") {

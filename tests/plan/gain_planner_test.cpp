@@ -136,8 +136,7 @@ TEST_CASE("gain planner: candidates are sought once, and again when the extent h
 }
 
 TEST_CASE("gain planner: a half-seen fruit is looked at from behind, by the view that shows the most of all") {
-  GainPlannerParameters p = parameters();
-  p.lookahead = 1;
+  const GainPlannerParameters p = parameters();
   const auto planner = planner_of(p);
   const Scan scan = half_seen();
   planner->observe(scan.progress());
@@ -200,7 +199,7 @@ TEST_CASE("gain planner: the scan ends when the best view promises too small a s
   const auto [most, area] = next(0.1);
   CHECK(next(0.999 * most / area).first == most);
   CHECK(next(1.001 * most / area).first == 0.0);
-  CHECK(GainPlannerParameters().min_gain == 0.0015);
+  CHECK(GainPlannerParameters().min_gain == 0.0008);
 }
 
 TEST_CASE("gain planner: without fruit, the smallest gain is a share of a square millimetre") {

@@ -99,7 +99,7 @@ TEST_CASE("unknown space: a voxel is shown within the sensor's range, which is m
   CHECK_FALSE(shown_at(0.5, 0, 0.9375, near_and_far));  // 1.06 m
 }
 
-TEST_CASE("unknown space: a point more than 12 mm in front hides what is in its pixel") {
+TEST_CASE("unknown space: a point more than 12 mm in front hides what is within a pixel's width of it") {
   CHECK_FALSE(hidden_by({}));
   CHECK(hidden_by({{0, 0, 0.25}}));
   CHECK(hidden_by({{0, 0, 0.485}}));
@@ -107,23 +107,24 @@ TEST_CASE("unknown space: a point more than 12 mm in front hides what is in its 
   CHECK_FALSE(hidden_by({{0, 0, 0.505}}));
   CHECK_FALSE(hidden_by({{0, 0, 0.75}}));
   CHECK_FALSE(hidden_by({{0, 0, -0.25}}));
-  for (const double side : {-1.0, 1.0}) {
-    CHECK_FALSE(hidden_by({{side, 0, 0.25}}));
-    CHECK_FALSE(hidden_by({{0, side, 0.25}}));
-    CHECK(hidden_by({{0.49 * side, 0, 0.25}}));
-    CHECK(hidden_by({{0, 0.49 * side, 0.25}}));
+  // A voxel at three quarters of pixel 48: pixels 48 and 49 are about it; at a quarter: 47 and 48.
+  for (const auto& [offset, hides] : {std::pair(-0.8, false), {-0.7, true}, {1.2, true}, {1.3, false}}) {
+    CHECK(hidden_by({{offset, 0, 0.25}}, 48.75, 36.5) == hides);
+    CHECK(hidden_by({{0, offset, 0.25}}, 48.5, 36.75) == hides);
+    CHECK(hidden_by({{-offset, 0, 0.25}}, 48.25, 36.5) == hides);
+    CHECK(hidden_by({{0, -offset, 0.25}}, 48.5, 36.25) == hides);
   }
   CHECK(hidden_by({{0, 0, 0.25}, {0, 0, 0.45}}));  // the nearest counts
   CHECK(hidden_by({{0, 0, 0.75}, {0, 0, 0.25}}));
 }
 
 TEST_CASE("unknown space: points hide what is in the first and in the last pixel, points outside the image nothing") {
-  CHECK_FALSE(hidden_by({}, 0.5, 0.5));
-  CHECK(hidden_by({{0, 0, 0.25}}, 0.5, 0.5));
-  CHECK_FALSE(hidden_by({{1, 0, 0.25}}, 0.5, 0.5));
-  CHECK(hidden_by({{0, 0, 0.25}}, 95.5, 71.5));
-  CHECK_FALSE(hidden_by({{1, 0, 0.25}}, 95.5, 35.5));  // the pixel to the right would be the first of the next row
-  CHECK_FALSE(hidden_by({{-96, 1, 0.25}}, 95.5, 35.5));
+  CHECK_FALSE(hidden_by({}, 0.4, 0.4));
+  CHECK(hidden_by({{0, 0, 0.25}}, 0.4, 0.4));
+  CHECK_FALSE(hidden_by({{1, 0, 0.25}}, 0.4, 0.4));
+  CHECK(hidden_by({{0, 0, 0.25}}, 95.6, 71.6));
+  CHECK_FALSE(hidden_by({{1, 0, 0.25}}, 95.6, 35.6));  // the pixel to the right would be the first of the next row
+  CHECK_FALSE(hidden_by({{-96, 1, 0.25}}, 95.6, 35.6));
 }
 
 TEST_CASE("unknown space: points of a cell of 6 mm count as one in their middle") {

@@ -94,9 +94,14 @@ class ExpectedSurface {
   Labels find_fruit(const Progress& progress, const SplitParameters& split_parameters,
                     const fuse::FreeSpaceParameters& free_space);
   /// Replace all samples, and the areas and boxes that go with them.
-  void collect_samples(const Cloud& cloud);
+  void collect_samples(const Progress& progress, const fuse::FreeSpaceParameters& free_space);
   /// Add samples of each fruit's unseen surface; counts the covered surface.
-  void sample_bodies(const Cloud& cloud);
+  void sample_bodies(const Progress& progress, const fuse::FreeSpaceParameters& free_space);
+  /// Where the surface of a body can be in a direction: on the body, or deeper if sight lines pass through there.
+  /// Nothing if they pass through all of its outer half.
+  std::optional<Eigen::Vector3d> carved(const Ellipsoid& body, const Eigen::Vector3d& direction,
+                                        const std::vector<sensor::SurfaceImage>& images,
+                                        const fuse::FreeSpaceParameters& free_space) const;
   /// Add a sample for each unknown voxel near the fruit, or near the cloud when no fruit has been found.
   void sample_unknown_space(const Aabb& cloud);
   void add_sample(const Eigen::Vector3d& point, const Eigen::Vector3d& normal, double area, int body);

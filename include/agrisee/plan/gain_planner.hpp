@@ -78,15 +78,6 @@ class GainPlanner : public Planner {
   /// The smallest promised gain (m2) that is worth a view.
   double least_gain() const;
 
-  /// The index in `ranked_` of the view to take: plans several views ahead and returns the one with which the shortest
-  /// path through all of them begins.
-  std::size_t first_of_next(const Joints& current) const;
-  /// The views (indices in `ranked_`) that would be chosen one after the other, as far as the model can predict.
-  std::vector<std::size_t> views_ahead(const Joints& current) const;
-  /// Length (as joint_distance) of the shortest path from view `at` through all of `rest` (indices in `ranked_`);
-  /// infinity when it is not below `bound`. Leaves `rest` in its order.
-  double shortest_path(std::size_t at, std::vector<std::size_t>& rest, const Joints& current, double bound) const;
-
   std::optional<ReachableView> stop(StopReason reason);
 
   GainPlannerParameters parameters_;

@@ -16,7 +16,7 @@ struct ExpectedSurfaceParameters {
   double cover_radius = 0.005;     ///< a sample is covered if a point is at most this far from it (m)
   double voxel = 0.015;            ///< edge of the voxels of unknown space (m)
   double neighborhood = 0.06;      ///< unknown space counts if it is at most this far from a body's surface (m)
-  double unknown_weight = 0.08;  ///< fruit surface expected behind the face of an unknown voxel, as a share of the face
+  double unknown_weight = 0.03;  ///< fruit surface expected behind the face of an unknown voxel, as a share of the face
   double least_confidence = 0.1;  ///< least probability of a fruit for a body that the planner looks at
   double missed_factor = 0.35;  ///< a sample's area is multiplied by this for every view that should have shown it but
                                 ///< did not
@@ -46,10 +46,10 @@ struct GainPlannerParameters {
   double distance = kViewDistance;  ///< distance of the first view from its target (m)
   double distance_min = 0.27;       ///< shortest distance of a view from its target (m)
   double distance_max = 0.55;       ///< longest distance of a view from its target (m)
-  double dwell = 1.5;               ///< time that a view takes besides the move (s): settling, exposure, computing
-  int lookahead = 6;         ///< number of views planned ahead, so that the nearest of them is taken first; 1: only one
-  double patience = 0.5;     ///< the nearest is taken first only if it scores at least this share of the best
-  double min_gain = 0.0015;  ///< the scan ends when the best view promises less than this share of the known surface
+  /// Time that a view costs besides the move (s). The default asks for few views; moves hardly count beside it. With a
+  /// slow arm, the true time for settling, exposure and computing (1 to 3 s) asks for short moves and more views.
+  double dwell = 20.0;
+  double min_gain = 0.0008;  ///< the scan ends when the best view promises less than this share of the known surface
   ExpectedSurfaceParameters expected;  ///< what a view is expected to show
 
   /// @throws FieldError for the first field that is out of its range
@@ -64,8 +64,6 @@ struct GainPlannerParameters {
     f("distance_min", p.distance_min, Range::positive());
     f("distance_max", p.distance_max, Range::at_least({p.distance, "distance"}));
     f("dwell", p.dwell, Range::positive());
-    f("lookahead", p.lookahead, Range::between(1, 10));
-    f("patience", p.patience, Range::between(0.0, 1.0));
     f("min_gain", p.min_gain, Range::not_negative());
     f("expected", p.expected);
   }

@@ -639,8 +639,6 @@ class GainParameters:
     distance_min: float
     distance_max: float
     dwell: float
-    lookahead: int
-    patience: float
     min_gain: float
     expected: GainExpectedParameters
     __hash__: ClassVar[None]  # type: ignore[assignment]
