@@ -46,9 +46,8 @@ struct GainPlannerParameters {
   double distance = kViewDistance;  ///< distance of the first view from its target (m)
   double distance_min = 0.27;       ///< shortest distance of a view from its target (m)
   double distance_max = 0.55;       ///< longest distance of a view from its target (m)
-  /// Time that a view costs besides the move (s). The default asks for few views; moves hardly count beside it. With a
-  /// slow arm, the true time for settling, exposure and computing (1 to 3 s) asks for short moves and more views.
-  double dwell = 20.0;
+  double dwell = 20.0;  ///< what a view costs besides the move (s): the default asks for few views; with a slow arm the
+                        ///< true 1 to 3 s for settling, exposure and computing ask for shorter moves and more views
   double min_gain = 0.0008;  ///< the scan ends when the best view promises less than this share of the known surface
   ExpectedSurfaceParameters expected;  ///< what a view is expected to show
 
