@@ -11,6 +11,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 
 #include "cloud_searches.hpp"
 #include "plan/obstacle_image.hpp"
@@ -55,6 +56,27 @@ double measured_share(const sensor::SurfaceImage& image, const fuse::FreeSpacePa
 bool shows_anything(const Progress& progress) {
   return !progress.views.empty() && !progress.views.back().discarded && progress.views.back().points_in > 0 &&
          (progress.images.empty() || !progress.images.back().depth.empty());
+}
+
+/// Where a body's surface can be between a point on it (m) and its center (m): at that point, or deeper if sight lines
+/// pass through there. Nothing if they pass through all of the outer half of the way.
+/// @param normal of the surface there, outward
+std::optional<Eigen::Vector3d> carved(const Eigen::Vector3d& surface, const Eigen::Vector3d& normal,
+                                      const Eigen::Vector3d& center, const std::vector<sensor::SurfaceImage>& images,
+                                      const fuse::FreeSpaceParameters& free_space) {
+  constexpr double kLeast = 0.5, kStep = 0.07;  // shares of the way from the center
+  const auto looked_through = [&](const sensor::SurfaceImage& image, const Eigen::Vector3d& p) {
+    if (fuse::sight(image, p, free_space) != Sight::through) return false;
+    // Surface that faces the sensor may mirror its light: a sight line without return proves nothing there.
+    return image.depth[static_cast<std::size_t>(image.cell(p))] > 0.0f ||
+           normal.dot(image.world_T_optical.translation() - p) < 0.0;
+  };
+  for (double share = 1.0; share > kLeast; share -= kStep) {
+    const Eigen::Vector3d p = center + share * (surface - center);
+    if (std::none_of(images.begin(), images.end(), [&](const auto& image) { return looked_through(image, p); }))
+      return p;
+  }
+  return std::nullopt;
 }
 
 }  // namespace
@@ -179,29 +201,11 @@ void ExpectedSurface::collect_samples(const Progress& progress, const fuse::Free
   sample_unknown_space(cloud_extent);
 }
 
-std::optional<Eigen::Vector3d> ExpectedSurface::carved(const Ellipsoid& body, const Eigen::Vector3d& direction,
-                                                       const std::vector<sensor::SurfaceImage>& images,
-                                                       const fuse::FreeSpaceParameters& free_space) const {
-  constexpr double kLeast = 0.5, kStep = 0.07;
-  const Eigen::Vector3d surface = body.surface(direction), normal = body.normal(surface);
-  const auto looked_through = [&](const sensor::SurfaceImage& image, const Eigen::Vector3d& p) {
-    if (fuse::sight(image, p, free_space) != Sight::through) return false;
-    // Surface that faces the sensor may mirror its light: a sight line without return proves nothing there.
-    return image.depth[static_cast<std::size_t>(image.cell(p))] > 0.0f ||
-           normal.dot(image.world_T_optical.translation() - p) < 0.0;
-  };
-  for (double share = 1.0; share > kLeast; share -= kStep) {
-    const Eigen::Vector3d p = body.center + share * (surface - body.center);
-    if (std::none_of(images.begin(), images.end(), [&](const auto& image) { return looked_through(image, p); }))
-      return p;
-  }
-  return std::nullopt;
-}
-
 void ExpectedSurface::sample_bodies(const Progress& progress, const fuse::FreeSpaceParameters& free_space) {
-  const Cloud& cloud = progress.cloud;
   // Any point near a fruit's surface covers it, also points of calyx and stem: no more will be seen behind them.
-  const Grid<float> grid(cloud, static_cast<float>(parameters_.cover_radius));
+  const auto cover = static_cast<float>(parameters_.cover_radius);
+  const Grid<float> grid(progress.cloud, cover);
+  const auto is_covered = [&](const Eigen::Vector3d& p) { return grid.count(p.cast<float>(), cover, 1) > 0; };
   const std::vector<Eigen::Vector3d> directions = spread_directions(parameters_.samples);
   for (std::size_t b = 0; b < bodies_.size(); ++b) {
     const Ellipsoid& body = bodies_[b].fit.body;
@@ -212,19 +216,17 @@ void ExpectedSurface::sample_bodies(const Progress& progress, const fuse::FreeSp
     const double share = weight * 4.0 * kPi * r * r / parameters_.samples;
     double covered = 0.0;
     for (const Eigen::Vector3d& d : directions) {
-      const auto is_covered = [&](const Eigen::Vector3d& p) {
-        return grid.count(p.cast<float>(), static_cast<float>(parameters_.cover_radius), 1) > 0;
-      };
       const Eigen::Vector3d p = body.surface(d);
       if (is_covered(p)) {
         covered += share;
         continue;
       }
-      const auto deeper = carved(body, d, progress.images, free_space);
-      if (deeper && is_covered(*deeper))
+      const Eigen::Vector3d normal = body.normal(p);
+      const auto at = carved(p, normal, body.center, progress.images, free_space);
+      if (at && is_covered(*at))
         covered += share;
-      else if (deeper && !inside_other(*deeper, static_cast<int>(b)))
-        add_sample(*deeper, body.normal(p), share, static_cast<int>(b));
+      else if (at && !inside_other(*at, static_cast<int>(b)))
+        add_sample(*at, normal, share, static_cast<int>(b));
     }
     area_of_.push_back(share * parameters_.samples);
     covered_of_.push_back(covered);

@@ -238,8 +238,8 @@ TEST_CASE("gain choice: the same as by comparing all views, in random games") {
     int largest = 0;
     for (std::size_t i = 0; i < choices.size(); ++i) {
       const Choice& c = choices[i];
-      const double score =
-          c.count / (1.0 + (c.at ? std::abs(*c.at - now) : 0.0));  // without joints a move costs nothing
+      const double move = c.at ? std::abs(*c.at - now) : 0.0;  // without joints a move costs nothing
+      const double score = c.count / (1.0 + move);
       if (c.count >= 2 && score > most) most = score, best = i;
       largest = std::max(largest, c.count);
     }

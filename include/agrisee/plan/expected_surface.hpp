@@ -4,7 +4,8 @@
 /// near them in which more fruit may be hidden.
 ///
 /// The merged cloud is segmented into fruit, each modeled by an ellipsoid (cloud/split.hpp). Samples are spread over
-/// each ellipsoid; those with no point nearby are unseen surface, and each stands for an area. In addition, voxels near
+/// each ellipsoid; those with no point nearby are unseen surface, and each stands for an area. Where sight lines pass
+/// through a sample it is moved inwards, because the surface must lie deeper, or dropped. In addition, voxels near
 /// the ellipsoids that no sight line has reached stand for fruit that may be hidden there. A view shows a sample when
 /// the sample lies in the image and within the sensor's range, faces the sensor, and no ellipsoid or other point of the
 /// cloud hides it. Each view that should have shown a sample but did not lowers its area, because the prediction seems
@@ -97,11 +98,6 @@ class ExpectedSurface {
   void collect_samples(const Progress& progress, const fuse::FreeSpaceParameters& free_space);
   /// Add samples of each fruit's unseen surface; counts the covered surface.
   void sample_bodies(const Progress& progress, const fuse::FreeSpaceParameters& free_space);
-  /// Where the surface of a body can be in a direction: on the body, or deeper if sight lines pass through there.
-  /// Nothing if they pass through all of its outer half.
-  std::optional<Eigen::Vector3d> carved(const Ellipsoid& body, const Eigen::Vector3d& direction,
-                                        const std::vector<sensor::SurfaceImage>& images,
-                                        const fuse::FreeSpaceParameters& free_space) const;
   /// Add a sample for each unknown voxel near the fruit, or near the cloud when no fruit has been found.
   void sample_unknown_space(const Aabb& cloud);
   void add_sample(const Eigen::Vector3d& point, const Eigen::Vector3d& normal, double area, int body);
