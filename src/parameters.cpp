@@ -60,7 +60,6 @@ void Parameters::expect_radii(double smallest, double largest) {
 
 SplitParameters Parameters::scan_split() const {
   SplitParameters out = split;
-  out.bodies.min_confidence = std::min(out.bodies.min_confidence, scan_confidence);
   out.bodies.alike = 0.0;
   return out;
 }

@@ -167,6 +167,8 @@ ScanResult Pipeline::result() const {
   Parameters parameters = parameters_;
   if (std::count_if(views_.begin(), views_.end(), [](const View& v) { return !v.discarded; }) >= kSeveral)
     parameters.split = parameters_.scan_split(), origin.mask_order = fuse::MaskOrder::points_first;
+  double& normal_noise = parameters.split.bodies.normal_noise;
+  normal_noise = std::max(normal_noise, sensor::normal_noise(map_->images()));
   ScanResult out = process(cloud_, parameters, origin, seen_through, threads_);
   out.raw = raw();
   const double located = out.seconds.locate;

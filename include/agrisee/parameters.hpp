@@ -38,8 +38,6 @@ struct Parameters {
                                    ///< points seen at a larger one are dropped; pi/2: keep all
   bool growth_axis = true;  ///< z of the pose frames points to the calyx; off: to the cloud's highest point, as in [1]
   double truss_gap = 1.5;   ///< fruit hang on one truss if the gap between them is at most this many of their radii
-  double scan_confidence = 0.3;  ///< least probability of a fruit in a scan, where several views saw each body; for a
-                                 ///< single cloud it is `split.bodies.min_confidence`
   sensor::SurfaceParameters surface;              ///< how a surface is reconstructed from each frame
   fuse::SurfelParameters surfels;                 ///< how views are fused
   IcpParameters icp = IcpParameters::of_views();  ///< how views are registered
@@ -72,8 +70,7 @@ struct Parameters {
   /// @throws FieldError if the range is empty or `largest` is more than 20 times `smallest`
   void expect_radii(double smallest, double largest);
 
-  /// The segmentation parameters of a scan: several views saw each body, so a lower probability is accepted, and
-  /// sizes need no comparison.
+  /// The segmentation parameters of a scan: several views saw each body, so sizes need no comparison.
   SplitParameters scan_split() const;
 
   /// The parameters of fuse::FusedViews.
@@ -99,7 +96,6 @@ struct Parameters {
     f("max_incidence", p.max_incidence, Range::above(0.0).up_to(kPi / 2).in_radians());
     f("growth_axis", p.growth_axis);
     f("truss_gap", p.truss_gap, Range::not_negative());
-    f("scan_confidence", p.scan_confidence, Range::between(0.0, 1.0));
     f("surface", p.surface);
     f("surfels", p.surfels);
     f("icp", p.icp);

@@ -163,6 +163,7 @@ Labels ExpectedSurface::find_fruit(const Progress& progress, const SplitParamete
   SplitParameters with_bodies = split_parameters;
   with_bodies.adaptive = with_bodies.fit_bodies = true;
   with_bodies.bodies.ridge = 0.0;  // what few views have seen looks less round than it is
+  with_bodies.bodies.normal_noise = std::max(with_bodies.bodies.normal_noise, sensor::normal_noise(progress.images));
   min_confidence_ = split_parameters.bodies.min_confidence;
   with_bodies.bodies.min_confidence = std::min(min_confidence_, parameters_.least_confidence);
   const auto through = [&](const Ellipsoid& body) { return fuse::seen_through(progress.images, body, free_space); };

@@ -51,6 +51,15 @@ Quality quality(const SurfaceImage& image) {
 
 }  // namespace
 
+TEST_CASE("the noise of normals is that of the middle image, without those of discarded views") {
+  CHECK(normal_noise({}) == 0.0);
+  std::vector<SurfaceImage> images(4);
+  const double noise[] = {0.001, 0.004, 0.002, 0.0};  // the last one was discarded
+  for (std::size_t i = 0; i < 4; ++i) images[i].noise = noise[i];
+  for (std::size_t i = 0; i < 3; ++i) images[i].depth = {0.5f};
+  CHECK(normal_noise(images) == Approx(0.002 / 0.020));
+}
+
 TEST_CASE("a surface is recovered from noise that is larger than its detail") {
   const Intrinsics k = intrinsics_from_fov(640, 480, deg(50), deg(39));
   const auto [noise, mean_limit, limit95] = GENERATE(
@@ -158,7 +167,7 @@ TEST_CASE("unusable frames are refused") {
   CHECK_THROWS_AS(reconstruct_surface(frame, kPose, volume(), bad), ParameterError);
 }
 
-TEST_CASE("unorganised points take the same path as a depth image") {
+TEST_CASE("unorganized points take the same path as a depth image") {
   const Intrinsics k = intrinsics_from_fov(320, 240, deg(50), deg(39));
   const DepthFrame frame = test::render(kSpheres, k, kPose);
   std::vector<Eigen::Vector3f> points;

@@ -4,6 +4,7 @@
 /// radians.
 #pragma once
 
+#include <agrisee/core/median.hpp>
 #include <agrisee/core/parameter_range.hpp>
 #include <agrisee/core/pose.hpp>
 #include <agrisee/sensor/intrinsics.hpp>
@@ -62,5 +63,15 @@ struct SurfaceImage {
     return static_cast<std::ptrdiff_t>(*seen);
   }
 };
+
+/// Standard deviation of the angle of the normals (rad) in fused surfaces due to the sensor alone: the median noise of
+/// the images over 20 mm, about the width of the patches that normals are fitted to. 0 without images.
+inline double normal_noise(const std::vector<SurfaceImage>& images) {
+  constexpr double kPatch = 0.020;
+  std::vector<double> noise;
+  for (const SurfaceImage& image : images)
+    if (!image.depth.empty()) noise.push_back(image.noise);
+  return median(noise) / kPatch;
+}
 
 }  // namespace agrisee::sensor

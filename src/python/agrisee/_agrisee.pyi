@@ -703,7 +703,6 @@ class Parameters:
     max_incidence: float
     growth_axis: bool
     truss_gap: float
-    scan_confidence: float
     surface: SurfaceParameters
     surfels: SurfelsParameters
     icp: IcpParameters
