@@ -165,6 +165,128 @@ inline std::vector<RadialBin> free_space_limits(const SurfaceFit& fit, const Sur
   return out;
 }
 
+/// What a closed surface is fitted to: the fruit's points, evenly picked, then points near it that belong to no fruit.
+struct SurfacePoints {
+  SurfaceFit::Samples samples;
+  Indices near;  ///< the points that belong to no fruit, in the order of the samples
+};
+
+/// @param reach points of `others` farther than this from the body's center are not used (m)
+/// @param max_points of `own` that are used
+template <typename S>
+SurfacePoints surface_points(const PointCloud<S>& cloud, const Indices& own, const Indices& others,
+                             const Ellipsoid& body, double reach, std::size_t max_points) {
+  SurfacePoints out;
+  const auto add = [&](Index index) {
+    const auto i = static_cast<std::size_t>(index);
+    out.samples.points.push_back(cloud.points[i].template cast<double>());
+    out.samples.normals.push_back(cloud.normals[i].template cast<double>());
+  };
+  const std::size_t used = std::min(own.size(), max_points);
+  for (std::size_t k = 0; k < used; ++k) add(own[k * own.size() / used]);
+  out.samples.own = used;
+  for (const Index i : others) {
+    const Eigen::Vector3d p = cloud.points[static_cast<std::size_t>(i)].template cast<double>();
+    if (!((p - body.center).squaredNorm() < reach * reach)) continue;
+    add(i);
+    out.near.push_back(i);
+  }
+  return out;
+}
+
+/// Numbers of lobes that are tried; 0 is a body of revolution.
+constexpr std::array<int, 8> kLobes = {0, 3, 4, 5, 6, 7, 8, 9};
+
+/// Relative distances beyond which points lose weight, step by step.
+constexpr std::array<double, 4> kGates = {0.15, 0.08, 0.05, 0.04};
+
+/// A fit of the model number `model`.
+struct FittedSurface {
+  SurfaceFit fit;
+  std::size_t model;
+  double evidence;  ///< for the fit (nats)
+};
+
+/// Fit from one first guess: a body of revolution, then the model for which there is most evidence.
+/// @param models one for each of kLobes
+/// @return empty if the points do not determine it
+inline std::optional<FittedSurface> fit_from(const SurfaceFit::Start& start, const SurfaceFit::Samples& samples,
+                                             const std::vector<SurfaceModel>& models,
+                                             const ClosedSurfaceParameters& parameters) {
+  constexpr std::size_t kSteps = 4;  // as a body of revolution, then with its lobes
+  constexpr double kFar = 0.5;       // points farther off than this do not tell fits apart
+  SurfaceFit fit(samples, start, models[0], parameters);
+  for (std::size_t k = 0; k < kSteps; ++k)
+    if (!fit.step(models[0], kGates[k], k >= 2)) return std::nullopt;
+  const std::vector<double> plain = fit.plain_weights(0.2);
+  const std::vector<RadialBin> bins = fit.radial_bins(plain);
+  if (bins.empty()) return std::nullopt;
+  std::size_t model = 0;
+  double largest = 0.0;
+  for (std::size_t m = 0; m < models.size(); ++m) {
+    const double evidence = fit.evidence_for(models[m], models[0], bins, 0.006);
+    if (m > 0 && !(evidence > largest)) continue;
+    largest = evidence;
+    model = m;
+  }
+  fit.change(models[model], models[0]);
+  if (model > 0) fit.set_weights(plain);
+  for (std::size_t k = 0; k < kSteps; ++k) {
+    if (k == 1) fit.open_top();
+    if (!fit.step(models[model], kGates[std::min<std::size_t>(k + 1, 3)], true)) return std::nullopt;
+  }
+  const double evidence = fit.evidence(models[model], fit.radial_bins(fit.plain_weights(kFar)), kEvidenceNoise);
+  return FittedSurface{std::move(fit), model, evidence};
+}
+
+/// The best of the fits from several first guesses; empty if none succeeds.
+inline std::optional<FittedSurface> best_fit(const std::vector<SurfaceFit::Start>& starts,
+                                             const SurfaceFit::Samples& samples,
+                                             const std::vector<SurfaceModel>& models,
+                                             const ClosedSurfaceParameters& parameters) {
+  constexpr double kGoodFit = 0.006;  // misfit of a fit after which no other start is tried
+  constexpr double kClearly = 10.0;   // nats by which the guess without the points at the stem has to be better
+  std::optional<FittedSurface> best;
+  for (const SurfaceFit::Start& start : starts) {
+    throw_if_cancelled();
+    auto fitted = fit_from(start, samples, models, parameters);
+    if (!fitted) continue;
+    if (best && !(fitted->evidence > best->evidence + (start.top < 1.0 ? kClearly : 0.0))) continue;
+    best.emplace(std::move(*fitted));
+    if (best->fit.misfit() < kGoodFit) break;
+  }
+  return best;
+}
+
+/// Evidence (nats) for a closed surface over the ellipsoid, from the points that either of the two explains.
+inline double evidence_over(const Ellipsoid& body, const SurfaceFit& fit, const SurfaceModel& model,
+                            const SurfaceFit::Samples& samples, double uneven) {
+  constexpr double kNear = 0.05;  // of the radius
+  std::vector<double> explained(samples.points.size(), 0.0);
+  for (std::size_t i = 0; i < samples.own; ++i)
+    explained[i] =
+        std::abs(fit.residuals()[i]) < kNear || std::abs(body.distance(samples.points[i])) < kNear * body.mean_radius();
+  const std::vector<RadialBin> common = fit.radial_bins(explained);
+  const double noise = std::max(kEvidenceNoise, fit.noise());
+  return robust_evidence(fit.problem(model, common, noise, kNear)) -
+         ellipsoid_evidence(body, fit, common, noise, uneven);
+}
+
+/// Set the misfit of a closed surface and, if it counts at all, the points of no fruit that it explains.
+inline void explain_points(const SurfaceFit& fit, const SurfacePoints& points, ClosedSurface& out) {
+  double squares = 0.0, weights = 0.0;
+  const SurfaceFit::Samples& samples = points.samples;
+  for (std::size_t i = 0; i < samples.points.size(); ++i) {
+    const double weight = fit.weights()[i];
+    const double distance = fit.residuals()[i] * (samples.points[i] - fit.center()).norm();
+    squares += weight * distance * distance;
+    weights += weight;
+    if (out.weight > 0.0 && i >= samples.own && weight > 0.0) out.joined.push_back(points.near[i - samples.own]);
+  }
+  out.rms = weights > 0.0 ? std::sqrt(squares / weights) : 0.0;
+  std::sort(out.joined.begin(), out.joined.end());
+}
+
 }  // namespace detail
 
 /// Reconstructs the closed surface of a fruit.
@@ -188,109 +310,37 @@ std::optional<ClosedSurface> closed_surface(const PointCloud<S>& cloud, const In
   if (own.size() < kLeast) return std::nullopt;
   const Eigen::Vector3d radii = semi_axes(body).first;
 
-  detail::SurfaceFit::Samples samples;
-  Indices near;  // of `others`
-  const auto add = [&](Index index) {
-    const auto i = static_cast<std::size_t>(index);
-    samples.points.push_back(cloud.points[i].template cast<double>());
-    samples.normals.push_back(cloud.normals[i].template cast<double>());
-  };
-  const std::size_t used = std::min(own.size(), static_cast<std::size_t>(parameters.max_points));
-  for (std::size_t k = 0; k < used; ++k) add(own[k * own.size() / used]);
-  samples.own = used;
-  for (const Index i : others) {
-    const Eigen::Vector3d p = cloud.points[static_cast<std::size_t>(i)].template cast<double>();
-    if (!((p - body.center).squaredNorm() < 4.84 * radii[0] * radii[0])) continue;
-    add(i);
-    near.push_back(i);
-  }
-
-  constexpr std::array<double, 4> kGates = {0.15, 0.08, 0.05,
-                                            0.04};  // relative distances beyond which points lose weight
-  constexpr int kSteps = 4;                         // as a body of revolution, then with its lobes
-  constexpr double kGoodFit = 0.006;                // misfit of a fit after which no other start is tried
-  constexpr double kFar = 0.5;                      // points farther off than this do not tell fits apart
-  constexpr std::array<int, 8> kLobes = {0, 3, 4, 5, 6, 7, 8, 9};
+  constexpr double kReach = 2.2;  // of the largest semi-axis
+  const detail::SurfacePoints points = detail::surface_points(cloud, own, others, body, kReach * radii[0],
+                                                              static_cast<std::size_t>(parameters.max_points));
   std::vector<detail::SurfaceModel> models;
-  for (const int n : kLobes) models.emplace_back(n, parameters);
-
-  constexpr double kClearly = 10.0;  // nats by which the guess without the points at the stem has to be better
-  std::optional<detail::SurfaceFit> best;
-  std::size_t best_model = 0;
-  double best_evidence = 0.0;
-  for (const detail::SurfaceFit::Start& start : detail::first_guesses(cloud, own, body, axis)) {
-    throw_if_cancelled();
-    detail::SurfaceFit fit(samples, start, models[0], parameters);
-    bool good = true;
-    for (int k = 0; k < kSteps && good; ++k) good = fit.step(models[0], kGates[static_cast<std::size_t>(k)], k >= 2);
-    if (!good) continue;
-    const std::vector<double> plain = fit.plain_weights(0.2);
-    const std::vector<detail::RadialBin> bins = fit.radial_bins(plain);
-    if (bins.empty()) continue;
-    std::size_t model = 0;
-    double largest = 0.0;
-    for (std::size_t m = 0; m < models.size(); ++m) {
-      const double evidence = fit.evidence_for(models[m], models[0], bins, 0.006);
-      if (m > 0 && !(evidence > largest)) continue;
-      largest = evidence;
-      model = m;
-    }
-    fit.change(models[model], models[0]);
-    if (model > 0) fit.set_weights(plain);
-    for (std::size_t k = 0; k < kSteps && good; ++k) {
-      if (k == 1) fit.open_top();
-      good = fit.step(models[model], kGates[std::min<std::size_t>(k + 1, 3)], true);
-    }
-    if (!good) continue;
-    const double evidence =
-        fit.evidence(models[model], fit.radial_bins(fit.plain_weights(kFar)), detail::kEvidenceNoise);
-    if (best && !(evidence > best_evidence + (start.top < 1.0 ? kClearly : 0.0))) continue;
-    best.emplace(fit);
-    best_model = model;
-    best_evidence = evidence;
-    if (best->misfit() < kGoodFit) break;
-  }
+  for (const int n : detail::kLobes) models.emplace_back(n, parameters);
+  auto best = detail::best_fit(detail::first_guesses(cloud, own, body, axis), points.samples, models, parameters);
   if (!best) return std::nullopt;
-  const detail::SurfaceModel& model = models[best_model];
+  detail::SurfaceFit& fit = best->fit;
+  const detail::SurfaceModel& model = models[best->model];
 
   constexpr int kLimited = 3;  // steps with the limits by free space
   for (int k = 0; seen_through && k < kLimited; ++k) {
-    best->set_limits(detail::free_space_limits(*best, model, seen_through));
-    if (!best->step(model, kGates.back(), true)) return std::nullopt;
+    fit.set_limits(detail::free_space_limits(fit, model, seen_through));
+    if (!fit.step(model, detail::kGates.back(), true)) return std::nullopt;
   }
 
   ClosedSurface out;
-  out.lobes = kLobes[best_model];
-  std::vector<detail::RadialBin> bins = best->radial_bins(best->weights());
+  out.lobes = detail::kLobes[best->model];
+  std::vector<detail::RadialBin> bins = fit.radial_bins(fit.weights());
   if (bins.size() < 12) return std::nullopt;
-  bins.insert(bins.end(), best->limits().begin(), best->limits().end());
-  detail::integrate(model, *best, detail::linear_posterior(best->problem(model, bins, best->noise(), 1.0)),
+  bins.insert(bins.end(), fit.limits().begin(), fit.limits().end());
+  detail::integrate(model, fit, detail::linear_posterior(fit.problem(model, bins, fit.noise(), 1.0)),
                     parameters.error_scale, out);
   const double ratio = out.volume / (4.0 / 3.0 * kPi * radii.prod());
   if (!(ratio > 0.4) || !(ratio < 2.5) || !((out.center - body.center).norm() < 0.6 * radii[0])) return std::nullopt;
 
-  // Evidence from the points that either of the two bodies explains.
-  std::vector<double> explained(samples.points.size(), 0.0);
-  for (std::size_t i = 0; i < samples.own; ++i)
-    explained[i] =
-        std::abs(best->residuals()[i]) < 0.05 || std::abs(body.distance(samples.points[i])) < 0.05 * body.mean_radius();
-  const std::vector<detail::RadialBin> common = best->radial_bins(explained);
-  const double noise = std::max(detail::kEvidenceNoise, best->noise());
-  out.evidence = detail::robust_evidence(best->problem(model, common, noise, 0.05)) -
-                 detail::ellipsoid_evidence(body, *best, common, noise, parameters.uneven);
+  out.evidence = detail::evidence_over(body, fit, model, points.samples, parameters.uneven);
   const double t =
       std::clamp((out.evidence - parameters.doubtful) / (parameters.certain - parameters.doubtful), 0.0, 1.0);
   out.weight = t * t * (3.0 - 2.0 * t);
-
-  double squares = 0.0, weights = 0.0;
-  for (std::size_t i = 0; i < samples.points.size(); ++i) {
-    const double distance = best->residuals()[i] * (samples.points[i] - best->center()).norm();
-    squares += best->weights()[i] * distance * distance;
-    weights += best->weights()[i];
-    if (out.weight > 0.0 && i >= samples.own && best->weights()[i] > 0.0) out.joined.push_back(near[i - samples.own]);
-  }
-  out.rms = weights > 0.0 ? std::sqrt(squares / weights) : 0.0;
-  std::sort(out.joined.begin(), out.joined.end());
+  detail::explain_points(fit, points, out);
   return out;
 }
 
