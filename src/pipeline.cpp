@@ -80,24 +80,21 @@ const View& Pipeline::observe(sensor::DepthFrame frame, const Pose& world_T_opti
   return observe(std::make_shared<const sensor::DepthFrame>(std::move(frame)), world_T_optical, joints);
 }
 
-const View& Pipeline::observe(std::shared_ptr<const sensor::DepthFrame> shared, const Pose& reported,
+const View& Pipeline::observe(std::shared_ptr<const sensor::DepthFrame> frame, const Pose& reported,
                               const std::optional<Joints>& joints) {
-  check_input(shared != nullptr, "observe: there is no frame");
-  const sensor::DepthFrame& frame = *shared;
-  const Pose world_T_optical =
-      made_rigid(reported, "observe: world_T_optical of view " + std::to_string(views_.size()));
-  const View view = begin_view(frame, world_T_optical, joints);
-  const bool frozen = repeats_last_frame(frame);
+  check_input(frame != nullptr, "observe: there is no frame");
+  const View view = begin_view(*frame, reported, joints);
+  const bool frozen = repeats_last_frame(*frame);
 
   // Look: what the frame shows, registered to the map. Nothing changes until this is known.
   fuse::Observation seen;
-  if (!frozen) seen = timed(seconds_.fuse, [&] { return map_->look(frame, world_T_optical); });
+  if (!frozen) seen = timed(seconds_.fuse, [&] { return map_->look(*frame, view.world_T_optical); });
   throw_if_cancelled();
   const detail::CancellationSwap to_the_end(nullptr);
 
   // Fuse: the view becomes part of the map.
   fuse::Change change = timed(seconds_.fuse, [&] {
-    return frozen ? map_->skip(frame, world_T_optical) : map_->take(std::move(seen), world_T_optical);
+    return frozen ? map_->skip(*frame, view.world_T_optical) : map_->take(std::move(seen), view.world_T_optical);
   });
 
   // Clean, where that is done after every view.
@@ -105,18 +102,8 @@ const View& Pipeline::observe(std::shared_ptr<const sensor::DepthFrame> shared, 
   cloud_ = timed(seconds_.fuse, [&] { return map_->cloud(); });
 
   // Record the view, and tell the planner.
-  record(view, change, frozen);
-  if (!is_rigid(reported)) {
-    ++rounded_poses_;
-    worst_rounding_ = std::max(worst_rounding_, rigid_error(reported));
-  }
-  if (!frozen) remember(frame);
-  if (!frozen && (frame.detected || !frame.color.empty())) {
-    if (parameters_.color_prior.enabled && !frame.detected)
-      shared = std::make_shared<const sensor::DepthFrame>(
-          fuse::detected_by_color(frame, parameters_.split.bodies, parameters_.color_prior));
-    detected_[views_.size() - 1] = {std::move(shared), world_T_optical};
-  }
+  record(view, reported, change, frozen);
+  if (!frozen) remember(std::move(frame), view.world_T_optical);
   timed(seconds_.segment, [&] { read_masks(); });
   timed(seconds_.plan, [&] { planner_->observe(progress(change)); });
   return views_.back();
@@ -189,8 +176,10 @@ ScanResult Pipeline::result() const {
 }
 
 /// What is known of a view before its frame is looked at.
-View Pipeline::begin_view(const sensor::DepthFrame& frame, const Pose& world_T_optical,
+View Pipeline::begin_view(const sensor::DepthFrame& frame, const Pose& reported,
                           const std::optional<Joints>& joints) const {
+  const Pose world_T_optical =
+      made_rigid(reported, "observe: world_T_optical of view " + std::to_string(views_.size()));
   check(frame);
   sensor::check_depth_unit(frame);
   if (frame.detected) fuse::instances_of(frame);  // detections that cannot be are refused before anything changes
@@ -208,8 +197,9 @@ View Pipeline::begin_view(const sensor::DepthFrame& frame, const Pose& world_T_o
 }
 
 /// Add a view to the record. Planning time counts for the next view from here on.
+/// @param reported its pose before it was made rigid
 /// @param repeated its frame is the one before
-void Pipeline::record(View view, const fuse::Change& change, bool repeated) {
+void Pipeline::record(View view, const Pose& reported, const fuse::Change& change, bool repeated) {
   view.points_in = change.points_in;
   view.points_new = change.added.size();
   if (repeated) view.discard_reason = DiscardReason::repeated_frame;
@@ -224,11 +214,20 @@ void Pipeline::record(View view, const fuse::Change& change, bool repeated) {
   }
   refusals_ = 0;
   planned_before_ = seconds_.plan;
+  if (is_rigid(reported)) return;
+  ++rounded_poses_;
+  worst_rounding_ = std::max(worst_rounding_, rigid_error(reported));
 }
 
-/// Keep a frame that shows something, to recognize it if the camera repeats it.
-void Pipeline::remember(const sensor::DepthFrame& frame) {
-  if (shows_something(frame)) last_frame_ = frame.depth;
+/// Keep what is needed of the last view's frame: its depths, if it shows something, to recognize it if the camera
+/// repeats it; all of it, if it has masks or colors.
+void Pipeline::remember(std::shared_ptr<const sensor::DepthFrame> frame, const Pose& world_T_optical) {
+  if (shows_something(*frame)) last_frame_ = frame->depth;
+  if (!frame->detected && frame->color.empty()) return;
+  if (parameters_.color_prior.enabled && !frame->detected)
+    frame = std::make_shared<const sensor::DepthFrame>(
+        fuse::detected_by_color(*frame, parameters_.split.bodies, parameters_.color_prior));
+  detected_[views_.size() - 1] = {std::move(frame), world_T_optical};
 }
 
 /// True when a frame equals the last one that showed something; the noise of a camera that works never repeats.

@@ -113,10 +113,9 @@ class Pipeline {
   ScanResult result() const;
 
  private:
-  View begin_view(const sensor::DepthFrame& frame, const Pose& world_T_optical,
-                  const std::optional<Joints>& joints) const;
-  void record(View view, const fuse::Change& change, bool repeated);
-  void remember(const sensor::DepthFrame& frame);
+  View begin_view(const sensor::DepthFrame& frame, const Pose& reported, const std::optional<Joints>& joints) const;
+  void record(View view, const Pose& reported, const fuse::Change& change, bool repeated);
+  void remember(std::shared_ptr<const sensor::DepthFrame> frame, const Pose& world_T_optical);
   bool repeats_last_frame(const sensor::DepthFrame& frame) const;
   plan::Progress progress(const fuse::Change& change) const;
   void tell_center_errors(ScanResult& out) const;
