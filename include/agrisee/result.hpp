@@ -4,10 +4,10 @@
 /// otherwise.
 #pragma once
 
-#include <agrisee/core/body_counts.hpp>
+#include <agrisee/cloud/body_counts.hpp>
+#include <agrisee/cloud/ripeness.hpp>
 #include <agrisee/core/cloud.hpp>
 #include <agrisee/core/pose.hpp>
-#include <agrisee/core/ripeness.hpp>
 #include <agrisee/core/stop_reason.hpp>
 
 #include <optional>

@@ -7,8 +7,9 @@ void Mount::check() const {
   if (!is_rigid(world_T_base)) throw ParameterError("world_T_base must be a finite rigid pose");
   if (!is_rigid(tool0_T_optical)) throw ParameterError("tool0_T_optical must be a finite rigid pose");
   model.limits.check();
-  check_parameter(sensor.radius > 0.0 && std::isfinite(sensor.radius), "sensor.radius", "positive", sensor.radius);
-  check_parameter(sensor.depth > 0.0 && std::isfinite(sensor.depth), "sensor.depth", "positive", sensor.depth);
+  check_parameter(sensor.radius > 0.0 && std::isfinite(sensor.radius), "sensor.housing_radius", "positive",
+                  sensor.radius);
+  check_parameter(sensor.depth > 0.0 && std::isfinite(sensor.depth), "sensor.housing_depth", "positive", sensor.depth);
   for (const KeepOut& space : keep_out) space.check();
 }
 

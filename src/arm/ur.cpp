@@ -36,7 +36,7 @@ LinkFrames link_frames(const Joints& q, const UrModel& model) {
 
 Pose forward(const Joints& q, const UrModel& model) { return link_frames(q, model)[5]; }
 
-Eigen::Matrix<double, 6, 6> jacobian(const Joints& q, const UrModel& model) {
+Matrix6 jacobian(const Joints& q, const UrModel& model) {
   const LinkFrames f = link_frames(q, model);
   Eigen::Matrix<double, 6, 6> j;
   for (std::size_t i = 0; i < 6; ++i) {

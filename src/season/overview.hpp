@@ -3,7 +3,7 @@
 /// What a season's database holds, added up for rows and dates.
 #pragma once
 
-#include <agrisee/core/ripeness.hpp>
+#include <agrisee/cloud/ripeness.hpp>
 
 #include <array>
 #include <cstddef>

@@ -12,7 +12,7 @@
 ///
 /// The links from the shoulder to wrist 3 and the housing of the sensor are tested against the forbidden spaces. The
 /// base is not, since it stands on something. Links are tested against each other unless they are adjacent or can never
-/// meet. World frame, metres. Takes 1 to 3 us per posture.
+/// meet. World frame, metres. Takes 1 to 3 us per posture. Defined in `agrisee::agrisee`.
 #pragma once
 
 #include <agrisee/arm/mount.hpp>

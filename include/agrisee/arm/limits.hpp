@@ -3,7 +3,7 @@
 /// Joint limits, the choice among equivalent joint angles, and the duration of a move.
 ///
 /// Angles in rad, speeds in rad/s, times in s. A joint with a range of more than a full turn reaches the same posture
-/// at several angles, 2 pi apart; the functions `nearest` choose among them.
+/// at several angles, 2 pi apart; the functions `nearest` choose among them. Defined in `agrisee::agrisee`.
 #pragma once
 
 #include <agrisee/core/error.hpp>

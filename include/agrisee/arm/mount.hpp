@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// Where an arm stands, how it holds its sensor, and which spaces are forbidden. Reachability and collisions depend on
-/// these.
+/// these. Defined in `agrisee::agrisee`.
 #pragma once
 
 #include <agrisee/arm/ur_model.hpp>

@@ -6,6 +6,7 @@
 /// Poses are those of tool0 in base_link (REP-103, x forward). The DH chain of the controller starts in the frame
 /// `base`, which is base_link turned by pi about z; here this turn is part of the first joint. Link frames are those of
 /// the robot's published description: each joint turns about the z axis of its own frame. Metres and radians.
+/// Defined in `agrisee::agrisee`.
 ///
 /// The inverse uses that three axes are parallel (shoulder lift, elbow, wrist 1; Hawkins, "Analytic Inverse Kinematics
 /// for the Universal Robots UR-5/UR-10 Arms", 2013). Let n be the direction of these axes. The wrist's center lies d4
@@ -44,7 +45,7 @@ Pose forward(const Joints& q, const UrModel& model = {});
 
 /// Geometric Jacobian at joint angles `q` (rad). It maps joint speeds (rad/s) to the velocity of tool0 (m/s, rows 0-2)
 /// and its angular velocity (rad/s, rows 3-5), both in base_link.
-Eigen::Matrix<double, 6, 6> jacobian(const Joints& q, const UrModel& model = {});
+Matrix6 jacobian(const Joints& q, const UrModel& model = {});
 
 /// A quick test that takes a few nanoseconds: if false, no joint angles reach base_link_T_tool0; if true, there may be
 /// some. It tests only whether the wrist's center is too far away for the stretched arm, or too near to the axis of the

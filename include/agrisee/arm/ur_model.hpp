@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// The arms of Universal Robots' family, as data: lengths, limits and the solids of their links. All have the same
-/// kinematic structure.
+/// kinematic structure. Defined in `agrisee::agrisee`.
 #pragma once
 
 #include <agrisee/arm/limits.hpp>

@@ -50,7 +50,7 @@ inline double weighted_median(std::vector<std::pair<double, double>> values) {
 /// distribution of a Dirichlet process with Gaussian kernels; Escobar & West, 1995). What is no fruit has any radius of
 /// the range. The evidence counts less the more the sizes of the others vary, and not at all where their standard
 /// deviation exceeds 40 %, as on a truss that shrinks from its shoulder to its tip.
-/// @param known fruit; those that overlap the body (it itself, found before) are left out
+/// @param known fruit; those that overlap the body, such as itself from an earlier round, are left out
 /// @param radius_min, radius_max expected range of radii (m)
 /// @return difference of log-odds; 0 if there is no other fruit
 inline double alike_log_odds(const std::vector<KnownSize>& known, const Ellipsoid& body, double radius_min,

@@ -4,12 +4,12 @@
 #pragma once
 
 #include <agrisee/cloud/alike_sizes.hpp>
+#include <agrisee/cloud/body_counts.hpp>
 #include <agrisee/cloud/body_verdict.hpp>
 #include <agrisee/cloud/fit.hpp>
 #include <agrisee/cloud/mask_evidence.hpp>
 #include <agrisee/cloud/parameters.hpp>
 #include <agrisee/cloud/seen_through.hpp>
-#include <agrisee/core/body_counts.hpp>
 #include <agrisee/neighbors/grid.hpp>
 
 #include <algorithm>
@@ -275,8 +275,9 @@ class Competition {
     return &BodyCounts::doubtful;
   }
 
-  /// Of the living entries with enough confidence that with the largest score times radius squared times confidence,
-  /// the first of equals; null if there is none. Those that masks proposed come first, the surest before the others.
+  /// The entry to take next: of those that are alive and have enough confidence, the one with the largest score times
+  /// radius squared times confidence, the first of equals; null if there is none. Entries that masks proposed come
+  /// before all others, in the order of their confidence.
   Entry* best_entry() {
     const auto area = [](const Entry& e) {
       const double r = e.fit.body.mean_radius();

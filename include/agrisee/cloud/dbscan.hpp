@@ -11,7 +11,7 @@
 #pragma once
 
 #include <agrisee/cloud/parameters.hpp>
-#include <agrisee/core/sums.hpp>
+#include <agrisee/core/detail/sums.hpp>
 #include <agrisee/neighbors/components.hpp>
 #include <agrisee/neighbors/count_neighbors.hpp>
 

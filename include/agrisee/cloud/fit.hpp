@@ -92,7 +92,7 @@ struct EllipsoidFit {
   Eigen::Matrix3d center_covariance = Eigen::Matrix3d::Zero();           ///< covariance of body.center (m2)
   Eigen::Matrix3d center_covariance_by_shape = Eigen::Matrix3d::Zero();  ///< the part of it that the prior causes (m2)
   /// Covariance of body.A as (xx, yy, zz, xy, xz, yz) (1/m2), with the prior on its shape.
-  Eigen::Matrix<double, 6, 6> shape_covariance = Eigen::Matrix<double, 6, 6>::Zero();
+  Matrix6 shape_covariance = Matrix6::Zero();
   double rms = 0.0;                          ///< root mean square distance of the inliers (m)
   std::size_t inliers = 0;                   ///< points within three standard deviations whose normals agree
   std::optional<SizePrior> size_prior = {};  ///< what is known of its size, from other fruit

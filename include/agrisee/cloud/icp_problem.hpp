@@ -21,13 +21,13 @@ namespace agrisee {
 namespace detail {
 
 using Vector6 = Eigen::Matrix<double, 6, 1>;
-using Matrix6 = Eigen::Matrix<double, 6, 6>;
+using Square6 = Eigen::Matrix<double, 6, 6>;
 
 constexpr std::size_t kFew = 4;  ///< target points within the radius of a first query, on average
 
 /// The normal equations of a step.
 struct IcpSums {
-  Matrix6 h = Matrix6::Zero();  ///< lower triangle
+  Square6 h = Square6::Zero();  ///< lower triangle
   Vector6 g = Vector6::Zero();
 
   /// Add a residual r (m) with its derivatives by rotation and translation.
@@ -112,7 +112,7 @@ class IcpProblem {
   /// @param constrained receives how many of the six directions the surface determines
   Pose step(const Pose& target_T_source, double scale, int& constrained) const {
     const IcpSums sums = normal_equations(target_T_source, scale);
-    const Eigen::SelfAdjointEigenSolver<Matrix6> solver(sums.h);
+    const Eigen::SelfAdjointEigenSolver<Square6> solver(sums.h);
     const Vector6 values = solver.eigenvalues();
     Vector6 x = Vector6::Zero();
     constrained = 0;

@@ -207,16 +207,16 @@ class NearestSets {
       one_way.emplace_back(a, b);
   }
 
-  /// Join the points [first, last) of a cell, as far as their k nearest lie within just so many rings of cells.
+  /// Join those of the points [first, last) of a cell whose k nearest lie within exactly `rings` rings of cells.
   void join_cell(const typename Grid<S>::Cell& cell, std::size_t first, std::size_t last, int rings, Scratch& scratch) {
-    constexpr std::size_t kOneByOne = 16;  // so many others are tested one by one, more by a tile
+    constexpr std::size_t kOneByOne = 16;  // up to this many others are tested one by one, more as a tile
     const auto grows = [&](std::size_t i) {
       return reach_.rings[i].load(std::memory_order_relaxed) == rings && points_.member(i);
     };
     std::size_t i = first;
     while (i < last && !grows(i)) ++i;
     if (i == last) return;
-    const Index most = root(i);  // the set to which most points hereabouts belong
+    const Index most = root(i);  // the set to which most points near here belong
     const Stencil& stencil = stencils_[rings - 1];
     list_others(cell, stencil, most, scratch.others);
     if (scratch.others.empty()) return;

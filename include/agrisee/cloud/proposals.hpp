@@ -27,7 +27,7 @@ struct StageParameters {
 };
 
 /// The fewest points that may be a fruit of a given radius: `min_region` of its surface, and at least 12.
-/// @param radius m
+/// @param radius of the fruit (m)
 /// @param spacing of the cloud (m)
 inline int least_points(double radius, double spacing, const SplitParameters& parameters) {
   const double points = parameters.min_region * 4.0 * kPi * radius * radius / (spacing * spacing);
@@ -101,7 +101,7 @@ inline std::size_t BodyCounts::*propose(Sphere sphere, const char* by, const Bod
 ///
 /// A wide range of radii is divided, so that the cells that are voted for, and the votes that are needed, suit the
 /// size.
-/// @param fresh as of vote_for_centers, of the voters
+/// @param fresh one per voter, as vote_for_centers takes it
 template <typename S>
 void propose_voted(const PointCloud<S>& cloud, const PointCloud<S>& voters, const std::vector<char>& fresh,
                    const Grid<S>& grid, const StageParameters& stages, const SplitParameters& parameters,

@@ -5,8 +5,8 @@
 
 #include <agrisee/cloud/parameters.hpp>
 #include <agrisee/core/cloud.hpp>
+#include <agrisee/core/detail/sums.hpp>
 #include <agrisee/core/parallel.hpp>
-#include <agrisee/core/sums.hpp>
 #include <agrisee/core/uninitialized.hpp>
 #include <agrisee/neighbors/grid.hpp>
 

@@ -35,7 +35,7 @@ inline const char* to_string(RobustKernel kernel) {
 inline RobustKernel robust_kernel(const std::string& name) {
   for (const RobustKernel k : {RobustKernel::none, RobustKernel::huber, RobustKernel::tukey})
     if (name == to_string(k)) return k;
-  throw ParameterError("kernel must be none, huber or tukey, got " + name);
+  throw ParameterError("must be none, huber or tukey, got " + name);
 }
 
 namespace detail {

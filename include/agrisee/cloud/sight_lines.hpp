@@ -140,8 +140,8 @@ class SightLines {
 };
 
 /// What the sensor of a single view measured where a body should be seen: in directions evenly spread over most of its
-/// disc, is a surface where the body's is? A fruit fills its disc, as far as nothing nearer occludes it; of the disc
-/// about a piece of a leaf much is empty, or shows what is far behind.
+/// disc, is a surface where the body's is? A fruit fills its disc, as far as nothing nearer occludes it; the disc about
+/// a piece of a leaf is partly empty, or shows what is far behind.
 /// @param margin surfaces within this distance (m) of the body's, along the sight line, are the body's
 /// @return as of SeenOn; 1 if all of it is occluded
 inline double seen_on(const SightLines& lines, const Ellipsoid& body, double margin) {

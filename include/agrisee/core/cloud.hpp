@@ -5,9 +5,9 @@
 #pragma once
 
 #include <agrisee/core/cancellation.hpp>
-#include <agrisee/core/color.hpp>
 #include <agrisee/core/error.hpp>
 #include <agrisee/core/traits.hpp>
+#include <agrisee/core/types.hpp>
 
 #include <cmath>
 

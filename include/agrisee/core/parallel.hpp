@@ -4,7 +4,7 @@
 #pragma once
 
 #include <agrisee/core/cancellation.hpp>
-#include <agrisee/core/thread_pool.hpp>
+#include <agrisee/core/detail/thread_pool.hpp>
 
 #include <algorithm>
 #include <atomic>

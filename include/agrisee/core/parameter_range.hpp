@@ -40,7 +40,7 @@ struct FieldError : ParameterError {
   std::string complaint;  ///< "must be ..., got ..."
 };
 
-/// An end of a range: a number and, where it is computed from something, how it is called in messages.
+/// An end of a range: a number and, where it is computed from something, the name that messages use for it.
 struct Limit {
   /// Implicit, so that a plain number is a limit.
   constexpr Limit(double number, const char* name_of_it = nullptr) : value(number), name(name_of_it) {}

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// Poses from matrices and quaternions that a calibration tool has printed: rounded ones are put right, wrong ones are
-/// refused by name.
+/// refused by name. Defined in `agrisee::agrisee`.
 #pragma once
 
 #include <agrisee/core/pose.hpp>
@@ -22,8 +22,8 @@ Eigen::Matrix3d nearest_orthonormal(const Pose& pose);
 /// orthonormal matrix.
 double rigid_error(const Pose& pose);
 
-/// The pose as it is where it is rigid to 1e-6 (is_rigid); otherwise, where its rotation matrix is off by at most
-/// kRigidTolerance, with the nearest rotation, which is noted.
+/// A rigid pose from one whose rotation matrix may be rounded. If the matrix is off by less than 1e-6 (is_rigid), the
+/// pose is returned as it is; if it is off by at most kRigidTolerance, with the nearest rotation, and a note is added.
 /// @param pose rotation and translation (m)
 /// @param name how messages call the pose, e.g. "tool0_T_optical"
 /// @param notes receives a sentence when the rotation was changed; may be null
@@ -34,15 +34,15 @@ Pose made_rigid(const Pose& pose, const std::string& name, std::vector<std::stri
 /// @param matrix rotation and translation (m) over a last row of 0 0 0 1
 /// @param name, notes as of made_rigid
 /// @throws InputError as made_rigid, or for another last row
-Pose pose_from_matrix(const Eigen::Matrix4d& matrix, const std::string& name = "the matrix",
-                      std::vector<std::string>* notes = nullptr);
+Pose pose_from_matrix(const Eigen::Matrix<double, 4, 4, Eigen::DontAlign>& matrix,
+                      const std::string& name = "the matrix", std::vector<std::string>* notes = nullptr);
 
 /// Pose from a translation (m) and a quaternion x y z w, which is normalized.
 /// @param xyz translation (m)
 /// @param xyzw quaternion; its length may differ from 1 by kRigidTolerance
 /// @param name, notes as of made_rigid
 /// @throws InputError for another length
-Pose pose_from_xyz_quaternion(const Eigen::Vector3d& xyz, const Eigen::Vector4d& xyzw,
+Pose pose_from_xyz_quaternion(const Eigen::Vector3d& xyz, const Eigen::Matrix<double, 4, 1, Eigen::DontAlign>& xyzw,
                               const std::string& name = "the pose", std::vector<std::string>* notes = nullptr);
 
 }  // namespace agrisee

@@ -7,6 +7,7 @@
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
@@ -20,12 +21,18 @@ using Vector3 = Eigen::Matrix<S, 3, 1>;
 template <typename S>
 using Matrix3 = Eigen::Matrix<S, 3, 3>;
 
+/// A 6 x 6 matrix, stored without alignment as Transform is, so that what holds it has one layout.
+using Matrix6 = Eigen::Matrix<double, 6, 6, Eigen::DontAlign>;
+
 /// Index of a point in a cloud.
 using Index = std::int32_t;
 /// Indices of points in a cloud, ascending unless a function says otherwise.
 using Indices = std::vector<Index>;
 /// One label per point of a cloud. Instances are numbered from 1; 0 means that the point belongs to none.
 using Labels = std::vector<int>;
+
+/// The color of a pixel or a point: red, green and blue, 0..255 each, encoded as sRGB (IEC 61966-2-1).
+using Rgb = std::array<std::uint8_t, 3>;
 
 /// Joint angles (rad) of a six-axis arm in the controller's convention, shoulder pan to wrist 3.
 using Joints = Eigen::Matrix<double, 6, 1>;

@@ -2,6 +2,7 @@
 /// @file
 /// Solid ellipsoids of any orientation, and the distance of points and segments from them. With nearest_point and
 /// support they can be tested for overlap by geometry/overlap.hpp. Metres; all solids in one frame.
+/// Defined in `agrisee::agrisee`.
 #pragma once
 
 #include <agrisee/geometry/overlap.hpp>

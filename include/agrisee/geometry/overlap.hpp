@@ -4,7 +4,8 @@
 /// flat-ended cylinders of any orientation for the exact one. Metres; all solids in one frame.
 ///
 /// Solids that only touch do not overlap. All tests allow a penetration of kTouch, so a sensor may stand exactly at the
-/// border of a forbidden space. If a coordinate is not finite, the tests report an overlap.
+/// border of a forbidden space. If a coordinate is not finite, the tests report an overlap. Defined in
+/// `agrisee::agrisee`.
 #pragma once
 
 #include <agrisee/geometry/primitives.hpp>

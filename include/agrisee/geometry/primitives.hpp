@@ -2,7 +2,7 @@
 /// @file
 /// The solids of collision checks, and distances to them: boxes and upright cylinders for forbidden spaces, capsules
 /// for the links of an arm. Metres. The distance to a solid is 0 inside it. Overlap of two solids is in
-/// geometry/overlap.hpp.
+/// geometry/overlap.hpp. Defined in `agrisee::agrisee`.
 #pragma once
 
 #include <agrisee/core/error.hpp>

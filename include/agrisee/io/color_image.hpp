@@ -3,7 +3,7 @@
 /// Reads the images that come with a depth image: colors, and the masks of a detector. PNG.
 #pragma once
 
-#include <agrisee/core/color.hpp>
+#include <agrisee/core/types.hpp>
 
 #include <cstdint>
 #include <filesystem>

@@ -3,7 +3,6 @@
 /// The colors that fruit have in cloud files, pictures and the page of a scan.
 #pragma once
 
-#include <agrisee/core/color.hpp>
 #include <agrisee/core/types.hpp>
 
 #include <cmath>

@@ -24,8 +24,8 @@ struct ScanHistory {
   std::vector<Eigen::Vector3f> frontier;  ///< points at which the planner would have continued (m, world frame)
   /// What the camera saw in each view, by depth_picture(); views beyond the end of the list have no picture.
   std::vector<DepthPicture> depth;
-  /// Whether the scan still runs. The page then loads itself anew every few seconds, and so follows a program that
-  /// writes it after every view.
+  /// Whether the scan still runs. The page then reloads every few seconds, and so follows a program that writes it
+  /// after every view.
   bool running = false;
 };
 

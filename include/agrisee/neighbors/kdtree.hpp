@@ -5,7 +5,7 @@
 #pragma once
 
 #include <agrisee/core/cloud.hpp>
-#include <agrisee/core/sums.hpp>
+#include <agrisee/core/detail/sums.hpp>
 #include <agrisee/neighbors/neighbors.hpp>
 
 #include <algorithm>

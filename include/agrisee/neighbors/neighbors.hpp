@@ -13,8 +13,8 @@
 /// coordinates, so it does not need the cloud after its construction.
 #pragma once
 
+#include <agrisee/core/detail/sums.hpp>
 #include <agrisee/core/error.hpp>
-#include <agrisee/core/sums.hpp>
 #include <agrisee/core/types.hpp>
 
 #include <algorithm>

@@ -15,8 +15,8 @@
 /// outlier until a new point comes near. Cost: O(pairs within r that involve a new point).
 #pragma once
 
+#include <agrisee/core/detail/sums.hpp>
 #include <agrisee/core/parallel.hpp>
-#include <agrisee/core/sums.hpp>
 #include <agrisee/neighbors/hash_grid.hpp>
 #include <agrisee/see/parameters.hpp>
 

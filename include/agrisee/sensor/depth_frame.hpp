@@ -3,8 +3,8 @@
 /// A depth image, with optional colors and detections.
 #pragma once
 
-#include <agrisee/core/color.hpp>
 #include <agrisee/core/median.hpp>
+#include <agrisee/core/types.hpp>
 #include <agrisee/sensor/detection.hpp>
 #include <agrisee/sensor/intrinsics.hpp>
 

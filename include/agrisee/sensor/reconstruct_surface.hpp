@@ -13,7 +13,7 @@
 /// 4. Sample: each fit gives one surface point, or several along the slope where the surface is steep. Points outside
 ///    of the volume are dropped.
 ///
-/// Cost: linear in the pixels, and in the blocks times the cells of the window.
+/// Cost: linear in the pixels, and in the blocks times the cells of the window. Defined in `agrisee::agrisee`.
 #pragma once
 
 #include <agrisee/geometry/aabb.hpp>

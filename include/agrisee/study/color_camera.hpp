@@ -7,8 +7,8 @@
 /// the color of their class, or their own (Object::color).
 #pragma once
 
-#include <agrisee/core/color.hpp>
 #include <agrisee/core/pose.hpp>
+#include <agrisee/core/types.hpp>
 #include <agrisee/study/raycast.hpp>
 
 #include <cstdint>

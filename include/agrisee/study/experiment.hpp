@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// @file
-/// The records of the experiment ([1], "Experiments"). A cell is one simulated scan: a scene, a preset, a planner, a
+/// The records of the experiment ([1], 4). A cell is one simulated scan: a scene, a preset, a planner, a
 /// noise model and a trial. Its record holds everything that the tables show. World frame, metres, radians, seconds.
 #pragma once
 

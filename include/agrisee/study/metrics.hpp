@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// @file
-/// The metrics of a result: those of [1], "Experiments" (precision, recall, counting error, object precision and
+/// The metrics of a result: those of [1], 4 (precision, recall, counting error, object precision and
 /// recall, mIoU) as shares of 0..1, and the errors of each fruit. evaluate() computes them (evaluate.hpp). World frame,
 /// metres, radians.
 #pragma once
@@ -140,7 +140,7 @@ struct ErrorSummary {
 ErrorSummary summarize(const Metrics& metrics, std::optional<double> FruitMetrics::*error);
 
 /// Repeatability RMSE (m) of one fruit over independent trials: the root of the mean squared distance of its centroids
-/// from their mean ([1], "Localization"). None for fewer than two trials.
+/// from their mean ([1], 3.2.4). None for fewer than two trials.
 /// @param centroids one per trial (m)
 std::optional<double> repeatability(const std::vector<Eigen::Vector3d>& centroids);
 

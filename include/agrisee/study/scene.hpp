@@ -3,7 +3,7 @@
 /// A simulated scene: meshes in world coordinates, each with its class and, if it is a fruit, its identity.
 #pragma once
 
-#include <agrisee/core/color.hpp>
+#include <agrisee/core/types.hpp>
 #include <agrisee/geometry/mesh.hpp>
 
 #include <optional>

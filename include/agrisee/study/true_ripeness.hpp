@@ -4,8 +4,8 @@
 /// the classes are those of the United States Standards for Grades of Fresh Tomatoes, 7 CFR 51.1860.
 #pragma once
 
+#include <agrisee/cloud/ripeness.hpp>
 #include <agrisee/core/random.hpp>
-#include <agrisee/core/ripeness.hpp>
 #include <agrisee/result.hpp>
 #include <agrisee/study/ground_truth.hpp>
 #include <agrisee/study/metrics.hpp>

@@ -21,7 +21,7 @@ struct TrussParameters {
   std::uint64_t seed = 1;                         ///< equal parameters with equal seeds give equal trusses
   double radius_min = 0.028;                      ///< smallest semi-axis of a fruit (m)
   double radius_max = 0.042;                      ///< largest semi-axis of a fruit, its lobes included (m)
-  double elongation = 1.0;                        ///< then scales all polar semi-axes; 1.5 gives plum tomatoes
+  double elongation = 1.0;                        ///< stretches fruit along their stem axis; 1.5 gives plum tomatoes
   int leaflets = 0;                               ///< number of leaflets, 0 to 6
   Eigen::Vector3d center = {0.015, 0.545, 0.21};  ///< middle of the truss (m, world)
 
