@@ -68,7 +68,6 @@ std::vector<FruitTrials> fruit_trials(const Row& row) {
       ++entry.trials;
       if (fruit.found_by.empty() || !fruit.centroid.allFinite()) continue;
       entry.world.push_back(fruit.centroid);
-      entry.cluster.push_back(fruit.centroid_cluster);
       entry.sigma.push_back(fruit.sigma);
     }
   std::vector<FruitTrials> all;

@@ -27,9 +27,9 @@ struct FruitTrials {
   int id = 0;              ///< id of the true fruit
   bool hidden = false;     ///< whether it is a hidden fruit
   std::size_t trials = 0;  ///< number of scans of it
-  /// Centroid in the world and in the cluster frame, and standard deviation of its points per axis (m): one entry per
-  /// scan that located the fruit.
-  std::vector<Eigen::Vector3d> world, cluster, sigma;
+  /// Centroid in the world frame and standard deviation of its points per axis (m): one entry per scan that located the
+  /// fruit.
+  std::vector<Eigen::Vector3d> world, sigma;
 
   /// Root mean square distance of the centroids from their mean (m); none if fewer than two scans located the fruit.
   std::optional<double> rmse() const { return study::repeatability(world); }

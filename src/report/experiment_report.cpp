@@ -34,14 +34,16 @@ void write_experiment_report(const std::filesystem::path& path, const std::vecto
   Data data = arrange(cells, scenes);
   data.folder = url(path.stem().string());
   std::string text = introduction(data, info);
-  for (const auto section : {summary_section, planner_section, noise_section, limit_section}) text += section(data);
+  for (const auto section : {summary_section, planner_section, noise_section}) text += section(data);
   if (info.per_truss) {
-    for (const auto section : {scanning_section, segmentation_section, localization_section}) text += section(data);
+    for (const auto section : {limit_section, scanning_section, segmentation_section, localization_section})
+      text += section(data);
     text += paper_section();
   }
-  std::vector<File> files = csv_files(data);
-  for (File& plot : plots(data))
-    if (text.find("/" + plot.name + ")") != std::string::npos) files.push_back(std::move(plot));
+  std::vector<File> files;
+  for (std::vector<File> all : {csv_files(data), plots(data)})
+    for (File& file : all)
+      if (text.find("/" + file.name + ")") != std::string::npos) files.push_back(std::move(file));
   const std::filesystem::path folder = path.parent_path() / path.stem();
   std::error_code failed;
   std::filesystem::create_directories(folder, failed);

@@ -60,49 +60,46 @@ std::string what_was_run(const Data& data, const ReportInfo& info) {
   return out + "\n\n";
 }
 
+/// Links to CSV files.
+std::string links(const Data& data, const std::vector<const char*>& names) {
+  std::string out;
+  for (const char* name : names)
+    out += (out.empty() ? "[" : ", [") + std::string(name) + "](" + data.folder + "/" + name + ".csv)";
+  return out;
+}
+
 std::string how_to_read_it(const Data& data, bool per_truss) {
-  std::string out = "## How to read it\n\n";
-  out +=
-      "- `8.3 (12.0)`: our value, and in parentheses the paper's for the truss with the same counts. Where the paper "
-      "has no such truss, our value stands alone.\n";
-  if (per_truss)
-    out +=
-        "- A row is the mean over the trials of a scene. `average` is the mean over the rows, `worst row` is the worst "
-        "row of each column, and `worst scan` is the worst single trial. The paper's values in these three rows are "
-        "those of the same scenes. Tables of figures that the paper does not report show all scenes together; the CSV "
-        "files have every scan.\n";
-  out +=
-      "- `-`: there is no value. `7.0 [2/3]`: only 2 of 3 scans have a value, and this is their mean; then there is no "
-      "worst value.\n";
-  out += "- Seconds are computing time on the machine that ran it, without the simulated sensor.\n";
-  out +=
+  const std::string group =
       "- A group is a preset, a planner and a noise model; with `free flight` the camera flies to every view instead "
       "of being held by the arm. ";
-  out += per_truss
-             ? "The detailed tables show one group per preset. The other groups are in the summary and in the CSV "
-               "files: "
-             : "The CSV files have a row per scan: ";
-  for (const char* name : {"scanning", "segmentation", "localization", "fruits", "curves", "scenes"})
-    out +=
-        (name == std::string("scanning") ? "[" : ", [") + std::string(name) + "](" + data.folder + "/" + name + ".csv)";
-  return out + ".\n\n";
+  const std::string seconds = "- Seconds are computing time, without the simulated sensor.\n";
+  if (!per_truss)
+    return "## How to read it\n\n" + group + "As a file, with a row per scan: " + links(data, {"scanning"}) +
+           ".\n- Cells `average / worst`: the mean over the scenes, and the worst of them. In parentheses: the "
+           "paper's.\n" +
+           seconds + "\n";
+  return "## How to read it\n\n"
+         "- `8.3 (12.0)`: our value, and in parentheses the paper's for the truss with the same counts, if any.\n"
+         "- A row is the mean over the trials of a scene, `average` the mean over the rows, `worst row` the worst row "
+         "of each column, `worst scan` the worst single trial. Cells `average / worst` show the first two.\n"
+         "- `-`: no value. `7.0 [2/3]`: the mean of the 2 of 3 scans that have one; then there is no worst value.\n" +
+         seconds + group + "Tables 1 to 3 show one group per preset. As files, with all groups: " +
+         links(data, {"scanning", "segmentation", "localization", "fruits", "curves", "scenes"}) + ".\n\n";
 }
 
 }  // namespace
 
 std::string introduction(const Data& data, const ReportInfo& info) {
-  std::string out = info.per_truss ? "# The paper's experiment, side by side\n\n" : "# Planners, side by side\n\n";
-  out +=
-      "A simulated depth sensor on a UR3 scans trusses of tomatoes, and the results of AgriSEE are compared with the "
-      "true surfaces. Beside each value is the one that the paper reports in its three result tables (F. "
-      "Cañadas-Aránega, R. Border, J. C. Moreno, J. L. Blanco-Claraco: *Active perception for robotic harvesting: 3D "
-      "reconstruction and localisation of tomatoes hidden within clusters in a Mediterranean greenhouse*). The cluster "
-      "models of the paper are not public; scenes with the same numbers of fruit and hidden fruit were generated from "
-      "fixed seeds. A difference from the paper's value is therefore due to both the method and the scene. The `paper` "
-      "and `default` presets scan the same scenes.\n\n";
-  out +=
-      "The command below writes this page from the records of the scans. All values but the paper's are measured.\n\n";
-  return out + what_was_run(data, info) + how_to_read_it(data, info.per_truss);
+  const std::string what =
+      info.per_truss
+          ? "# The paper's experiment, side by side\n\n"
+            "A simulated depth sensor on a UR3 scans trusses of tomatoes; what AgriSEE finds is compared with "
+            "the true surfaces, and with the values that the paper reports (docs/paper.md). Its models are not "
+            "public: these scenes have the same numbers of fruit and hidden fruit, so a difference is due to "
+            "both the method and the scene. All presets scan the same scenes.\n\n"
+          : "# Planners, side by side\n\n"
+            "The scenes of the paper's experiment (docs/experiment.md), scanned with every planner.\n\n";
+  return what + what_was_run(data, info) + how_to_read_it(data, info.per_truss);
 }
 
 }  // namespace agrisee::report

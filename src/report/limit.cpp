@@ -49,11 +49,11 @@ std::string limit_section(const Data& data) {
   std::string out = "## What is physically possible\n\n";
   if (data.scenes.empty()) return out + "The records do not say what can be seen of the scenes.\n\n";
   out +=
-      "Computed with a dense set of sensor poses that the arm can reach outside of its keep-out volumes, for incidence "
-      "below 80 degrees. The columns are: the share of the fruit's surface that can be seen; this share for the fruit "
-      "of which least can be seen; the largest share of a hidden fruit that is visible from straight in front; the "
-      "number of views with which a greedy planner that knows the truth sees 90, 95, 98 and 99 % of the observable "
-      "surface (`-`: never); and, for comparison, the number of views to 95 % of the planners above.\n\n";
+      "Computed with a dense set of sensor poses that the arm can reach, for incidence below 80 degrees: the share of "
+      "the fruit's surface that can be seen, and of the fruit of which least can be seen; the largest share of a "
+      "hidden "
+      "fruit that is visible from straight in front; the views with which a greedy planner that knows the truth sees "
+      "90, 95, 98 and 99 % of the observable surface (`-`: never); and the views to 95 % of the planners above.\n\n";
   out += "From this position of the arm " + range(data, &SceneRecord::observable) + " of a truss can be seen, and " +
          range(data, &SceneRecord::observable_least) +
          " of its least visible fruit: hidden fruit are hidden from the front, not from all sides.";
@@ -65,11 +65,9 @@ std::string limit_section(const Data& data) {
     }
   if (with_paper > 0)
     out += " In " + std::to_string(beyond) + " of the " + std::to_string(with_paper) +
-           " scenes with the counts of the paper, its scanned percentage is larger than the observable share here. Its "
-           "models and the position of its robot are different; besides, a point within 5 mm of an edge counts some of "
-           "the surface beyond the edge as scanned.";
-  return out + "\n\n" + limit_table(data) + "\nThe same table as a file: [scenes.csv](" + data.folder +
-         "/scenes.csv).\n\n";
+           " scenes with the counts of the paper, its scanned percentage is larger than the observable share here: its "
+           "models and the position of its robot are different.";
+  return out + "\n\n" + limit_table(data) + "\n";
 }
 
 }  // namespace agrisee::report

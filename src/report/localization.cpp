@@ -39,37 +39,32 @@ const Row* paper_row(const Group& group) {
   return nullptr;
 }
 
-/// The fruit of a scene beside those of [1], in the world frame (with the repeatability) or in the cluster frame.
-std::string fruit_table(const Row& row, bool world) {
+/// The fruit of a scene beside those of [1], in the world frame.
+std::string fruit_table(const Row& row) {
   Cells head{"fruit", "located"};
   for (const char* name : {"x", "y", "z"}) head.push_back(std::string(name) + " ± σ (m)");
   for (const char* name : {"x", "y", "z"}) head.push_back("paper " + std::string(name));
-  if (world) head.emplace_back("RMSE mm");
+  head.emplace_back("RMSE mm");
   Table table(head);
   for (const FruitTrials& fruit : fruit_trials(row)) {
     const study::PaperLocalization* paper = study::paper_localization(row.total, row.hidden, fruit.id);
     Cells cells{std::to_string(fruit.id) + (fruit.hidden ? ", hidden" : ""),
                 std::to_string(fruit.world.size()) + " of " + std::to_string(fruit.trials)};
-    for (int axis = 0; axis < 3; ++axis)
-      cells.push_back(coordinate(world ? fruit.world : fruit.cluster, fruit.sigma, axis));
+    for (int axis = 0; axis < 3; ++axis) cells.push_back(coordinate(fruit.world, fruit.sigma, axis));
     for (std::size_t axis = 0; axis < 3; ++axis)
-      cells.push_back(!paper  ? "-"
-                      : world ? coordinate(paper->world, paper->world_sigma, axis)
-                              : coordinate(paper->cluster, paper->cluster_sigma, axis));
-    if (world) cells.push_back(fixed(times(kMm, fruit.rmse()), 2) + (paper ? " (" + fixed(paper->rmse, 1) + ")" : ""));
+      cells.push_back(paper ? coordinate(paper->world, paper->world_sigma, axis) : "-");
+    cells.push_back(fixed(times(kMm, fruit.rmse()), 2) + (paper ? " (" + fixed(paper->rmse, 1) + ")" : ""));
     table.row(cells);
   }
-  if (world) {
-    std::vector<double> of_paper;
-    for (const auto& p : study::kPaperLocalization) of_paper.push_back(p.rmse);
-    const Errors ours = repeatability(row), theirs = statistics(of_paper);
-    for (const bool worst : {false, true}) {
-      Cells cells(head.size(), "");
-      cells[0] = worst ? "**worst**" : "**average**";
-      cells.back() = fixed(times(kMm, worst ? ours.worst : ours.mean), 2) + " (" +
-                     fixed(worst ? theirs.worst : theirs.mean, 1) + ")";
-      table.row(cells);
-    }
+  std::vector<double> of_paper;
+  for (const auto& p : study::kPaperLocalization) of_paper.push_back(p.rmse);
+  const Errors ours = repeatability(row), theirs = statistics(of_paper);
+  for (const bool worst : {false, true}) {
+    Cells cells(head.size(), "");
+    cells[0] = worst ? "**worst**" : "**average**";
+    cells.back() = fixed(times(kMm, worst ? ours.worst : ours.mean), 2) + " (" +
+                   fixed(worst ? theirs.worst : theirs.mean, 1) + ")";
+    table.row(cells);
   }
   return table.markdown();
 }
@@ -89,40 +84,37 @@ std::string error_table(const Group& group, Cells head, F&& f) {
   return table.markdown();
 }
 
-/// The truss of the localization table of [1] in both frames.
+/// The truss of the localization table of [1].
 std::string paper_truss(const Group& group) {
   const Row* row = paper_row(group);
   if (!row)
     return "The truss of the paper's table (" + std::to_string(study::kPaperLocalizationTotal) + " fruit, " +
            std::to_string(study::kPaperLocalizationHidden) + " hidden) is not among the scenes.\n\n";
   return "The truss of the paper's table, here " + text(row->scene) +
-         ", in the world frame (the base of the arm):\n\n" + fruit_table(*row, true) +
-         "\nThe same fruit in the cluster frame, whose origin is the lower left far corner of the scan volume. The "
-         "paper's columns cannot be compared: no rigid motion takes its world columns to them.\n\n" +
-         fruit_table(*row, false) + "\n";
+         ", in the world frame (the base of the arm):\n\n" + fruit_table(*row) + "\n";
 }
 
 std::string distance_table(const Group& group) {
-  return error_table(
-      group, {"missing", "RMSE", "centroid, observable", "centroid, seen", "fitted center", "radius"},
-      [](const auto& of) {
-        const auto mm = [&](Error error) {
-          const Errors e = errors(of, error);
-          return pair(times(kMm, e.mean), times(kMm, e.worst), 1);
-        };
-        const Errors rmse = repeatability(of);
-        return Cells{std::to_string(located(of).missing()), pair(times(kMm, rmse.mean), times(kMm, rmse.worst), 2),
-                     mm(&FruitMetrics::centroid_error),     mm(&FruitMetrics::centroid_error_seen),
-                     mm(&FruitMetrics::center_error),       mm(&FruitMetrics::radius_error)};
-      });
-}
-
-std::string axis_table(const Group& group) {
-  Table table({"all scenes", "z axis deg", "completeness", "least fruit's recall, observable %"});
-  const Errors axis = errors(group, &FruitMetrics::axis_error), part = errors(group, &FruitMetrics::completeness_error);
-  table.row({"**all**", pair(times(kDegrees, axis.median), times(kDegrees, axis.worst), 1),
-             pair(times(100.0, part.mean), times(100.0, part.worst), 1), fixed(times(100.0, least_recall(group)), 1)});
-  return table.markdown();
+  return error_table(group,
+                     {"missing", "RMSE", "centroid, observable", "centroid, seen", "fitted center", "radius",
+                      "z axis deg", "completeness %", "least recall %"},
+                     [](const auto& of) {
+                       const auto mm = [&](Error error) {
+                         const Errors e = errors(of, error);
+                         return pair(times(kMm, e.mean), times(kMm, e.worst), 1);
+                       };
+                       const Errors rmse = repeatability(of), axis = errors(of, &FruitMetrics::axis_error),
+                                    part = errors(of, &FruitMetrics::completeness_error);
+                       return Cells{std::to_string(located(of).missing()),
+                                    pair(times(kMm, rmse.mean), times(kMm, rmse.worst), 2),
+                                    mm(&FruitMetrics::centroid_error),
+                                    mm(&FruitMetrics::centroid_error_seen),
+                                    mm(&FruitMetrics::center_error),
+                                    mm(&FruitMetrics::radius_error),
+                                    pair(times(kDegrees, axis.median), times(kDegrees, axis.worst), 1),
+                                    pair(times(100.0, part.mean), times(100.0, part.worst), 1),
+                                    fixed(times(100.0, least_recall(of)), 1)};
+                     });
 }
 
 std::string group_section(const Group& group) {
@@ -130,12 +122,9 @@ std::string group_section(const Group& group) {
   const Located l = located(group);
   if (l.found == 0) return out + "None of " + std::to_string(l.all) + " fruit (counted once a scan) was located.\n\n";
   out += paper_truss(group);
-  out += std::to_string(l.found) + " of " + std::to_string(l.all) + " fruit (counted once a scan) were located, " +
-         std::to_string(l.missing()) +
-         " are missing from the rows below. All in millimetres, `mean / worst` over fruit and trials:\n\n";
-  out += distance_table(group);
-  out += "\nAxis, completeness and the least recall:\n\n";
-  return out + axis_table(group) + "\n";
+  out += std::to_string(l.found) + " of " + std::to_string(l.all) +
+         " fruit (counted once a scan) were located. Lengths in millimetres, `mean / worst` over fruit and trials:\n\n";
+  return out + distance_table(group) + "\n";
 }
 
 }  // namespace
@@ -143,21 +132,19 @@ std::string group_section(const Group& group) {
 std::string localization_section(const Data& data) {
   std::string out = "## Table 3: localization\n\n";
   out +=
-      "A fruit is identified by the true fruit that its instance was matched to. σ is the standard deviation of the "
-      "points of a fruit along an axis; it is the same in both frames, whose axes are parallel. RMSE is the root mean "
-      "square distance of the centroids of a fruit from their mean over the trials; the paper calls it "
-      "repeatability.\n\n";
+      "σ is the standard deviation of the points of a fruit along an axis. RMSE is the root mean square distance of "
+      "the "
+      "centroids of a fruit from their mean over the trials; the paper calls it repeatability. The truss of the "
+      "paper's table has its fruit where the paper has them, except that fruit do not overlap and the last one is "
+      "behind the others.\n\n";
   out += picture(data, "localization.svg",
                  "Repeatability per fruit, ours and the paper's, and errors of centroids per scene");
-  out += "As files, with a row per scan: [localization.csv](" + data.folder +
-         "/localization.csv); with a row per fruit and scan: [fruits.csv](" + data.folder + "/fruits.csv).\n\n";
   out +=
-      "The tables of errors: the RMSE; the distance of the centroid from the mean of the observable surface of the "
-      "fruit, and from the mean of that part of it which the views saw; the errors of the center and the radius of "
-      "the fitted body; the angle between the z axis of the pose and the true calyx axis (`median / worst`, degrees); "
-      "the error of the completeness of the fitted body (`mean / worst`, percentage points); and the least recall of "
-      "the observable surface of any fruit, including missing ones. The truss of the paper's table has its fruit "
-      "where the paper has them, except that fruit do not overlap and the last fruit is behind the others.\n\n";
+      "Errors: the distance of the centroid from the mean of the observable surface of the fruit, and of the part of "
+      "it "
+      "that the views saw; the center and the radius of the fitted body; the angle between the z axis of the pose and "
+      "the true calyx axis (`median / worst`); the completeness of the fitted body; and the least recall of the "
+      "observable surface of any fruit, including missing ones.\n\n";
   for (const Group* group : main_groups(data)) out += group_section(*group);
   return out;
 }

@@ -111,14 +111,11 @@ std::string summary_section(const Data& data) {
   const Group paper_scenes = all_scenes(data);
   std::string out = "## Summary\n\n";
   for (const Group* group : main_groups(data)) out += headline(*group);
-  out +=
-      "\nThe cells of the tables are `average / worst`: the mean over the rows of the scenes, and the worst "
-      "row.\n\nScanning:\n\n";
+  out += "\nScanning:\n\n";
   out += scanning_table(data, paper_scenes);
   out +=
-      "\nSegmentation and localization. Errors of fruit are `mean / worst` over the fruit of all scans that were "
-      "matched to an instance; `missing` is the number of fruit that were not. The paper's RMSE is that of its one "
-      "truss of " +
+      "\nSegmentation and localization. Errors are `mean / worst` over the fruit that were matched to an instance; "
+      "`missing` counts the others. The paper's RMSE is that of its one truss of " +
       std::to_string(study::kPaperLocalizationTotal) + ".\n\n";
   return out + fruit_table(data, paper_scenes) + "\n";
 }
