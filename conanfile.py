@@ -68,4 +68,5 @@ class AgriseeConan(ConanFile):
         if self.settings.os in ("Linux", "FreeBSD"):
             self.cpp_info.components["headers"].system_libs = ["pthread"]
         if self.options.io:
-            self.cpp_info.components["io"].requires += ["yaml-cpp::yaml-cpp", "nlohmann_json::nlohmann_json", "stb::stb"]
+            self.cpp_info.components["io"].requires += ["yaml-cpp::yaml-cpp", "nlohmann_json::nlohmann_json", "stb::stb",
+                                                           "zlib::zlib"]

@@ -30,14 +30,14 @@ const study::Scene& spheres() {
 
 Pose eye() { return look_along({0.0, 0.0, 0.2}, Eigen::Vector3d::UnitY()); }
 
-void BM_Build(benchmark::State& state) {
+void build(benchmark::State& state) {
   const study::Scene& scene = spheres();
   for (auto _ : state) benchmark::DoNotOptimize(study::TracedScene(scene));
   state.counters["triangles"] = double(study::TracedScene(scene).size());
 }
-BENCHMARK(BM_Build)->Unit(benchmark::kMillisecond);
+BENCHMARK(build)->Unit(benchmark::kMillisecond);
 
-void BM_Frame(benchmark::State& state) {
+void frame(benchmark::State& state) {
   const study::TracedScene scene(spheres());
   const sensor::DepthCamera l515 = sensor::l515();
   std::size_t hits = 0;
@@ -48,10 +48,10 @@ void BM_Frame(benchmark::State& state) {
   }
   state.counters["hit_share"] = double(hits) / double(l515.intrinsics.size());
 }
-BENCHMARK(BM_Frame)->Arg(1)->Arg(2)->Unit(benchmark::kMillisecond)->UseRealTime();
+BENCHMARK(frame)->Arg(1)->Arg(2)->Unit(benchmark::kMillisecond)->UseRealTime();
 
 // The same frame, one closest() a pixel.
-void BM_FrameRayByRay(benchmark::State& state) {
+void frame_ray_by_ray(benchmark::State& state) {
   const study::TracedScene scene(spheres());
   const sensor::DepthCamera l515 = sensor::l515();
   const Eigen::Vector3f origin = eye().translation().cast<float>();
@@ -63,9 +63,9 @@ void BM_FrameRayByRay(benchmark::State& state) {
     benchmark::DoNotOptimize(hits);
   }
 }
-BENCHMARK(BM_FrameRayByRay)->Unit(benchmark::kMillisecond);
+BENCHMARK(frame_ray_by_ray)->Unit(benchmark::kMillisecond);
 
-void BM_Nearest(benchmark::State& state) {
+void nearest(benchmark::State& state) {
   const study::TracedScene scene(spheres());
   Rng rng(2);
   std::vector<Eigen::Vector3f> queries;
@@ -76,17 +76,17 @@ void BM_Nearest(benchmark::State& state) {
     for (const auto& q : queries) benchmark::DoNotOptimize(scene.bvh().nearest(q));
   state.SetItemsProcessed(state.iterations() * 10000);
 }
-BENCHMARK(BM_Nearest)->Unit(benchmark::kMillisecond);
+BENCHMARK(nearest)->Unit(benchmark::kMillisecond);
 
-void BM_Capture(benchmark::State& state, const char* noise) {
+void capture(benchmark::State& state, const char* noise) {
   const study::TracedScene scene(spheres());
   const sensor::DepthCamera l515 = sensor::l515();
   const study::NoiseModel model = study::parse_noise(noise);
   for (auto _ : state) benchmark::DoNotOptimize(study::capture(scene, l515, eye(), model, 1, 0));
 }
-BENCHMARK_CAPTURE(BM_Capture, none, "none")->Unit(benchmark::kMillisecond);
-BENCHMARK_CAPTURE(BM_Capture, gaussian, "gaussian:0.01")->Unit(benchmark::kMillisecond);
-BENCHMARK_CAPTURE(BM_Capture, l515, "l515")->Unit(benchmark::kMillisecond);
-BENCHMARK_CAPTURE(BM_Capture, rough, "rough")->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(capture, none, "none")->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(capture, gaussian, "gaussian:0.01")->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(capture, l515, "l515")->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(capture, rough, "rough")->Unit(benchmark::kMillisecond);
 
 }  // namespace

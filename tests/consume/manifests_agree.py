@@ -73,4 +73,25 @@ recipe.options = types.SimpleNamespace(io=True)
 recipe.requires = lambda reference, **_: required.append(reference.split("/")[0])
 recipe.requirements()
 agree("conanfile.py, libraries", set(required), names(1))
+# Conan refuses a requirement that no component names.
+recipe.settings = types.SimpleNamespace(os="Linux")
+
+
+class Component(types.SimpleNamespace):
+    def set_property(self, name, value):
+        setattr(self, name, value)
+
+
+class Components(dict):
+    def __missing__(self, name):
+        return self.setdefault(name, Component(requires=[], libs=[]))
+
+
+recipe.cpp_info = Component(components=Components())
+recipe.package_info()
+parts = recipe.cpp_info.components
+agree("conanfile.py, components", [p.cmake_target_name for p in parts.values()],
+      ["agrisee::headers", "agrisee::agrisee", "agrisee::study", "agrisee::io"])
+agree("conanfile.py, libraries of the components",
+      {r.split("::")[0] for p in parts.values() for r in p.requires if "::" in r}, names(1))
 print(f"CHANGELOG.md, package.xml, vcpkg.json and conanfile.py agree on {version}")
