@@ -49,11 +49,11 @@ void region_growing(benchmark::State& state) {
 
 void clustering(benchmark::State& state) {
   const Cloud cloud = cloud_of(state);
-  DbscanParameters params;
-  params.min_points = state.range(0) > 50000 ? 60 : 20;
+  DbscanParameters parameters;
+  parameters.min_points = state.range(0) > 50000 ? 60 : 20;
   int clusters = 0;
   for (auto _ : state) {
-    const Labels labels = dbscan(cloud, params);
+    const Labels labels = dbscan(cloud, parameters);
     clusters = *std::max_element(labels.begin(), labels.end());
   }
   state.counters["clusters"] = clusters;

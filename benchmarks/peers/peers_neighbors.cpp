@@ -86,7 +86,7 @@ void nearest(std::size_t n, int threads) {
         const auto at = [&](Index i) { return p[static_cast<std::size_t>(i)]; };
         for (std::size_t i = 0; i < mine.size(); ++i)  // ties may be ordered otherwise
           peers::require(distance_sq<float>(at(mine[i]), p[i / k]) == distance_sq<float>(at(theirs[i]), p[i / k]),
-                         "nearest neighbours of nanoflann");
+                         "nearest neighbors of nanoflann");
       });
 }
 

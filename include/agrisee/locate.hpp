@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// @file
-/// Locates the fruit of a segmented cloud: centroids, pose frames, bodies ([1], "Localization"). Defined in
+/// Locates the fruit of a segmented cloud: centroids, pose frames, bodies ([1], 3.2.4). Defined in
 /// `agrisee::agrisee`.
 #pragma once
 
@@ -18,7 +18,7 @@ struct Ellipsoid;
 struct Split;
 
 /// The origin of the cluster frame {R} in world (m): the corner of the scan volume that is lowest, leftmost and
-/// farthest as seen from the robot's base looking at the volume's center ([1], "Localization"). The axes of {R} are
+/// farthest as seen from the robot's base looking at the volume's center ([1], 3.2.4). The axes of {R} are
 /// parallel to world's. "Far" is along the world axis, x or y, to which the line of sight is nearest.
 /// @param volume the scan volume (world)
 /// @param robot the robot's base (m, world)

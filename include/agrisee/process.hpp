@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// @file
-/// Finds the fruit in a ready cloud: clean, segment, locate ([1], "Segmentation" and "Localization").
+/// Finds the fruit in a ready cloud: clean, segment, locate ([1], 3.2.3 and 3.2.4).
 ///
 /// Pipeline::result() calls it on the map of a scan; call it yourself on any other cloud. Metres, the cloud's frame.
 /// Defined in `agrisee::agrisee`.

@@ -102,15 +102,15 @@ TEST_CASE("collision: the arm meets itself") {
   CHECK(contact(joints(0, -kPi / 4, kPi / 2, -kPi / 4 - kPi / 2, -kPi / 2, 0), mount) == "free");
   // Neighbors are never reported, whatever their angle.
   Rng rng(1);
-  const std::string neighbours[] = {"shoulder/upper_arm", "upper_arm/forearm", "forearm/wrist_1", "wrist_1/wrist_2",
-                                    "wrist_2/wrist_3",    "wrist_3/sensor",    "wrist_2/sensor",  "shoulder/base"};
+  const std::string neighbors[] = {"shoulder/upper_arm", "upper_arm/forearm", "forearm/wrist_1", "wrist_1/wrist_2",
+                                   "wrist_2/wrist_3",    "wrist_3/sensor",    "wrist_2/sensor",  "shoulder/base"};
   int collisions = 0;
   for (int i = 0; i < 3000; ++i) {
     Joints q;
     for (int j = 0; j < 6; ++j) q[j] = rng.uniform(-kPi, kPi);
     const std::string c = contact(q, mount);
     collisions += c != "free";
-    for (const std::string& n : neighbours) REQUIRE(c != n);
+    for (const std::string& n : neighbors) REQUIRE(c != n);
   }
   CHECK(collisions > 300);
   CHECK(collisions < 2500);

@@ -159,7 +159,7 @@ TEST_CASE("UR3: singular poses of the elbow, stretched and folded") {
   }
 }
 
-TEST_CASE("UR3: singular poses of the shoulder, the wrist's centre at d4 from the base's axis") {
+TEST_CASE("UR3: singular poses of the shoulder, the wrist's center at d4 from the base's axis") {
   Rng rng(8);
   for (int i = 0; i < 500; ++i) {
     Joints q = random_joints(rng, kPi);

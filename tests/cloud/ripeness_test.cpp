@@ -21,7 +21,7 @@ std::vector<Rgb> tomato(std::size_t ripe) {
 
 }  // namespace
 
-TEST_CASE("colours in CIELAB are those of the standard") {
+TEST_CASE("colors in CIELAB are those of the standard") {
   const Eigen::Vector3d white = to_lab(kWhite), red = to_lab({255, 0, 0}), green = to_lab({0, 255, 0});
   CHECK(white.isApprox(Eigen::Vector3d(100, 0, 0), 1e-6));
   CHECK((red - Eigen::Vector3d(53.24, 80.09, 67.20)).norm() < 0.05);
@@ -71,7 +71,7 @@ TEST_CASE("a fruit of which little was seen is of a less certain class") {
   CHECK(little->probability < much->probability);
 }
 
-TEST_CASE("colours that say nothing give no ripeness") {
+TEST_CASE("colors that say nothing give no ripeness") {
   CHECK_FALSE(ripeness_of({}, 1.0));
   CHECK_FALSE(ripeness_of(std::vector<Rgb>(7, kRed), 1.0));
   CHECK_FALSE(ripeness_of(std::vector<Rgb>(100, {120, 120, 120}), 1.0));
@@ -80,7 +80,7 @@ TEST_CASE("colours that say nothing give no ripeness") {
   CHECK_THROWS_AS(ripeness_of(tomato(50), 1.0, wrong), FieldError);
 }
 
-TEST_CASE("selected points keep their colours and detections") {
+TEST_CASE("selected points keep their colors and detections") {
   Cloud cloud;
   cloud.points = {{0, 0, 0}, {1, 0, 0}, {2, 0, 0}};
   cloud.colors = {kRed, kGreen, kWhite};

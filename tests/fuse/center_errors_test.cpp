@@ -63,7 +63,7 @@ Eigen::Matrix3d errors_of(const Scan& scan) { return center_errors({fit_of(scan)
 
 }  // namespace
 
-TEST_CASE("centres are as far off as the views' shared errors say") {
+TEST_CASE("centers are as far off as the views' shared errors say") {
   for (const double shared : {0.0003, 0.001}) {
     double squares = 0.0, variances = 0.0;
     constexpr int kScans = 80;
@@ -81,7 +81,7 @@ TEST_CASE("centres are as far off as the views' shared errors say") {
   }
 }
 
-TEST_CASE("centres are as far off as errors say that only neighboring points share") {
+TEST_CASE("centers are as far off as errors say that only neighboring points share") {
   constexpr double kError = 0.001;
   double squares = 0.0, variances = 0.0;
   constexpr int kScans = 80;
@@ -108,7 +108,7 @@ TEST_CASE("centres are as far off as errors say that only neighboring points sha
   CHECK(variances / squares < 3.0);
 }
 
-TEST_CASE("more views with errors of their own make a centre more certain; more points of the same views do not") {
+TEST_CASE("more views with errors of their own make a center more certain; more points of the same views do not") {
   const double few = errors_of(scan_of_ball(6, 0.0006, 0.0001, 1)).trace();
   const double many = errors_of(scan_of_ball(24, 0.0006, 0.0001, 1)).trace();
   CHECK(many < 0.5 * few);
@@ -125,7 +125,7 @@ TEST_CASE("views that agree leave hardly any error") {
   CHECK(std::sqrt(errors_of(scan_of_ball(10, 0.0, 0.0001, 2)).trace()) < 0.0002);
 }
 
-TEST_CASE("poses that registration had to put right make a centre less certain") {
+TEST_CASE("poses that registration had to put right make a center less certain") {
   Scan scan = scan_of_ball(10, 0.0, 0.0001, 3);
   std::mt19937 random(3);
   std::normal_distribution<double> normal(0.0, 0.002);

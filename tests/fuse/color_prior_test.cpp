@@ -25,7 +25,7 @@ sensor::DepthFrame discs() {
 
 }  // namespace
 
-TEST_CASE("patches of the colour of fruit become masks, cut where two touch") {
+TEST_CASE("patches of the color of fruit become masks, cut where two touch") {
   const sensor::DepthFrame frame = fuse::detected_by_color(discs());
   REQUIRE(frame.detected);
   REQUIRE(frame.detections.size() == 3);

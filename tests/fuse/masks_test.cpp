@@ -262,7 +262,7 @@ TEST_CASE("views that no detector looked at say nothing") {
   CHECK_FALSE(evidence.log_odds);
 }
 
-TEST_CASE("a cloud takes the colours that views saw, and only those") {
+TEST_CASE("a cloud takes the colors that views saw, and only those") {
   sensor::DepthFrame frame = *view_of({kLeft}).frame;
   for (const std::uint16_t i : frame.instances) frame.color.push_back(i ? Rgb{200, 10, 20} : Rgb{10, 200, 20});
   Cloud cloud;

@@ -48,7 +48,7 @@ TEST_CASE("right poses are believed, also when they are off by some millimetres"
   CHECK(check.as_reported > 0.6);
 }
 
-TEST_CASE("poses that are inverted, or of other axes, are recognised") {
+TEST_CASE("poses that are inverted, or of other axes, are recognized") {
   const auto mistake = [](Pose (*report)(const Pose&), const Aabb& volume = kNowhere) {
     return check_poses(seen(report), volume).mistake;
   };

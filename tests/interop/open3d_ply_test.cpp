@@ -7,7 +7,7 @@
 
 using namespace agrisee;
 
-TEST_CASE("Open3D reads points, normals and colours of cloud.ply, and what it writes is the same cloud") {
+TEST_CASE("Open3D reads points, normals and colors of cloud.ply, and what it writes is the same cloud") {
   const test::ResultCloud result("open3d");
   open3d::geometry::PointCloud theirs;
   REQUIRE(open3d::io::ReadPointCloud(result.file.string(), theirs));

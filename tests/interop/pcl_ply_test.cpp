@@ -9,7 +9,7 @@
 
 using namespace agrisee;
 
-TEST_CASE("PCL reads points, normals, colours and instances of cloud.ply, and what it writes is the same cloud") {
+TEST_CASE("PCL reads points, normals, colors and instances of cloud.ply, and what it writes is the same cloud") {
   const test::ResultCloud result("pcl");
   pcl::PCLPointCloud2 message;
   REQUIRE(pcl::PLYReader().read(result.file.string(), message) == 0);

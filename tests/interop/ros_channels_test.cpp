@@ -49,7 +49,7 @@ mock::Image color(const std::string& encoding) {
 
 }  // namespace
 
-TEST_CASE("colours of a registered image are those of the frame's pixels") {
+TEST_CASE("colors of a registered image are those of the frame's pixels") {
   for (const char* encoding : {"rgb8", "bgr8", "rgba8", "bgra8"}) {
     INFO(encoding);
     const mock::Image colors = color(encoding);

@@ -44,7 +44,7 @@ TEST_CASE("tables of numbers, whatever separates them") {
 TEST_CASE("the named columns of a table mean what the properties of a PLY file mean") {
   const TempFolder folder;
   const auto path = folder.file("a.csv",
-                                "x,y,z,nx,ny,nz,view,label,colour\n"
+                                "x,y,z,nx,ny,nz,view,label,color\n"
                                 "1,2,3,0,0,2,4,7,red\n"
                                 ",,,0,0,1,1,1,red\n"
                                 "4,5,-6.5,0,0,0,0,-1,blue\n");
@@ -62,11 +62,11 @@ TEST_CASE("arrays of numpy are clouds") {
   CHECK(io::read_cloud(folder.file("a.npy", npy("(2, 3)", {1, 2, 3, 4, 5, -6.5f}))).cloud.points == kTwo);
   CHECK(io::read_cloud(folder.file("a", npy("(2, 4)", {1, 2, 3, 0, 4, 5, -6.5f, 0}))).cloud.points == kTwo);
   CHECK(io::read_cloud(folder.file("a.npy", npy("(2, 3)", {1, 4, 2, 5, 3, -6.5f}, true))).cloud.points == kTwo);
-  const io::CloudFile organised =
+  const io::CloudFile organized =
       io::read_cloud(folder.file("a.npy", npy("(2, 1, 3)", {1, 2, 3, 4, 5, -6.5f})), io::NonFinite::keep);
-  CHECK(organised.cloud.points == kTwo);
-  CHECK(organised.width == 1);
-  CHECK(organised.height == 2);
+  CHECK(organized.cloud.points == kTwo);
+  CHECK(organized.width == 1);
+  CHECK(organized.height == 2);
   CHECK(io::read_cloud(folder.file("a.npy", npy("(0, 3)", {}))).cloud.empty());
   require_file_error(folder.file("a.npy", npy("(3, 2)", {1, 2, 3, 4, 5, 6})), "(points, 3)", load);
   require_file_error(folder.file("a.npy", npy("(6,)", {1, 2, 3, 4, 5, 6})), "shape (6,)", load);

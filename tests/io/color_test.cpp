@@ -42,7 +42,7 @@ sensor::DepthFrame tiny_frame() {
 
 }  // namespace
 
-TEST_CASE("PLY and PCD keep measured colours and detections") {
+TEST_CASE("PLY and PCD keep measured colors and detections") {
   const TempFolder folder;
   const Cloud cloud = colored_cloud();
   io::write_ply(folder / "a.ply", cloud, {1, 0, 2});
@@ -56,7 +56,7 @@ TEST_CASE("PLY and PCD keep measured colours and detections") {
   CHECK(pcd.cloud.normals == cloud.normals);
 }
 
-TEST_CASE("a cloud without colours is written as before, and the colours of fruit are not measured ones") {
+TEST_CASE("a cloud without colors is written as before, and the colors of fruit are not measured ones") {
   const TempFolder folder;
   Cloud cloud = colored_cloud();
   cloud.colors.clear();
@@ -67,7 +67,7 @@ TEST_CASE("a cloud without colours is written as before, and the colours of frui
   CHECK(io::read_ply(folder / "a.ply").cloud.colors.empty());
 }
 
-TEST_CASE("colours of other programs are read, packed or by channel") {
+TEST_CASE("colors of other programs are read, packed or by channel") {
   const TempFolder folder;
   const std::vector<Rgb> expected{{255, 128, 1}, {0, 51, 102}};
   const std::string ply =
@@ -87,7 +87,7 @@ TEST_CASE("colours of other programs are read, packed or by channel") {
   CHECK(io::read_pcd(folder.file("d.pcd", pcd + "TYPE F F F F\nDATA binary\n" + body)).cloud.colors == expected);
 }
 
-TEST_CASE("a point that is dropped takes its colour with it") {
+TEST_CASE("a point that is dropped takes its color with it") {
   const TempFolder folder;
   const auto read = io::read_ply(folder.file(
       "a.ply",
@@ -97,14 +97,14 @@ TEST_CASE("a point that is dropped takes its colour with it") {
   CHECK(read.cloud.colors == std::vector<Rgb>{{4, 5, 6}});
 }
 
-TEST_CASE("colour and label images say what is wrong with them") {
+TEST_CASE("color and label images say what is wrong with them") {
   const TempFolder folder;
-  const std::string rgb("\x01\x02\x03\x04\x05\x06"), grey8("\x01\x02"), grey16("\x01\x00\x00\x02", 4);
+  const std::string rgb("\x01\x02\x03\x04\x05\x06"), gray8("\x01\x02"), gray16("\x01\x00\x00\x02", 4);
   const auto color = [](const std::filesystem::path& path) { return io::read_color_image(path); };
   const auto label = [](const std::filesystem::path& path) { return io::read_label_image(path); };
   CHECK(color(folder.file("c.png", png(8, io::PngKind::rgb, rgb))).pixels == std::vector<Rgb>{{1, 2, 3}, {4, 5, 6}});
-  CHECK(label(folder.file("8.png", png(8, io::PngKind::gray, grey8))).labels == std::vector<std::uint16_t>{1, 2});
-  CHECK(label(folder.file("16.png", png(16, io::PngKind::gray, grey16))).labels == std::vector<std::uint16_t>{256, 2});
+  CHECK(label(folder.file("8.png", png(8, io::PngKind::gray, gray8))).labels == std::vector<std::uint16_t>{1, 2});
+  CHECK(label(folder.file("16.png", png(16, io::PngKind::gray, gray16))).labels == std::vector<std::uint16_t>{256, 2});
   require_file_error(folder / "8.png", "is a gray image", color);
   require_file_error(folder.file("c16.png", png(16, io::PngKind::rgb, rgb + rgb)), "16 bits a channel", color);
   require_file_error(folder / "c.png", "one gray channel", label);

@@ -106,11 +106,11 @@ TEST_CASE("PNG images that other programs made") {  // these with Python's zlib,
   const auto image = [&](const std::string& middle) {
     return folder.file("a.png", from_hex(kPngBegin + middle + kPngEnd));
   };
-  const io::DepthImage grey = io::read_depth_image(
+  const io::DepthImage gray = io::read_depth_image(
       image("00000002000000021000000000074d8ebb000000124944415478da636060606064647ef1471c0004e802018257cfc7"));
-  CHECK(grey.width == 2);
-  CHECK(grey.height == 2);
-  CHECK(grey.values == std::vector<float>{0, 1, 1000, 65535});
+  CHECK(gray.width == 2);
+  CHECK(gray.height == 2);
+  CHECK(gray.values == std::vector<float>{0, 1, 1000, 65535});
   require_file_error(image("000000010000000108000000003a7e9b550000000a4944415478da63600500000700062d451807"),
                      "8 bits a pixel; depth needs 16", load);
   require_file_error(image("00000001000000011002000000c0e78f9d0000000c4944415478da636060044100001000041852a5e5"),

@@ -111,7 +111,7 @@ TEST_CASE("OBJ: textures, normals, negative indices, polygons, faces before thei
   CHECK(mesh.triangles[2] == std::array<std::uint32_t, 3>{0, 2, 3});
 }
 
-TEST_CASE("PLY meshes: round trip, colours, polygons as fans, ASCII and big-endian") {
+TEST_CASE("PLY meshes: round trip, colors, polygons as fans, ASCII and big-endian") {
   const TempFolder folder;
   io::write_ply_mesh(folder / "a.ply", tetrahedron());
   const Mesh plain = io::read_mesh(folder / "a.ply");

@@ -56,7 +56,7 @@ std::string compressed(const std::string& plain) {
 
 }  // namespace
 
-TEST_CASE("ASCII PCD, organised, with points that are not there") {
+TEST_CASE("ASCII PCD, organized, with points that are not there") {
   const TempFolder folder;
   const auto path = folder.file("a.pcd", xyz_header(2, 2, "ascii") + "1 2 3\nnan nan nan\n4 5 6\n-1 0 0.5\n");
   const io::CloudFile file = io::read_cloud(path);
@@ -65,11 +65,11 @@ TEST_CASE("ASCII PCD, organised, with points that are not there") {
   CHECK(file.width == 3);
   CHECK(file.height == 1);
   CHECK(file.cloud.points[1] == Eigen::Vector3f(4, 5, 6));
-  const io::CloudFile organised = io::read_cloud(path, io::NonFinite::keep);
-  REQUIRE(organised.cloud.size() == 4);
-  CHECK(organised.width == 2);
-  CHECK(organised.height == 2);
-  CHECK(organised.cloud.points[3] == Eigen::Vector3f(-1, 0, 0.5f));
+  const io::CloudFile organized = io::read_cloud(path, io::NonFinite::keep);
+  REQUIRE(organized.cloud.size() == 4);
+  CHECK(organized.width == 2);
+  CHECK(organized.height == 2);
+  CHECK(organized.cloud.points[3] == Eigen::Vector3f(-1, 0, 0.5f));
 }
 
 TEST_CASE("binary PCD with fields of any type, counts and padding") {

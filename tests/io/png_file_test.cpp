@@ -11,8 +11,8 @@ namespace {
 
 /// An image whose pixels are value(x, y).
 template <typename Value>
-io::GreyImage image_of(int width, int height, Value&& value) {
-  io::GreyImage image;
+io::GrayImage image_of(int width, int height, Value&& value) {
+  io::GrayImage image;
   image.width = width;
   image.height = height;
   for (int y = 0; y < height; ++y)
@@ -20,9 +20,9 @@ io::GreyImage image_of(int width, int height, Value&& value) {
   return image;
 }
 
-void check_kept(const io::GreyImage& image) {
+void check_kept(const io::GrayImage& image) {
   const std::string bytes = io::encode_png16(image);
-  const io::GreyImage again = io::decode_png16("test.png", bytes);
+  const io::GrayImage again = io::decode_png16("test.png", bytes);
   CHECK(again.width == image.width);
   CHECK((again.pixels == image.pixels));
 }

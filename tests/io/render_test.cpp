@@ -62,7 +62,7 @@ std::size_t count_like(const io::Image& image, const io::Rgb& rgb, int x0, int x
 
 }  // namespace
 
-TEST_CASE("a picture shows every fruit in its colour, from both sides") {
+TEST_CASE("a picture shows every fruit in its color, from both sides") {
   const io::Image image = io::render(spheres(3), cell(), 800, 450);
   REQUIRE(image.width == 800);
   REQUIRE(image.height == 450);

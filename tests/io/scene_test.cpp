@@ -109,7 +109,7 @@ objects:
   CHECK_FALSE(file.scene.objects[2].material);
 }
 
-TEST_CASE("objects have a ripeness and a colour where the scene says so") {
+TEST_CASE("objects have a ripeness and a color where the scene says so") {
   const SceneFolder folder;
   const auto with = [&](const std::string& keys) {
     return folder.read(replaced(kScene, "mesh: fruit.stl", keys + ", mesh: fruit.stl")).scene.objects.front();
@@ -179,7 +179,7 @@ TEST_CASE("scenes round trip") {
 
 TEST_CASE("unknown, missing and repeated keys are named with file and line") {
   const SceneFolder folder;
-  folder.refuse(kScene + "colour: red\n", ":7: unknown key 'colour'");
+  folder.refuse(kScene + "color: red\n", ":7: unknown key 'color'");
   folder.refuse(kScene + "name: again\n", "key 'name' twice");
   folder.refuse(replaced(kScene, "rpy: [0, 0, 0]}", "rpy: [0, 0, 0], yaw: 3}"), ":3: robot.base: unknown key 'yaw'");
   folder.refuse(replaced(kScene, "mesh: fruit.stl", "mesh: fruit.stl, hue: 3"), ":6: objects[0]: unknown key 'hue'");

@@ -110,7 +110,7 @@ void check_all(const std::string& kind) {
 
 }  // namespace
 
-TEST_CASE("neighbours whose squared distances overflow are taken in the order of their indices") {
+TEST_CASE("neighbors whose squared distances overflow are taken in the order of their indices") {
   for (const double scale : {1e18, 6e18, 1e19, 3e19, 1e20, 4e20}) {
     Rng rng(11);
     shapes::Points<float> cloud;
@@ -140,7 +140,7 @@ TEST_CASE("strays are found where the squares of cells nearly overflow") {
   check(2.25e154, 1.0);
 }
 
-TEST_CASE("neighbours at distances whose squares vanish or have few digits") {
+TEST_CASE("neighbors at distances whose squares vanish or have few digits") {
   shapes::Points<float> cloud;
   for (int i = 0; i < 3000; ++i) cloud.emplace_back(i % 2 ? 1e-30f : 0.0f, 0.0f, 0.0f);  // two places, all squares 0
   check_nearest<float>(cloud, 5, std::numeric_limits<float>::infinity());
@@ -162,7 +162,7 @@ TEST_CASE("a radius means the same in a crowd as elsewhere") {
   check_nearest<float>(cloud, 5, radius);
 }
 
-TEST_CASE("all neighbourhoods at once equal brute force") {
+TEST_CASE("all neighborhoods at once equal brute force") {
   const std::string kind = GENERATE(from_range(shapes::cloud_kinds()));
   INFO(kind);
   check_all<float>(kind);

@@ -55,7 +55,7 @@ void check_all(const std::string& kind) {
 
 }  // namespace
 
-TEST_CASE("neighbour searches equal brute force") {
+TEST_CASE("neighbor searches equal brute force") {
   const std::string kind = GENERATE(from_range(shapes::cloud_kinds()));
   INFO(kind);
   check_all<float>(kind);

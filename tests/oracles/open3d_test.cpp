@@ -26,7 +26,7 @@ TEST_CASE("Open3D's DBSCAN finds the same clusters, border points aside") {
   }
 }
 
-TEST_CASE("Open3D's outlier removal keeps the same points with one neighbour more") {
+TEST_CASE("Open3D's outlier removal keeps the same points with one neighbor more") {
   for (const std::string kind : {"random", "spheres", "outliers"}) {
     INFO(kind);
     const auto cloud = cases::cloud_of<double>(kind, 3000);

@@ -89,7 +89,7 @@ TEST_CASE("PCL's region growing finds the same regions") {
         growing.setInputCloud(points);
         growing.setInputNormals(normals);
         growing.setSearchMethod(pcl::search::KdTree<pcl::PointXYZ>::Ptr(new pcl::search::KdTree<pcl::PointXYZ>));
-        growing.setNumberOfNeighbours(20);
+        growing.setNumberOfNeighbors(20);
         growing.setSmoothnessThreshold(static_cast<float>(deg(angle)));
         growing.setCurvatureTestFlag(gate);
         growing.setCurvatureThreshold(0.01f);
@@ -100,14 +100,14 @@ TEST_CASE("PCL's region growing finds the same regions") {
         for (std::size_t c = 0; c < clusters.size(); ++c)
           for (const auto i : clusters[c].indices) theirs[static_cast<std::size_t>(i)] = static_cast<int>(c) + 1;
 
-        RegionGrowingParameters params;
-        params.neighbors = 20;
-        params.smoothness = deg(angle);
-        params.min_size = 30;
-        params.seeds_by_curvature = true;
-        params.unsigned_normals = true;
-        params.max_curvature = gate ? 0.01 : 1.0;
-        CHECK((grow_regions(cloud, ours_in, params, KdTree(cloud), curvatures) == theirs));
+        RegionGrowingParameters parameters;
+        parameters.neighbors = 20;
+        parameters.smoothness = deg(angle);
+        parameters.min_size = 30;
+        parameters.seeds_by_curvature = true;
+        parameters.unsigned_normals = true;
+        parameters.max_curvature = gate ? 0.01 : 1.0;
+        CHECK((grow_regions(cloud, ours_in, parameters, KdTree(cloud), curvatures) == theirs));
       }
   }
 }

@@ -140,7 +140,7 @@ TEST_CASE("picking: a free fruit is approached from the front, across its growth
   CHECK(std::abs(plan[0].direction.z()) < 0.4);
 }
 
-TEST_CASE("picking: sides that were seen and sides without neighbours are preferred") {
+TEST_CASE("picking: sides that were seen and sides without neighbors are preferred") {
   PickingScene s = scene();
   s.seen.resize(1);
   const std::vector<Fruit> one{fruit(1, {0.0, 0.5, 0.2})};

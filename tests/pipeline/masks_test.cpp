@@ -63,7 +63,7 @@ TEST_CASE("a mask finds the fruit of which a leaf leaves a sliver") {
   CHECK(fruit.body->confidence > 0.5);
 }
 
-TEST_CASE("colours give ripeness, without a detector, too") {
+TEST_CASE("colors give ripeness, without a detector, too") {
   sensor::DepthFrame frame = ball_frame(240);
   frame.detected = false;
   frame.instances.clear();
@@ -76,7 +76,7 @@ TEST_CASE("colours give ripeness, without a detector, too") {
   CHECK(result.trusses.front().ripeness->grade == RipenessClass::red);
 }
 
-TEST_CASE("without masks and colours nothing of them is in a result") {
+TEST_CASE("without masks and colors nothing of them is in a result") {
   sensor::DepthFrame frame = ball_frame(240);
   frame.detected = false;
   frame.color.clear();
@@ -86,7 +86,7 @@ TEST_CASE("without masks and colours nothing of them is in a result") {
   for (const Fruit& f : result.fruits) CHECK_FALSE(f.ripeness);
 }
 
-TEST_CASE("a pipeline takes masks and colours with its frames") {
+TEST_CASE("a pipeline takes masks and colors with its frames") {
   Workcell workcell;
   workcell.scan_volume = Aabb{{-0.15, -0.15, 0.8}, {0.15, 0.15, 1.3}};
   Parameters parameters;
@@ -119,7 +119,7 @@ TEST_CASE("frames may be shared, and are not copied") {
   CHECK(pipeline.views().size() == 1);
 }
 
-TEST_CASE("colours alone propose the fruit of which a leaf leaves a sliver, if they are asked") {
+TEST_CASE("colors alone propose the fruit of which a leaf leaves a sliver, if they are asked") {
   sensor::DepthFrame frame = ball_frame(108);
   frame.detected = false;
   frame.instances.clear();

@@ -236,7 +236,7 @@ TEST_CASE("a viewpoint behind what was seen is refused, and invents no fruit") {
   for (const Fruit& f : result.fruits) CHECK(f.body->radii.mean() <= 1.15 * Parameters().split.bodies.radius_max);
 }
 
-TEST_CASE("normals that are missing are estimated on their neighbours' side") {
+TEST_CASE("normals that are missing are estimated on their neighbors' side") {
   const Cloud cloud = seen();
   Cloud some = cloud, none = cloud;
   for (std::size_t i = 0; i < some.size(); ++i) {
@@ -255,7 +255,7 @@ TEST_CASE("normals that are missing are estimated on their neighbours' side") {
     }
 }
 
-TEST_CASE("a cloud's own noise widens its neighbourhoods") {
+TEST_CASE("a cloud's own noise widens its neighborhoods") {
   for (const double sigma : {0.0, 0.001, 0.002}) {
     const Cloud cloud = seen(sigma);
     const double noise = estimate_noise(cloud, KdTree<float>(cloud), 0.008, 0.0325);

@@ -39,7 +39,7 @@ TEMPLATE_TEST_CASE("DBSCAN: motions, scales, shuffles and precision change nothi
   CHECK(cores(dbscan(laws::pick(cloud, order), {eps, min_points}), order) == cores(laws::pick(straight, order), order));
 }
 
-TEMPLATE_TEST_CASE("DBSCAN: m of each point and m times the neighbours change nothing", "", float, double) {
+TEMPLATE_TEST_CASE("DBSCAN: m of each point and m times the neighbors change nothing", "", float, double) {
   const std::string kind = GENERATE(from_range(laws::exact_kinds()));
   const std::size_t m = GENERATE(2u, 5u);
   INFO(kind << ", m " << m);

@@ -70,9 +70,9 @@ TEMPLATE_TEST_CASE("density of exact and hostile clouds is what its definition s
     for (const double r : {0x1p-9, 0x1p-7, 0.3})
       for (const double k : {1.0, 2.0, 12.0}) {
         INFO(kind << ", r " << r << ", k " << k);
-        const see::Parameters params = with(r, k);
-        REQUIRE(params.k() == static_cast<std::size_t>(k));
-        REQUIRE(both(see::classify(cloud, params, 2)) == both(oracle::classify(cloud, r, params.k())));
+        const see::Parameters parameters = with(r, k);
+        REQUIRE(parameters.k() == static_cast<std::size_t>(k));
+        REQUIRE(both(see::classify(cloud, parameters, 2)) == both(oracle::classify(cloud, r, parameters.k())));
       }
   }
 }

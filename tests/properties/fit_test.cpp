@@ -34,8 +34,8 @@ Indices all(const PointCloud<double>& cloud) {
   return out;
 }
 
-EllipsoidFit fit(const PointCloud<double>& cloud, const Ellipsoid& start, const FitParameters& params = {}) {
-  const auto out = fit_ellipsoid(cloud, all(cloud), start, params);
+EllipsoidFit fit(const PointCloud<double>& cloud, const Ellipsoid& start, const FitParameters& parameters = {}) {
+  const auto out = fit_ellipsoid(cloud, all(cloud), start, parameters);
   REQUIRE(out);
   return *out;
 }
@@ -89,9 +89,9 @@ TEST_CASE("fits: scales that are powers of two change nothing but the scale") {
     Ellipsoid start = kStart;
     start.center *= by;
     start.A /= by;
-    FitParameters params;
-    params.noise *= by;
-    const EllipsoidFit got = fit(cloud, start, params);
+    FitParameters parameters;
+    parameters.noise *= by;
+    const EllipsoidFit got = fit(cloud, start, parameters);
     CHECK(got.body.center == by * straight.body.center);
     CHECK(got.body.A == straight.body.A / by);
     CHECK(got.center_covariance == by * by * straight.center_covariance);

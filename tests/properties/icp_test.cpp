@@ -28,8 +28,8 @@ PointCloud<S> spheres(std::size_t n, std::uint64_t seed, const Pose& motion) {
 const Pose kMotion = pose_from_xyz_rpy({0.001, -0.0015, 0.0005}, {0.002, 0.001, -0.002});
 
 template <typename S>
-IcpResult align(const PointCloud<S>& source, const PointCloud<S>& target, const IcpParameters& params) {
-  return register_cloud(source, source.normals, target, target.normals, params);
+IcpResult align(const PointCloud<S>& source, const PointCloud<S>& target, const IcpParameters& parameters) {
+  return register_cloud(source, source.normals, target, target.normals, parameters);
 }
 
 template <typename S>
@@ -46,18 +46,18 @@ TEST_CASE("ICP: scales, copies and precision") {
   const auto kernel = GENERATE(RobustKernel::none, RobustKernel::huber, RobustKernel::tukey);
   const bool point_to_point = GENERATE(false, true);
   INFO(to_string(kernel) << ", point to point " << point_to_point);
-  IcpParameters params;
-  params.kernel = kernel;
-  params.point_to_point = point_to_point;
+  IcpParameters parameters;
+  parameters.kernel = kernel;
+  parameters.point_to_point = point_to_point;
   const auto target = spheres<double>(4000, 1, Pose::Identity()), source = spheres<double>(700, 2, kMotion);
-  const IcpResult straight = align(source, target, params);
+  const IcpResult straight = align(source, target, parameters);
   REQUIRE(straight.accepted);
 
   for (const double by : {0x1p-7, 4.0, 0x1p9}) {
     PointCloud<double> a = source, b = target;
     a.points = laws::scaled(a.points, by);
     b.points = laws::scaled(b.points, by);
-    IcpParameters scaled = params;
+    IcpParameters scaled = parameters;
     for (double* length : {&scaled.max_distance, &scaled.translation_tolerance, &scaled.max_translation}) *length *= by;
     const IcpResult got = align(a, b, scaled);
     CHECK(got.accepted);
@@ -68,15 +68,16 @@ TEST_CASE("ICP: scales, copies and precision") {
     CHECK(got.iterations == straight.iterations);
   }
 
-  const IcpResult twin_target = align(source, copies(target, 2), params);
+  const IcpResult twin_target = align(source, copies(target, 2), parameters);
   CHECK(twin_target.target_T_source.matrix() == straight.target_T_source.matrix());
   CHECK(twin_target.rms_after == straight.rms_after);
-  const IcpResult twin_source = align(copies(source, 2), target, params);
+  const IcpResult twin_source = align(copies(source, 2), target, parameters);
   CHECK(twin_source.accepted);
   CHECK((twin_source.target_T_source.matrix() - straight.target_T_source.matrix()).norm() < 1e-9);
   CHECK(twin_source.matches == 2 * straight.matches);
 
-  const IcpResult single = align(spheres<float>(700, 2, kMotion), spheres<float>(4000, 1, Pose::Identity()), params);
+  const IcpResult single =
+      align(spheres<float>(700, 2, kMotion), spheres<float>(4000, 1, Pose::Identity()), parameters);
   CHECK(single.accepted);
   CHECK((single.target_T_source.matrix() - straight.target_T_source.matrix()).norm() < 2e-6);
 }

@@ -20,17 +20,17 @@ bool same_axis(const A& a, const B& b, double tolerance) {
 
 /// Which points have an axis that their neighborhood tells, and are not tied at its end.
 template <typename S>
-std::vector<char> told(const laws::Points<S>& cloud, const NormalParameters& params) {
+std::vector<char> told(const laws::Points<S>& cloud, const NormalParameters& parameters) {
   std::vector<char> out;
   laws::Points<double> exact;
   for (const auto& p : cloud) exact.push_back(p.template cast<double>());
-  const auto near = oracle::within(cloud, static_cast<S>(params.radius));
+  const auto near = oracle::within(cloud, static_cast<S>(parameters.radius));
   for (std::size_t i = 0; i < cloud.size(); ++i) {
     std::vector<std::pair<S, Index>> by_distance;
     for (const Index j : near[i])
       by_distance.emplace_back(distance_sq<S>(cloud[i], cloud[static_cast<std::size_t>(j)]), j);
     std::sort(by_distance.begin(), by_distance.end());
-    const auto k = static_cast<std::size_t>(params.max_neighbors);
+    const auto k = static_cast<std::size_t>(parameters.max_neighbors);
     const bool tied = by_distance.size() > k && by_distance[k].first == by_distance[k - 1].first;
     by_distance.resize(std::min(by_distance.size(), k));
     Indices used;
@@ -49,10 +49,10 @@ TEMPLATE_TEST_CASE("normals: motions, scales, shuffles, copies and precision cha
   const int k = GENERATE(9, 1000);
   INFO(kind << ", k " << k);
   const auto cloud = laws::exact_cloud<S>(kind);
-  const NormalParameters params{0x1p-7, k};
+  const NormalParameters parameters{0x1p-7, k};
   std::vector<S> curvatures;
-  const auto straight = estimate_normals(cloud, params, 1, &curvatures);
-  const auto sure = told(cloud, params);
+  const auto straight = estimate_normals(cloud, parameters, 1, &curvatures);
+  const auto sure = told(cloud, parameters);
   const double tolerance = std::is_same<S, float>::value ? 1e-4 : 1e-9;
   const auto check = [&](const auto& got, const Eigen::Matrix3d& turn, const char* what) {
     INFO(what);
@@ -65,16 +65,16 @@ TEMPLATE_TEST_CASE("normals: motions, scales, shuffles, copies and precision cha
     CHECK(wrong == 0);
   };
   const Eigen::Matrix3d still = Eigen::Matrix3d::Identity();
-  CHECK((estimate_normals(cloud, params, 4) == straight));
+  CHECK((estimate_normals(cloud, parameters, 4) == straight));
   for (const auto& turn : laws::right_angles())
-    check(estimate_normals(laws::moved(cloud, turn, Eigen::Vector3d::Zero()), params), turn, "turned");
-  check(estimate_normals(laws::moved(cloud, still, laws::far_shift<S>()), params), still, "shifted");
+    check(estimate_normals(laws::moved(cloud, turn, Eigen::Vector3d::Zero()), parameters), turn, "turned");
+  check(estimate_normals(laws::moved(cloud, still, laws::far_shift<S>()), parameters), still, "shifted");
   for (const double by : {0.125, 3.0, 64.0})
     check(estimate_normals(laws::scaled(cloud, by), {by * 0x1p-7, k}), still, "scaled");
-  check(estimate_normals(laws::exact_cloud<double>(kind), params), still, "in double");
+  check(estimate_normals(laws::exact_cloud<double>(kind), parameters), still, "in double");
   const Indices order = laws::shuffled(cloud.size());
   auto back = straight;
-  const auto mixed = estimate_normals(laws::pick(cloud, order), params);
+  const auto mixed = estimate_normals(laws::pick(cloud, order), parameters);
   for (std::size_t i = 0; i < order.size(); ++i) back[static_cast<std::size_t>(order[i])] = mixed[i];
   // What is known may hang on which of the tied is taken; with all of the radius it does not.
   if (k == 1000) check(back, still, "shuffled");

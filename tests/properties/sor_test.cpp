@@ -10,9 +10,9 @@ using namespace agrisee;
 namespace {
 
 template <typename S>
-std::vector<char> stays(const laws::Points<S>& cloud, const SorParameters& params, int threads = 1) {
+std::vector<char> stays(const laws::Points<S>& cloud, const SorParameters& parameters, int threads = 1) {
   std::vector<char> out(cloud.size(), 0);
-  for (const Index i : remove_statistical_outliers(cloud, params, threads)) out[static_cast<std::size_t>(i)] = 1;
+  for (const Index i : remove_statistical_outliers(cloud, parameters, threads)) out[static_cast<std::size_t>(i)] = 1;
   return out;
 }
 
@@ -31,7 +31,7 @@ TEMPLATE_TEST_CASE("outlier removal: motions, scales, shuffles and precision cha
       [](const auto& v) { return v; });
 }
 
-TEMPLATE_TEST_CASE("outlier removal: m of each point and m (K + 1) - 1 neighbours change nothing", "", float, double) {
+TEMPLATE_TEST_CASE("outlier removal: m of each point and m (K + 1) - 1 neighbors change nothing", "", float, double) {
   // Every d_i is multiplied by m K / (m (K + 1) - 1), and mean and deviation with it.
   const std::string kind = GENERATE(from_range(laws::exact_kinds()));
   const std::size_t m = GENERATE(2u, 5u);

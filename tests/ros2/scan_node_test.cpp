@@ -125,7 +125,7 @@ TEST_CASE("topics have the quality of service that sensors and late listeners ne
   CHECK(images.back().lock()->qos.depth == 1);
 }
 
-TEST_CASE("a frame waits for its colours and labels and is taken with them") {
+TEST_CASE("a frame waits for its colors and labels and is taken with them") {
   Robot robot({{"channels.color", true}, {"channels.labels", true}, {"channels.score", 0.9}});
   REQUIRE(robot.bring_up() == "active");
   robot.call("start");
@@ -158,7 +158,7 @@ TEST_CASE("a frame waits for its colours and labels and is taken with them") {
   CHECK(Robot::said("the frame goes without"));
 }
 
-TEST_CASE("fruit whose colours are seen have a ripeness") {
+TEST_CASE("fruit whose colors are seen have a ripeness") {
   Robot robot({{"channels.color", true}, {"channels.labels", true}});
   const Ear<visualization_msgs::msg::MarkerArray> markers("/agrisee/fruit_markers", latched());
   REQUIRE(robot.bring_up() == "active");

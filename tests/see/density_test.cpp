@@ -186,11 +186,11 @@ TEST_CASE("classification of degenerate clouds", "[see]") {
 }
 
 TEST_CASE("views merged one by one equal brute force, whatever the number of threads", "[see]") {
-  const Parameters params = small();
+  const Parameters parameters = small();
   for (std::uint64_t seed = 1; seed <= 12; ++seed) {
     Rng rng(seed);
-    DensityMap<float> map(params);
-    BruteForce<float> brute(params.radius, params.k());
+    DensityMap<float> map(parameters);
+    BruteForce<float> brute(parameters.radius, parameters.k());
     std::size_t given = 0;
     for (int view = 0; view < 9; ++view) {
       Points points;  // a patch of a wavy surface, now and then stray points, nothing, or something not finite
@@ -242,12 +242,12 @@ TEST_CASE("views merged one by one equal brute force, whatever the number of thr
 
 TEST_CASE("a frontier that is given up is an outlier until a new point comes near", "[see]") {
   // A row of points 4 mm apart: with r = 10 mm an inner point has 5 of them within r, the second one 4, the first 3.
-  Parameters params;
-  params.radius = 0.01;
-  params.rho = 1e6;  // k = 5
-  REQUIRE(params.k() == 5);
-  params.separation = 0.001;
-  DensityMap<float> map(params);
+  Parameters parameters;
+  parameters.radius = 0.01;
+  parameters.rho = 1e6;  // k = 5
+  REQUIRE(parameters.k() == 5);
+  parameters.separation = 0.001;
+  DensityMap<float> map(parameters);
   Points row;
   for (int i = 0; i < 9; ++i) row.emplace_back(0.004f * static_cast<float>(i), 0.0f, 0.0f);
   map.insert(row, 0);
@@ -274,9 +274,9 @@ TEST_CASE("a frontier that is given up is an outlier until a new point comes nea
 }
 
 TEST_CASE("merged points keep their distance, and every point has one near", "[see]") {
-  const Parameters params;
-  const auto epsilon = static_cast<float>(params.min_separation());
-  DensityMap<float> map(params);
+  const Parameters parameters;
+  const auto epsilon = static_cast<float>(parameters.min_separation());
+  DensityMap<float> map(parameters);
   const Points cloud = test::sphere({0.1, 0.2, 0.3}, 0.035, 400000);
   map.insert(cloud, 0);
   for (std::size_t i = 0; i < map.size(); ++i)
@@ -293,8 +293,8 @@ TEST_CASE("merged points keep their distance, and every point has one near", "[s
 }
 
 TEST_CASE("frontiers lie along the edge of what was seen", "[see]") {
-  for (const Parameters& params : {Parameters(), Parameters::paper()}) {
-    DensityMap<float> map(params);
+  for (const Parameters& parameters : {Parameters(), Parameters::paper()}) {
+    DensityMap<float> map(parameters);
     map.insert(test::rectangle(-0.15, 0.15, -0.15, 0.15, 400000), 0);
     std::size_t frontiers = 0;
     for (std::size_t i = 0; i < map.size(); ++i) {

@@ -100,7 +100,7 @@ TEST_CASE("the free space that the last view shows decides the normal's side", "
   REQUIRE(normal(below, {}, above).z() < -0.99);  // nothing seen: both sides are free
 }
 
-TEST_CASE("frontier frames of degenerate neighbourhoods are defined", "[see]") {
+TEST_CASE("frontier frames of degenerate neighborhoods are defined", "[see]") {
   const Eigen::Vector3d eye(0.0, 0.3, 0.4);
   Points line;
   for (int i = 0; i < 50; ++i) line.push_back({0.001f * float(i), 0.0f, 0.0f});

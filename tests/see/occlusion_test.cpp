@@ -28,16 +28,16 @@ Frontier frontier_at(const Eigen::Vector3d& p) {
 }
 
 bool visible(const Points& cloud, const Eigen::Vector3d& p, const Eigen::Vector3d& sensor,
-             const Parameters& params = {}) {
+             const Parameters& parameters = {}) {
   const KdTree<float> tree(cloud);
-  const double start = surface_depth<float>(tree, frontier_at(p), params.upsilon);
-  const bool a = is_visible<float>(tree, p, start, sensor, params, box_of(cloud));
-  const bool b = is_visible<float>(Grid<float>(cloud, 0.01f), p, start, sensor, params, box_of(cloud));
+  const double start = surface_depth<float>(tree, frontier_at(p), parameters.upsilon);
+  const bool a = is_visible<float>(tree, p, start, sensor, parameters, box_of(cloud));
+  const bool b = is_visible<float>(Grid<float>(cloud, 0.01f), p, start, sensor, parameters, box_of(cloud));
   Aabb all;
   all.extend(Eigen::Vector3d::Constant(-10.0));
   all.extend(Eigen::Vector3d::Constant(10.0));
   REQUIRE(a == b);
-  REQUIRE(a == is_visible<float>(tree, p, start, sensor, params, all));  // bounds only save time
+  REQUIRE(a == is_visible<float>(tree, p, start, sensor, parameters, all));  // bounds only save time
   return a;
 }
 

@@ -23,12 +23,12 @@ struct Run {
 };
 
 template <typename Reachable>
-Run scan(const Spheres& scene, const Parameters& params, Reachable&& reachable, int threads = 1) {
-  Run run{Explorer(params, threads), {}};
+Run scan(const Spheres& scene, const Parameters& parameters, Reachable&& reachable, int threads = 1) {
+  Run run{Explorer(parameters, threads), {}};
   Eigen::Vector3d sensor(0.0, -0.4, 0.0);
   run.planner.observe(scene.look(sensor, 1), sensor);
   while (const auto view = run.planner.next_view(sensor, reachable)) {
-    REQUIRE(run.planner.views_taken() < params.max_views);
+    REQUIRE(run.planner.views_taken() < parameters.max_views);
     REQUIRE(view->direction.norm() == Approx(1.0).margin(1e-9));
     REQUIRE(view->position.allFinite());
     run.views.push_back(*view);
@@ -52,9 +52,9 @@ double covered(const Explorer& planner, const Spheres& scene) {
 
 TEST_CASE("a sphere is covered and no frontier is left", "[see]") {
   const Spheres scene{{Eigen::Vector3d::Zero()}};
-  for (Parameters params : {Parameters(), Parameters::published()}) {
-    params.max_views = 50;
-    const Run run = scan(scene, params, anywhere);
+  for (Parameters parameters : {Parameters(), Parameters::published()}) {
+    parameters.max_views = 50;
+    const Run run = scan(scene, parameters, anywhere);
     REQUIRE(run.planner.stop_reason() == StopReason::no_frontier);
     REQUIRE(covered(run.planner, scene) > 0.93);
     REQUIRE(run.views.size() >= 2);
@@ -63,12 +63,12 @@ TEST_CASE("a sphere is covered and no frontier is left", "[see]") {
 
 TEST_CASE("spheres that hide one another are covered, whatever the number of threads", "[see]") {
   const Spheres scene{{{0, 0, 0}, {0.072, 0.01, 0}, {0.03, 0.062, 0.02}, {0.02, 0.02, 0.075}}};
-  Parameters params;
-  params.max_views = 40;
-  const Run one = scan(scene, params, anywhere);
+  Parameters parameters;
+  parameters.max_views = 40;
+  const Run one = scan(scene, parameters, anywhere);
   CAPTURE(one.views.size(), to_string(one.planner.stop_reason()));
   REQUIRE(covered(one.planner, scene) > 0.85);
-  const Run two = scan(scene, params, anywhere, 2);
+  const Run two = scan(scene, parameters, anywhere, 2);
   REQUIRE(two.views.size() == one.views.size());
   for (std::size_t i = 0; i < one.views.size(); ++i) REQUIRE(two.views[i].position == one.views[i].position);
   REQUIRE(two.planner.cloud().points == one.planner.cloud().points);
@@ -83,17 +83,17 @@ TEST_CASE("a scan ends and says why", "[see]") {
   }
   SECTION("only the front can be reached") {
     const auto front = [](const ViewProposal& v) { return v.position.y() < -0.2; };
-    Parameters params;
-    params.max_views = 400;
-    const Run run = scan(scene, params, front);
+    Parameters parameters;
+    parameters.max_views = 400;
+    const Run run = scan(scene, parameters, front);
     for (const auto& v : run.views) REQUIRE(v.position.y() < -0.2);
     REQUIRE_FALSE(run.views.empty());
     REQUIRE(run.planner.stop_reason() == StopReason::no_reachable_view);
   }
   SECTION("the budget is used up") {
-    Parameters params;
-    params.max_views = 2;
-    const Run run = scan(scene, params, anywhere);
+    Parameters parameters;
+    parameters.max_views = 2;
+    const Run run = scan(scene, parameters, anywhere);
     REQUIRE(run.planner.views_taken() == 2);
     REQUIRE(run.planner.stop_reason() == StopReason::max_views);
   }
@@ -320,12 +320,12 @@ TEST_CASE("a renewed frame takes the proposed view along, but not one that the c
 }
 
 TEST_CASE("a planner that is shown the same over and over ends", "[see]") {
-  Parameters params;
-  params.max_views = 1000;
-  params.rho = 4e6;
-  params.radius = 0.02;
+  Parameters parameters;
+  parameters.max_views = 1000;
+  parameters.rho = 4e6;
+  parameters.radius = 0.02;
   const Points strip = test::rectangle(-0.03, 0.03, -0.015, 0.015, 20000);
-  Explorer planner(params);
+  Explorer planner(parameters);
   Eigen::Vector3d sensor(0, 0, 0.38);
   planner.observe(strip, sensor);
   REQUIRE_FALSE(planner.map().of_class(PointClass::frontier).empty());
@@ -389,9 +389,9 @@ TEST_CASE("the paper's test of validity leaves out frontiers that face inwards",
   const Spheres scene{{{0, 0, 0}, {0.072, 0.01, 0}}};
   const Eigen::Vector3d sensor(0, -0.4, 0);
   const auto proposed = [&](bool outward_only) {
-    Parameters params;
-    params.outward_normals_only = outward_only;
-    Explorer planner(params);
+    Parameters parameters;
+    parameters.outward_normals_only = outward_only;
+    Explorer planner(parameters);
     planner.observe(scene.look(sensor, 1), sensor);
     Eigen::Vector3d mean = Eigen::Vector3d::Zero();
     for (const auto& p : planner.cloud().points) mean += p.cast<double>();

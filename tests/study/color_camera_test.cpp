@@ -71,7 +71,7 @@ TEST_CASE("the share of a fruit's surface that has turned is that of the scene")
   }
 }
 
-TEST_CASE("ripeness is found again in a colour image") {
+TEST_CASE("ripeness is found again in a color image") {
   for (const RipenessClass real : {RipenessClass::green, RipenessClass::turning, RipenessClass::pink,
                                    RipenessClass::light_red, RipenessClass::red}) {
     const TracedScene traced(three_things(middle_share(real)));
@@ -82,7 +82,7 @@ TEST_CASE("ripeness is found again in a colour image") {
   }
 }
 
-TEST_CASE("leaves and stems are green, a fruit of unknown ripeness is red, an object's own colour wins") {
+TEST_CASE("leaves and stems are green, a fruit of unknown ripeness is red, an object's own color wins") {
   Scene scene = three_things({});
   scene.objects[2].color = Rgb{30, 60, 220};
   const TracedScene traced(scene);

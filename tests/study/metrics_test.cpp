@@ -383,7 +383,7 @@ TEST_CASE("surface that cannot be observed does not count against a result") {
   for (const FruitMetrics& fruit : m.fruits) CHECK(*fruit.centroid_error == Approx(0.0).margin(1e-9));
 }
 
-TEST_CASE("errors of centre, radii, axis, completeness, and of the centroid of what was seen") {
+TEST_CASE("errors of center, radii, axis, completeness, and of the centroid of what was seen") {
   GroundTruth known = truth().fruits;
   for (TrueFruit& fruit : known.fruits) fruit.growth_axis = Eigen::Vector3d::UnitZ();
   const Truth t = make_truth(three_balls(), known);

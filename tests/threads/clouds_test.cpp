@@ -37,7 +37,7 @@ const std::vector<Eigen::Vector3f>& fruit() {
 
 }  // namespace
 
-TEST_CASE("threads: lists of neighbours") {
+TEST_CASE("threads: lists of neighbors") {
   CHECK(nearest_neighbors(fruit(), 12, 1).ids == nearest_neighbors(fruit(), 12, kThreads).ids);
 }
 
@@ -107,8 +107,8 @@ TEST_CASE("threads: clusters") {
 }
 
 TEST_CASE("threads: density classes, from scratch and view by view") {
-  const see::Parameters params;
-  CHECK(see::classify(fruit(), params, 1).classes == see::classify(fruit(), params, kThreads).classes);
+  const see::Parameters parameters;
+  CHECK(see::classify(fruit(), parameters, 1).classes == see::classify(fruit(), parameters, kThreads).classes);
 }
 
 TEST_CASE("threads: registration") {

@@ -14,13 +14,13 @@ struct PickingParameters {
   double stand_off = 0.12;         ///< distance of the tool from the body's surface at the pre-grasp pose (m)
   double contact = 0.0;            ///< the approach ends this far before the surface (m); negative: inside the body
   double gripper_radius = 0.02;    ///< radius of the capsule that the gripper sweeps, safety margin included (m)
-  double tool_length = 0.0;        ///< length of the gripper behind the gripping point (m); without a tool frame
-                                   ///< (Workcell::tool0_T_tool) the gripping point lies as far ahead of the camera
+  double tool_length = 0.0;        ///< length of the gripper behind the gripping point (m). Without a tool frame
+                                   ///< (Workcell::tool0_T_tool) it is also the distance of that point from the camera
   double pedicel_angle = deg(40);  ///< approaches within this angle of the growth axis are excluded (rad)
   int directions = 300;            ///< number of directions that are tried, spread over the sphere
   int rolls = 12;                  ///< number of rolls about each direction, evenly spaced
   int steps = 4;                   ///< number of postures that are tested along the straight approach
-  double max_joint_step = 1.0;     ///< largest change of a joint between two of them (rad); more is a change of posture
+  double max_joint_step = 1.0;     ///< largest change of a joint from one of these postures to the next (rad)
   double depth_tie = 0.02;     ///< among fruit whose depths differ by less, the shortest move of the arm decides (m)
   double front_weight = 1.0;   ///< preference for approaches from the robot's side
   double across_weight = 1.0;  ///< preference for approaches across the growth axis, which leave the pedicel free

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// @file
-/// The local frame of a frontier point (SEE++; [1], AgriSEE): which way the surface faces, and in which direction it
+/// The local frame of a frontier point (SEE++; [1], eq. 2): which way the surface faces, and in which direction it
 /// continues unseen. World frame, metres. Cost per frame: one query for the k nearest points, and a few steps along the
 /// normal.
 #pragma once

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// @file
-/// SEE++ (Border & Gammell, IJRR 2024; [1], AgriSEE): merge a view, propose a view for each frontier, choose one of
+/// SEE++ (Border & Gammell, IJRR 2024; [1], 3.2.1): merge a view, propose a view for each frontier, choose one of
 /// them, and look at a frontier again or give it up. World frame, metres.
 ///
 /// ```

@@ -30,11 +30,11 @@ CloudFile read_npy_cloud(const std::filesystem::path& path, NonFinite non_finite
   const Bytes bytes = read_bytes(path);
   const NpyArray array = parse_npy(path, bytes.view());
   const std::vector<std::size_t>& shape = array.shape;
-  const bool organised = shape.size() == 3;
-  if ((shape.size() != 2 && !organised) || shape.back() < 3)
+  const bool organized = shape.size() == 3;
+  if ((shape.size() != 2 && !organized) || shape.back() < 3)
     fail(path, "has the shape " + array.shape_text() + "; a cloud has the shape (points, 3)");
-  if (array.fortran && organised) fail(path, "is stored column by column; save it with numpy.ascontiguousarray");
-  const std::size_t points = organised ? shape[0] * shape[1] : shape[0], size = size_of(array.type);
+  if (array.fortran && organized) fail(path, "is stored column by column; save it with numpy.ascontiguousarray");
+  const std::size_t points = organized ? shape[0] * shape[1] : shape[0], size = size_of(array.type);
   CloudColumns cloud(path, points, {"x", "y", "z"});
   std::vector<Column> columns;
   for (std::size_t axis = 0; axis < 3; ++axis)
@@ -42,7 +42,7 @@ CloudFile read_npy_cloud(const std::filesystem::path& path, NonFinite non_finite
                        size * (array.fortran ? 1 : shape.back()), array.type, array.swapped,
                        cloud.sink(std::string(1, "xyz"[axis]))});
   decode(columns, points);
-  return cloud.finish(non_finite, organised ? shape[1] : points, organised ? shape[0] : 1);
+  return cloud.finish(non_finite, organized ? shape[1] : points, organized ? shape[0] : 1);
 }
 
 }  // namespace agrisee::io

@@ -39,11 +39,11 @@ DepthImage read_depth_image(const std::filesystem::path& path) {
   if (bytes.size == 0) fail(path, "is empty");
   if (is_npy(bytes.view())) return from_npy(path, bytes.view());
   if (!is_png(bytes.view())) fail(path, "is neither a PNG nor an NPY file");
-  const GreyImage grey = decode_png16(path, bytes.view());
+  const GrayImage gray = decode_png16(path, bytes.view());
   DepthImage image;
-  image.width = grey.width;
-  image.height = grey.height;
-  image.values.assign(grey.pixels.begin(), grey.pixels.end());
+  image.width = gray.width;
+  image.height = gray.height;
+  image.values.assign(gray.pixels.begin(), gray.pixels.end());
   image.whole_numbers = true;
   return image;
 }
@@ -65,7 +65,7 @@ sensor::DepthFrame to_frame(const DepthImage& image, const sensor::Intrinsics& i
 void write_depth_png(const std::filesystem::path& path, const sensor::DepthFrame& frame, double scale) {
   check(frame);
   check_parameter(std::isfinite(scale) && scale > 0.0, "depth scale", "positive", scale);
-  GreyImage image{frame.intrinsics.width, frame.intrinsics.height, {}};
+  GrayImage image{frame.intrinsics.width, frame.intrinsics.height, {}};
   image.pixels.reserve(frame.depth.size());
   for (const float z : frame.depth) {
     const double units = sensor::DepthFrame::valid(z) ? std::round(double(z) / scale) : 0.0;

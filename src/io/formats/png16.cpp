@@ -90,12 +90,12 @@ auto decoded(const std::filesystem::path& path, std::string_view bytes, int chan
 
 bool is_png(std::string_view bytes) { return bytes.substr(0, kPngSignature.size()) == kPngSignature; }
 
-GreyImage decode_png16(const std::filesystem::path& path, std::string_view bytes) {
+GrayImage decode_png16(const std::filesystem::path& path, std::string_view bytes) {
   const PngHeader header = checked_header(path, bytes);
   if (header.kind != 0) fail(path, "is a color image; depth has one gray channel");
   if (header.bits != 16) fail(path, "has " + std::to_string(header.bits) + " bits a pixel; depth needs 16");
   check_size(path, header, 16, bytes);
-  GreyImage image;
+  GrayImage image;
   image.pixels = decoded(path, bytes, 1, stbi_load_16_from_memory, image.width, image.height);
   return image;
 }
@@ -131,7 +131,7 @@ LabelImage decode_png_labels(const std::filesystem::path& path, std::string_view
   return image;
 }
 
-std::string encode_png16(const GreyImage& image) {
+std::string encode_png16(const GrayImage& image) {
   const auto width = static_cast<std::size_t>(image.width);
   // Each row: the number of its filter (2, "up"), then the differences to the row above, byte by byte.
   std::string rows;

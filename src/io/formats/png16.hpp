@@ -14,7 +14,7 @@
 namespace agrisee::io {
 
 /// An image with one channel of 16 bits, row by row from the top left.
-struct GreyImage {
+struct GrayImage {
   int width = 0, height = 0;
   std::vector<std::uint16_t> pixels;
 };
@@ -24,7 +24,7 @@ bool is_png(std::string_view bytes);
 
 /// Decode a PNG image (by stb_image). The checksum of every chunk is tested. @param path for messages
 /// @throws FileError for bytes that are no PNG or damaged, a color image, and one of fewer than 16 bits
-GreyImage decode_png16(const std::filesystem::path& path, std::string_view bytes);
+GrayImage decode_png16(const std::filesystem::path& path, std::string_view bytes);
 
 /// Decode a PNG image with colors of 8 bits, or with a palette. @param path for messages
 /// @throws FileError for bytes that are no PNG or damaged, a gray image, and one of 16 bits a channel
@@ -35,6 +35,6 @@ ColorImage decode_png_colors(const std::filesystem::path& path, std::string_view
 LabelImage decode_png_labels(const std::filesystem::path& path, std::string_view bytes);
 
 /// The bytes of a PNG image.
-std::string encode_png16(const GreyImage& image);
+std::string encode_png16(const GrayImage& image);
 
 }  // namespace agrisee::io

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // A STAND-IN FOR ROS 2, written for this project's tests: just the names of rclcpp, rclcpp_lifecycle, rclcpp_components
 // and tf2_ros that examples/ros2 uses, in one process, without threads, time or transport. What compiles and runs with
-// it need not do so with ROS 2: only names, arguments and the behaviour that is documented for ROS 2 were followed.
+// it need not do so with ROS 2: only names, arguments and the behavior that is documented for ROS 2 were followed.
 //
 // This file: what a test sees. Messages are handed over at once, time stands until the test moves it, timers go off and
 // transforms change when the test says so.
