@@ -80,7 +80,7 @@ Labels pcl_regions(const PclPoints::Ptr& points, const PclNormals::Ptr& normals)
   region_growing.setInputCloud(points);
   region_growing.setInputNormals(normals);
   region_growing.setSearchMethod(pcl::search::KdTree<pcl::PointXYZ>::Ptr(new pcl::search::KdTree<pcl::PointXYZ>));
-  region_growing.setNumberOfNeighbors(25);
+  region_growing.setNumberOfNeighbours(25);
   region_growing.setSmoothnessThreshold(static_cast<float>(deg(12.0)));
   region_growing.setCurvatureTestFlag(false);
   region_growing.setMinClusterSize(100);

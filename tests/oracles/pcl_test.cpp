@@ -89,7 +89,7 @@ TEST_CASE("PCL's region growing finds the same regions") {
         growing.setInputCloud(points);
         growing.setInputNormals(normals);
         growing.setSearchMethod(pcl::search::KdTree<pcl::PointXYZ>::Ptr(new pcl::search::KdTree<pcl::PointXYZ>));
-        growing.setNumberOfNeighbors(20);
+        growing.setNumberOfNeighbours(20);
         growing.setSmoothnessThreshold(static_cast<float>(deg(angle)));
         growing.setCurvatureTestFlag(gate);
         growing.setCurvatureThreshold(0.01f);
