@@ -8,23 +8,20 @@
 #include <agrisee/io/results.hpp>
 #include <agrisee/io/scan_record.hpp>
 #include <agrisee/io/scene.hpp>
-#include <agrisee/see/density.hpp>
-#include <agrisee/study/evaluate.hpp>
 #include <agrisee/study/greedy_planner.hpp>
+#include <agrisee/study/samples.hpp>
 #include <agrisee/study/simulated_scan.hpp>
 #include <agrisee/version.hpp>
 
-#include <algorithm>
-#include <cmath>
 #include <filesystem>
 #include <iostream>
-#include <limits>
 #include <memory>
 
 #include "commands.hpp"
 #include "inputs.hpp"
 #include "interrupt.hpp"
 #include "many.hpp"
+#include "scan_history.hpp"
 #include "words.hpp"
 
 namespace agrisee::cli {
@@ -38,67 +35,6 @@ struct ScanOptions : CommonOptions {
   std::string scene, planner, noise = "none", light, detector, resume, mcap;
   bool live = false, color = false;
   int max_views = 0;
-};
-
-/// Collects what the page of a scan shows of its course: the depth images, the planner's estimates, what was really
-/// seen, and the frontier of SEE++.
-class HistoryRecorder {
- public:
-  HistoryRecorder(const study::Scene& scene, const Parameters& parameters, int threads)
-      : parameters_(parameters), threads_(threads) {
-    try {
-      samples_ = study::fruit_samples(scene);
-    } catch (const InputError&) {  // fruit without a surface: what was really seen of it is not shown
-    }
-  }
-  /// Call with the frame of every view.
-  void take(std::size_t view, const sensor::DepthFrame& frame) {
-    depth_.resize(view + 1);
-    depth_[view] = io::depth_picture(frame);
-  }
-  /// Call after every view. The planner's estimates are those from before the view.
-  void observe(const Pipeline& pipeline, const Cloud& raw) {
-    if (!scanned_.empty()) add_estimate(pipeline.completeness(), seen_, observable_);
-    const double threshold = study::MetricParameters().threshold;
-    const study::Flags covered = study::cover(samples_, raw.points, threshold, threads_).covered;
-    scanned_.push_back(static_cast<double>(std::count(covered.begin(), covered.end(), 1)) /
-                       static_cast<double>(std::max<std::size_t>(covered.size(), 1)));
-    merged_ = pipeline.merged();
-  }
-  /// The history of the scan that has come to this result.
-  io::ScanHistory history(const ScanResult& result) const {
-    io::ScanHistory history;
-    history.depth = depth_;
-    std::vector<double> seen = seen_, observable = observable_;
-    // After the last view the planner made an estimate only if it was asked for one more, and had the right to it.
-    const bool asked = result.stop_reason != StopReason::max_views && result.stop_reason != StopReason::not_stopped;
-    if (!scanned_.empty()) add_estimate(asked ? result.completeness : std::nullopt, seen, observable);
-    const auto known = [](double value) { return std::isfinite(value); };
-    if (std::any_of(seen.begin(), seen.end(), known))
-      history.curves = {{"seen, as the planner believes", seen}, {"within the arm's sight", observable}};
-    if (samples_.size() > 0 && !scanned_.empty()) history.curves.push_back({"seen in truth", scanned_});
-    if (parameters_.planner != "see" || result.views.empty()) return history;
-    see::DensityMap<float> map(parameters_.see, 0.0);
-    map.insert(merged_, 0, threads_);
-    for (const Index i : map.of_class(see::PointClass::frontier))
-      history.frontier.push_back(map.cloud().points[static_cast<std::size_t>(i)]);
-    return history;
-  }
-
- private:
-  static void add_estimate(const std::optional<Completeness>& completeness, std::vector<double>& seen,
-                           std::vector<double>& observable) {
-    constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
-    seen.push_back(completeness ? completeness->seen : kUnknown);
-    observable.push_back(completeness ? completeness->observable : kUnknown);
-  }
-
-  Parameters parameters_;
-  int threads_;
-  study::Samples samples_;
-  std::vector<double> seen_, observable_, scanned_;
-  std::vector<io::DepthPicture> depth_;
-  Cloud merged_;
 };
 
 /// The task that the command line asks for, still without the fingerprint of the scene. @throws UsageError, FileError
@@ -295,6 +231,24 @@ int run_scan(const ScanOptions& options) {
   return run_task(folder, task, file, traced, std::move(planner), options);
 }
 
+/// Scan every scene of the list.
+int run_scans(const ScanOptions& options) {
+  ListedCommand list{"scan", options.force, {}, {}, {}};
+  if (!options.mcap.empty() && is_list(options.scenes, options.shard))
+    throw UsageError("--mcap: is one file, so name one scene without --shard");
+  list.run = [&](const std::string& input, const std::string& folder, Begin begin) {
+    ScanOptions one = options;
+    one.scene = input.empty() ? input : scene_file(input);
+    one.output = folder;
+    if (begin == Begin::resume && fs::exists(fs::path(folder) / "scan.json")) one.resume = folder;
+    one.prepared = begin != Begin::as_asked;
+    return run_scan(one);
+  };
+  list.key = [&](const std::string& input) { return key_of(options, scene_file(input)); };
+  list.is_complete = [&](const std::string& folder) { return is_finished(folder, options); };
+  return run_inputs(options.scenes, options.shard, options.output, list);
+}
+
 }  // namespace
 
 void add_scan(CLI::App& app, Run& run) {
@@ -348,22 +302,7 @@ void add_scan(CLI::App& app, Run& run) {
         if (needed->count() == 0) throw CLI::RequiredError(needed->get_name());
     if (resume->count() > 0 && options->scenes.size() > 1)
       throw CLI::ValidationError("--resume", "continues one scan, so at most one scene can be named");
-    run = [options] {
-      ListedCommand list{"scan", options->force, {}, {}, {}};
-      if (!options->mcap.empty() && is_list(options->scenes, options->shard))
-        throw UsageError("--mcap: is one file, so name one scene without --shard");
-      list.run = [&](const std::string& input, const std::string& folder, Begin begin) {
-        ScanOptions one = *options;
-        one.scene = input.empty() ? input : scene_file(input);
-        one.output = folder;
-        if (begin == Begin::resume && fs::exists(fs::path(folder) / "scan.json")) one.resume = folder;
-        one.prepared = begin != Begin::as_asked;
-        return run_scan(one);
-      };
-      list.key = [&](const std::string& input) { return key_of(*options, scene_file(input)); };
-      list.is_complete = [&](const std::string& folder) { return is_finished(folder, *options); };
-      return run_inputs(options->scenes, options->shard, options->output, list);
-    };
+    run = [options] { return run_scans(*options); };
   });
 }
 
