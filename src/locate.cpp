@@ -131,7 +131,7 @@ Likeness likeness(const ClosedSurface& surface, const BodyParameters& bodies) {
 /// @param members the points of each fruit; none for what is no fruit
 /// @param labels one per point: the fruit's number from 1, or 0
 std::vector<std::optional<ClosedSurface>> closed_surfaces(const Cloud& cloud, const Split& split,
-                                                          const Parameters& parameters, const SeenThrough& seen_through,
+                                                          const Parameters& parameters, const IsFree& is_free,
                                                           std::vector<Indices>& members, Labels& labels) {
   std::vector<std::optional<ClosedSurface>> surfaces(members.size());
   if (!parameters.split.fit_bodies) return surfaces;
@@ -141,7 +141,7 @@ std::vector<std::optional<ClosedSurface>> closed_surfaces(const Cloud& cloud, co
     const Eigen::Vector3d axis = growth_axis(cloud, split.labels, fit, parameters.axis);
     ClosedSurfaceParameters closing;
     closing.noise = std::max(closing.noise, parameters.split.bodies.fit.sensor_noise / fit.body.mean_radius());
-    surfaces[f] = closed_surface(cloud, members[f], residual(labels), fit.body, axis, closing, seen_through);
+    surfaces[f] = closed_surface(cloud, members[f], residual(labels), fit.body, axis, closing, is_free);
     if (!surfaces[f]) continue;
     const Likeness like = surfaces[f]->weight > 0.5 ? likeness(*surfaces[f], parameters.split.bodies) : Likeness::fruit;
     if (like == Likeness::unsure) {
@@ -253,11 +253,11 @@ Eigen::Vector3d cluster_origin(const Aabb& volume, const Eigen::Vector3d& robot)
 }
 
 std::vector<Fruit> locate(const Cloud& cloud, const Split& split, const Eigen::Vector3d& cluster_origin,
-                          const Parameters& parameters, Labels& labels, const SeenThrough& seen_through) {
+                          const Parameters& parameters, Labels& labels, const IsFree& is_free) {
   auto members = indices_by_label(split.labels);
   members.resize(split.found.size());
   Labels with_joined = split.labels;
-  const auto surfaces = closed_surfaces(cloud, split, parameters, seen_through, members, with_joined);
+  const auto surfaces = closed_surfaces(cloud, split, parameters, is_free, members, with_joined);
   std::vector<Fruit> fruits;
   std::vector<std::size_t> source;  // the entry of split.found that each fruit comes from
   for (std::size_t f = 0; f < members.size(); ++f) {

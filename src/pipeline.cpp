@@ -146,10 +146,14 @@ ScanResult Pipeline::result() const {
   origin.volume = workcell_.scan_volume;
   origin.detected = detected_views();
   SeenThrough seen_through;
-  if (!map_->images().empty())
+  if (!map_->images().empty()) {
     seen_through = [this](const Ellipsoid& body) {
       return fuse::seen_through(map_->images(), body, parameters_.free_space);
     };
+    origin.is_free = [this](const Eigen::Vector3d& p) {
+      return fuse::is_free(map_->images(), p, parameters_.free_space);
+    };
+  }
   constexpr std::ptrdiff_t kSeveral = 3;
   Parameters parameters = parameters_;
   if (std::count_if(views_.begin(), views_.end(), [](const View& v) { return !v.discarded; }) >= kSeveral)

@@ -236,7 +236,7 @@ ScanResult process(Cloud&& cloud, const Parameters& parameters, const CloudOrigi
 
   // Locate: centroids, pose frames, fitted bodies.
   timed(t.locate, [&] {
-    result.fruits = locate(result.cloud, found, result.cluster_origin, fitted, result.labels, seen_through);
+    result.fruits = locate(result.cloud, found, result.cluster_origin, fitted, result.labels, origin.is_free);
   });
   result.trusses = found_trusses(result.fruits);
   timed(t.locate, [&] {

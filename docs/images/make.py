@@ -25,7 +25,7 @@ FIGURES = {
                         ("default: 0.0024", "", []),
                         ("surfels.separation 0.008", "{surfels: {separation: 0.008}}", [])]),
     "min_gain": ([], [("gain.min_gain 0.06", "{gain: {min_gain: 0.06}}", []),
-                      ("default: 0.0015", "", []),
+                      ("default: 0.0008", "", []),
                       ("gain.min_gain 0", "{gain: {min_gain: 0}}", [])]),
     "sor": (["--noise", "rough", "--preset", "paper", "--max-views", "8"],
             [("sor.std_ratio 0.3", "{preset: paper, sor: {std_ratio: 0.3}}", []),

@@ -44,8 +44,8 @@ Ellipsoid ellipsoid_of(const Body& body);
 /// @param cluster_origin the origin of the cluster frame {R} in world (m)
 /// @param parameters of all stages
 /// @param labels receives one label per point: the fruit's id, or 0
-/// @param seen_through evidence of free space, or empty
+/// @param is_free evidence of free space, or empty; it bounds closed surfaces where nothing was seen of them
 std::vector<Fruit> locate(const Cloud& cloud, const Split& split, const Eigen::Vector3d& cluster_origin,
-                          const Parameters& parameters, Labels& labels, const SeenThrough& seen_through = {});
+                          const Parameters& parameters, Labels& labels, const IsFree& is_free = {});
 
 }  // namespace agrisee

@@ -32,6 +32,8 @@ struct CloudOrigin {
   std::optional<Eigen::Vector3d> cluster_origin;
   /// The box that the cloud was cut to (m); what goes on beyond it is no fruit (cloud/cut_bodies.hpp). Empty: unknown.
   std::optional<Aabb> volume;
+  /// Whether sight lines of the views passed through a place; empty: unknown. It bounds closed surfaces (locate.hpp).
+  IsFree is_free = {};
 };
 
 /// Check that a cloud can have been seen from its origin. `process` calls it.

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace agrisee::fuse {
 namespace {
@@ -52,6 +53,19 @@ Returned returned(const sensor::SurfaceImage& view, const sensor::SurfaceImage& 
       ++out.seen;
   }
   return out;
+}
+
+bool is_free(const std::vector<sensor::SurfaceImage>& views, const Eigen::Vector3d& p,
+             const FreeSpaceParameters& parameters) {
+  FreeSpaceParameters measured = parameters;
+  measured.min_fill = std::numeric_limits<double>::infinity();  // no return is no evidence
+  int through = 0, surface = 0;
+  for (const sensor::SurfaceImage& view : views) {
+    const Sight seen = sight(view, p, measured);
+    through += seen == Sight::through;
+    surface += seen == Sight::surface;
+  }
+  return through > surface;
 }
 
 double seen_through(const std::vector<sensor::SurfaceImage>& views, const Ellipsoid& body,

@@ -88,14 +88,14 @@ Indices range(std::size_t from, std::size_t to) {
 }
 
 /// The surface through all points of a cloud; the first guess of the axis is 20 degrees off.
-std::optional<ClosedSurface> close(const Cloud& cloud, const SeenThrough& seen_through = {}) {
+std::optional<ClosedSurface> close(const Cloud& cloud, const IsFree& is_free = {}) {
   const auto sphere = sphere_from_normals(cloud, range(0, cloud.size()));
   REQUIRE(sphere);
   const auto fit = fit_ellipsoid(cloud, range(0, cloud.size()), Ellipsoid(*sphere));
   REQUIRE(fit);
   const Eigen::Vector3d guess =
       world_T_body().linear() * Eigen::AngleAxisd(deg(20), Eigen::Vector3d::UnitX()) * Eigen::Vector3d::UnitZ();
-  return closed_surface(cloud, range(0, cloud.size()), {}, fit->body, guess, {}, seen_through);
+  return closed_surface(cloud, range(0, cloud.size()), {}, fit->body, guess, {}, is_free);
 }
 
 }  // namespace
@@ -168,9 +168,9 @@ TEST_CASE("sight lines bound the side that was not seen") {
       if ((pose.inverse() * cloud.points[i].cast<double>()).normalized().z() < c.top)
         below.push_back(static_cast<Index>(i));
     cloud = select(cloud, below);
-    const auto unbounded = close(cloud), bounded = close(cloud, [&](const Ellipsoid&probe) {
-                                           const Eigen::Vector3d q = pose.inverse() * probe.center;
-                                           return q.norm() > c.radius(q.normalized()) + 0.002 ? 0.5 : 0.0;
+    const auto unbounded = close(cloud), bounded = close(cloud, [&](const Eigen::Vector3d&p) {
+                                           const Eigen::Vector3d q = pose.inverse() * p;
+                                           return q.norm() > c.radius(q.normalized()) + 0.002;
                                          });
     REQUIRE(unbounded);
     REQUIRE(bounded);

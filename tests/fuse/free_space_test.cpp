@@ -55,6 +55,18 @@ const Vector3d kFront(0.0, 0.0, 0.2), kAside(0.3, 0.05, 0.2), kBehind(0.0, 2.0, 
 
 }  // namespace
 
+TEST_CASE("a place is free if more views looked through it, to something, than saw surface there") {
+  const SurfaceImage through = wall(2.0f), ends = wall(1.0f), empty = wall(0.0f);
+  const Vector3d p = at(through, 3, 2, 1.0);
+  CHECK(is_free({through}, p, quarter()));
+  CHECK_FALSE(is_free({ends}, p, quarter()));
+  CHECK_FALSE(is_free({through, ends}, p, quarter()));
+  CHECK(is_free({through, ends, through}, p, quarter()));
+  CHECK(sight(empty, p, quarter()) == Sight::through);
+  CHECK_FALSE(is_free({empty}, p, quarter()));  // as near a silhouette
+  CHECK_FALSE(is_free({}, p, quarter()));
+}
+
 TEST_CASE("a sight line ends at a place, goes through it, or does not reach it") {
   const SurfaceImage view = wall(2.0f);
   const auto says = [&](double z) { return sight(view, at(view, 3, 2, z), quarter()); };

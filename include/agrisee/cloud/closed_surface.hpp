@@ -140,11 +140,9 @@ std::vector<SurfaceFit::Start> first_guesses(const PointCloud<S>& cloud, const I
 /// they leave room for it.
 /// @return in the axis' frame; their weights are small, since free space is known with an error of some millimetres
 inline std::vector<RadialBin> free_space_limits(const SurfaceFit& fit, const SurfaceModel& model,
-                                                const SeenThrough& seen_through) {
+                                                const IsFree& is_free) {
   constexpr int kDirections = 200;
-  constexpr double kSeen = 0.96;     // cosine of the angle from a bin with points within which the surface was seen
-  constexpr double kProbe = 0.0015;  // m, radius of the ball by which a place is probed
-  constexpr double kFree = 0.1;      // share of the ball's surface: half of it at most faces a view
+  constexpr double kSeen = 0.96;  // cosine of the angle from a bin with points within which the surface was seen
   constexpr double kStep = 0.03, kDeepest = 0.5;  // of the surface's distance
   constexpr double kWeight = 0.1;                 // in points
   const std::vector<RadialBin> bins = fit.radial_bins(fit.weights());
@@ -155,11 +153,9 @@ inline std::vector<RadialBin> free_space_limits(const SurfaceFit& fit, const Sur
                     [&](const RadialBin& b) { return b.weight > 0.5 && b.direction.dot(u) > kSeen; }))
       continue;
     const double distance = fit.distance(model, u);
-    const auto is_free = [&](double d) {
-      return seen_through(Ellipsoid(Sphere{fit.center() + d * (fit.turn().transpose() * u), kProbe})) > kFree;
-    };
+    const Eigen::Vector3d out_there = fit.turn().transpose() * u;
     double room = distance;
-    while (room > kDeepest * distance && is_free(room)) room -= kStep * distance;
+    while (room > kDeepest * distance && is_free(fit.center() + room * out_there)) room -= kStep * distance;
     if (room < distance && room > kDeepest * distance) out.push_back({u, std::log(room), kWeight});
   }
   return out;
@@ -296,14 +292,14 @@ inline void explain_points(const SurfaceFit& fit, const SurfacePoints& points, C
 /// @param body the fitted ellipsoid
 /// @param axis first guess of the axis of symmetry, towards the stem; the ellipsoid's own axes are tried too
 /// @param parameters see their struct
-/// @param seen_through evidence of free space; empty if nothing is known
+/// @param is_free evidence of free space; empty if nothing is known
 /// @return empty if the points are too few or fit no closed surface
 /// @throws InputError if the cloud has no normals; ParameterError; Cancelled
 template <typename S>
 std::optional<ClosedSurface> closed_surface(const PointCloud<S>& cloud, const Indices& own, const Indices& others,
                                             const Ellipsoid& body, const Eigen::Vector3d& axis,
                                             const ClosedSurfaceParameters& parameters = {},
-                                            const SeenThrough& seen_through = {}) {
+                                            const IsFree& is_free = {}) {
   parameters.check();
   check_input(cloud.normals.size() == cloud.points.size(), "closed_surface: the cloud has no normals");
   constexpr std::size_t kLeast = 30;
@@ -321,8 +317,8 @@ std::optional<ClosedSurface> closed_surface(const PointCloud<S>& cloud, const In
   const detail::SurfaceModel& model = models[best->model];
 
   constexpr int kLimited = 3;  // steps with the limits by free space
-  for (int k = 0; seen_through && k < kLimited; ++k) {
-    fit.set_limits(detail::free_space_limits(fit, model, seen_through));
+  for (int k = 0; is_free && k < kLimited; ++k) {
+    fit.set_limits(detail::free_space_limits(fit, model, is_free));
     if (!fit.step(model, detail::kGates.back(), true)) return std::nullopt;
   }
 

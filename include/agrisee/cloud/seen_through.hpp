@@ -3,6 +3,8 @@
 /// The evidence of free space that segmentation uses. fuse/free_space.hpp and cloud/sight_lines.hpp compute it.
 #pragma once
 
+#include <agrisee/core/types.hpp>
+
 #include <functional>
 
 namespace agrisee {
@@ -19,6 +21,9 @@ enum class Sight {
 /// The share (0 to 1) of a body's surface that sight lines pass through, which the body would have stopped. An empty
 /// function means that nothing is known.
 using SeenThrough = std::function<double(const Ellipsoid&)>;
+
+/// Whether sight lines that ended behind a place (m) passed through it. An empty function means that nothing is known.
+using IsFree = std::function<bool(const Eigen::Vector3d&)>;
 
 /// Of the directions in which the sensor of a single view would see a body, except those in which something nearer
 /// occludes it: the share (0 to 1) in which a surface was measured where the body's is. An empty function means that

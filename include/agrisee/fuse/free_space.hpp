@@ -64,6 +64,12 @@ struct Returned {
 Returned returned(const sensor::SurfaceImage& view, const sensor::SurfaceImage& known,
                   const FreeSpaceParameters& parameters);
 
+/// Whether more views looked through a place, to something behind it, than saw a surface there. Sight lines without
+/// return do not count: near its silhouette a fruit returns nothing either. Defined in `agrisee::agrisee`.
+/// @param p the place (m, world)
+bool is_free(const std::vector<sensor::SurfaceImage>& views, const Eigen::Vector3d& p,
+             const FreeSpaceParameters& parameters = {});
+
 /// Share (0..1) of a body's surface that more views looked through than saw. For each point of it only views count that
 /// see it at less than `max_incidence`. Defined in `agrisee::agrisee`.
 double seen_through(const std::vector<sensor::SurfaceImage>& views, const Ellipsoid& body,
