@@ -231,7 +231,8 @@ ScanResult process(Cloud&& cloud, const Parameters& parameters, const CloudOrigi
                  seen_through ? seen_through : free_space_of(result.cloud, parameters, origin, noise.points), threads,
                  masks, seen_through ? SeenOn() : seen_on_of(result.raw, parameters, origin, noise.points));
   });
-  if (origin.volume) timed(t.segment, [&] { forget_cut_bodies(result.cloud, *origin.volume, found); });
+  if (origin.volume && parameters.split.fit_bodies)
+    timed(t.segment, [&] { forget_cut_bodies(result.cloud, *origin.volume, found); });
   result.bodies = found.bodies;
 
   // Locate: centroids, pose frames, fitted bodies.

@@ -372,3 +372,18 @@ TEST_CASE("vectors and maps of any stride are processed where they lie") {
   test::check_same(process(planes, {}, test::from_origin()), expected);
   test::check_same(process(by_plane, {}, test::from_origin()), expected);
 }
+
+TEST_CASE("without bodies the border of the scan volume takes no fruit away") {
+  Parameters parameters = all_points();
+  parameters.split.fit_bodies = false;
+  const Cloud cloud = seen();
+  CloudOrigin origin = from_eye(true);
+  const ScanResult free = process(cloud, parameters, origin);
+  REQUIRE(free.fruits.size() == kFruit.size());
+  for (int axis = 0; axis < 3; ++axis)  // faces through the first fruit
+    for (const double to : {-0.02, 0.0, 0.02}) {
+      origin.volume = bounding_box(cloud.points);
+      origin.volume->max[axis] = kFruit[0].center[axis] + to;
+      CHECK((process(cloud, parameters, origin).labels == free.labels));
+    }
+}
