@@ -38,7 +38,7 @@ Pose forward(const Joints& q, const UrModel& model) { return link_frames(q, mode
 
 Matrix6 jacobian(const Joints& q, const UrModel& model) {
   const LinkFrames f = link_frames(q, model);
-  Eigen::Matrix<double, 6, 6> j;
+  Matrix6 j;
   for (std::size_t i = 0; i < 6; ++i) {
     const Eigen::Vector3d axis = f[i].linear().col(2);
     j.col(static_cast<Eigen::Index>(i)) << axis.cross(f[5].translation() - f[i].translation()), axis;

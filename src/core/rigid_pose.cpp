@@ -31,8 +31,7 @@ Pose made_rigid(const Pose& pose, const std::string& name, std::vector<std::stri
   return rigid;
 }
 
-Pose pose_from_matrix(const Eigen::Matrix<double, 4, 4, Eigen::DontAlign>& matrix, const std::string& name,
-                      std::vector<std::string>* notes) {
+Pose pose_from_matrix(const Unaligned<4, 4>& matrix, const std::string& name, std::vector<std::string>* notes) {
   if (!((matrix.row(3) - Eigen::RowVector4d(0, 0, 0, 1)).cwiseAbs().maxCoeff() <= 1e-6))
     throw InputError(name + " is not a rigid transform: its last row has to be 0 0 0 1. Is it transposed?");
   Pose pose = Pose::Identity();
@@ -41,8 +40,8 @@ Pose pose_from_matrix(const Eigen::Matrix<double, 4, 4, Eigen::DontAlign>& matri
   return made_rigid(pose, name, notes);
 }
 
-Pose pose_from_xyz_quaternion(const Eigen::Vector3d& xyz, const Eigen::Matrix<double, 4, 1, Eigen::DontAlign>& xyzw,
-                              const std::string& name, std::vector<std::string>* notes) {
+Pose pose_from_xyz_quaternion(const Eigen::Vector3d& xyz, const Unaligned<4, 1>& xyzw, const std::string& name,
+                              std::vector<std::string>* notes) {
   const double error = std::abs(xyzw.norm() - 1.0);
   const std::string off = number_text(error, 2);
   if (!(error <= kRigidTolerance) || !xyz.allFinite())

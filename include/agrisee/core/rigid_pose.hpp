@@ -34,15 +34,15 @@ Pose made_rigid(const Pose& pose, const std::string& name, std::vector<std::stri
 /// @param matrix rotation and translation (m) over a last row of 0 0 0 1
 /// @param name, notes as of made_rigid
 /// @throws InputError as made_rigid, or for another last row
-Pose pose_from_matrix(const Eigen::Matrix<double, 4, 4, Eigen::DontAlign>& matrix,
-                      const std::string& name = "the matrix", std::vector<std::string>* notes = nullptr);
+Pose pose_from_matrix(const Unaligned<4, 4>& matrix, const std::string& name = "the matrix",
+                      std::vector<std::string>* notes = nullptr);
 
 /// Pose from a translation (m) and a quaternion x y z w, which is normalized.
 /// @param xyz translation (m)
 /// @param xyzw quaternion; its length may differ from 1 by kRigidTolerance
 /// @param name, notes as of made_rigid
 /// @throws InputError for another length
-Pose pose_from_xyz_quaternion(const Eigen::Vector3d& xyz, const Eigen::Matrix<double, 4, 1, Eigen::DontAlign>& xyzw,
+Pose pose_from_xyz_quaternion(const Eigen::Vector3d& xyz, const Unaligned<4, 1>& xyzw,
                               const std::string& name = "the pose", std::vector<std::string>* notes = nullptr);
 
 }  // namespace agrisee

@@ -21,8 +21,11 @@ using Vector3 = Eigen::Matrix<S, 3, 1>;
 template <typename S>
 using Matrix3 = Eigen::Matrix<S, 3, 3>;
 
-/// A 6 x 6 matrix, stored without alignment as Transform is, so that what holds it has one layout.
-using Matrix6 = Eigen::Matrix<double, 6, 6, Eigen::DontAlign>;
+/// A matrix that is stored without alignment, as Transform is, so that what holds it has one layout.
+template <int Rows, int Columns>
+using Unaligned = Eigen::Matrix<double, Rows, Columns, Eigen::DontAlign>;
+/// A 6 x 6 matrix.
+using Matrix6 = Unaligned<6, 6>;
 
 /// Index of a point in a cloud.
 using Index = std::int32_t;
