@@ -40,8 +40,7 @@ std::string scanned_table(const Data& data) {
     Cells cells{text(group.name())};
     for (const int n : kAfter) cells.push_back(fixed(times(100.0, whole_after(group, n)), 1));
     cells.push_back(shown(mean(group, views_95), 1));
-    for (const Figure* f : {&scanned_obs, &path_ratio, &plan_ms})
-      cells.push_back(pair(mean(group, *f).value, worst_row(group, *f), f->digits));
+    for (const Figure* f : {&scanned_obs, &path_ratio, &plan_ms}) cells.push_back(mean_and_worst(group, *f));
     cells.push_back(stop_reasons(group));
     table.row(cells);
   }

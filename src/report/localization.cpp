@@ -133,17 +133,15 @@ std::string localization_section(const Data& data) {
   std::string out = "## Table 3: localization\n\n";
   out +=
       "σ is the standard deviation of the points of a fruit along an axis. RMSE is the root mean square distance of "
-      "the "
-      "centroids of a fruit from their mean over the trials; the paper calls it repeatability. The truss of the "
+      "the centroids of a fruit from their mean over the trials; the paper calls it repeatability. The truss of the "
       "paper's table has its fruit where the paper has them, except that fruit do not overlap and the last one is "
       "behind the others.\n\n";
   out += picture(data, "localization.svg",
                  "Repeatability per fruit, ours and the paper's, and errors of centroids per scene");
   out +=
       "Errors: the distance of the centroid from the mean of the observable surface of the fruit, and of the part of "
-      "it "
-      "that the views saw; the center and the radius of the fitted body; the angle between the z axis of the pose and "
-      "the true calyx axis (`median / worst`); the completeness of the fitted body; and the least recall of the "
+      "it that the views saw; the center and the radius of the fitted body; the angle between the z axis of the pose "
+      "and the true calyx axis (`median / worst`); the completeness of the fitted body; and the least recall of the "
       "observable surface of any fruit, including missing ones.\n\n";
   for (const Group* group : main_groups(data)) out += group_section(*group);
   return out;

@@ -115,6 +115,10 @@ std::string Table::markdown() const {
   return out;
 }
 
+std::string mean_and_worst(const Group& group, const Figure& figure) {
+  return pair(mean(group, figure).value, worst_row(group, figure), figure.digits);
+}
+
 std::string stop_reasons(const Row& row) {
   std::map<std::string, std::size_t> reasons;
   for (const CellRecord* cell : row.trials) ++reasons[cell->stop_reason];

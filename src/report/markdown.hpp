@@ -21,6 +21,8 @@ std::string text(const std::string& name);
 std::string shown(const Mean& mean, int digits, const std::optional<double>& paper = std::nullopt);
 /// `mean / worst`; `-` if there is neither.
 std::string pair(const std::optional<double>& mean, const std::optional<double>& worst, int digits);
+/// `mean / worst row` of a figure over the scenes of a group.
+std::string mean_and_worst(const Group& group, const Figure& figure);
 /// Why the trials of a scene stopped; with counts if there are several reasons.
 std::string stop_reasons(const Row& row);
 /// Why the scans of a group stopped; with counts if there are several reasons.

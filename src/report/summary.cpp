@@ -70,7 +70,7 @@ std::string scanning_table(const Data& data, const Group& paper_scenes) {
   table.row(paper_row(paper_scenes, columns, {"**the paper**", "-"}));
   for (const Group& group : data.groups) {
     Cells cells{text(group.name()), std::to_string(group.scans())};
-    for (const Figure* f : columns) cells.push_back(pair(mean(group, *f).value, worst_row(group, *f), f->digits));
+    for (const Figure* f : columns) cells.push_back(mean_and_worst(group, *f));
     table.row(cells);
   }
   return table.markdown();
@@ -89,7 +89,7 @@ std::string fruit_table(const Data& data, const Group& paper_scenes) {
   table.row(paper);
   for (const Group& group : data.groups) {
     Cells cells{text(group.name())};
-    for (const Figure* f : columns) cells.push_back(pair(mean(group, *f).value, worst_row(group, *f), f->digits));
+    for (const Figure* f : columns) cells.push_back(mean_and_worst(group, *f));
     const Located l = located(group);
     const Errors axis = errors(group, &FruitMetrics::axis_error);
     const auto degrees = [](const std::optional<double>& x) {

@@ -47,8 +47,7 @@ std::string group_table(const Data& data, const Figures& figures) {
     Cells cells{text(group->name())};
     for (const Figure* f : figures) {
       const auto paper = paper_mean(*group, *f);
-      cells.push_back(pair(mean(*group, *f).value, worst_row(*group, *f), f->digits) +
-                      (paper ? " (" + fixed(paper, f->digits) + ")" : ""));
+      cells.push_back(mean_and_worst(*group, *f) + (paper ? " (" + fixed(paper, f->digits) + ")" : ""));
     }
     table.row(cells);
   }
@@ -62,9 +61,8 @@ std::string scanning_section(const Data& data) {
   std::string out = "## Table 1: scanning\n\n";
   out +=
       "As the paper's table of scanning and SOR. `scanned` is the share of the fruit's surface within 5 mm of any "
-      "point "
-      "of the cloud, `recall` that within 5 mm of a point of an instance, and `precision` the share of the points of "
-      "instances within 5 mm of a fruit.\n\n";
+      "point of the cloud, `recall` that within 5 mm of a point of an instance, and `precision` the share of the "
+      "points of instances within 5 mm of a fruit.\n\n";
   out += picture(data, "scanning.svg", "Scanned percentage and recall per scene, ours and the paper's");
   for (const Group* group : main_groups(data))
     out += "### " + text(group->name()) + "\n\n" +
