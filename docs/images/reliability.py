@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""The plot and the table of docs/segmentation.md: which share of the bodies of each confidence is fruit.
+"""The plot of docs/segmentation.md, and figures beside it: which share of the bodies of each confidence is fruit.
 
-  python3 docs/images/reliability.py AGRISEE FOLDER      (keeps the scans in FOLDER; some 15 minutes on two cores)
+  python3 docs/images/reliability.py AGRISEE FOLDER      (keeps the scans in FOLDER; some 5 minutes on two cores)
 
 Bodies are reported from a confidence of 0.02 on, in scans of 1, 3 and 8 views and in whole ones. A body is fruit if its center lies
 within half a radius of a fruit's center, and the radii differ by less than a third.
@@ -42,7 +42,7 @@ def bodies(job):
     if not os.path.exists(f"{out}/fruits.json"):
         run("scan", scene, "-o", out, "--noise", noise, "--seed", "1", "--threads", "1", "--max-views", str(views), "--force",
             "--params", f"{FOLDER}/low.yaml")
-    truth = json.load(open(f"{scene}/truth.json"))["fruits"]
+    truth = json.load(open(f"{scene}/ground_truth.json"))["fruits"]
 
     def is_fruit(body):
         radius = sum(body["radii"]) / 3
