@@ -11,7 +11,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "cloud_searches.hpp"
+#include "cloud/searches.hpp"
 
 namespace agrisee {
 namespace {

@@ -16,7 +16,7 @@
 #include <tuple>
 #include <utility>
 
-#include "cloud_searches.hpp"
+#include "cloud/searches.hpp"
 
 namespace agrisee {
 namespace {

@@ -22,7 +22,7 @@
 #include <utility>
 
 #include "cloud_normals.hpp"
-#include "cloud_searches.hpp"
+#include "cloud/searches.hpp"
 #include "fruit_ripeness.hpp"
 
 namespace agrisee {

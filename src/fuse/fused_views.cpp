@@ -10,7 +10,7 @@
 #include <numeric>
 #include <utility>
 
-#include "cloud_searches.hpp"
+#include "cloud/searches.hpp"
 
 namespace agrisee::fuse {
 

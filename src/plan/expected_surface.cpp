@@ -13,7 +13,7 @@
 #include <limits>
 #include <optional>
 
-#include "cloud_searches.hpp"
+#include "cloud/searches.hpp"
 #include "plan/obstacle_image.hpp"
 
 namespace agrisee::plan {

@@ -7,7 +7,7 @@
 #include <bitset>
 #include <cmath>
 
-#include "cloud_searches.hpp"
+#include "cloud/searches.hpp"
 
 namespace agrisee::study {
 

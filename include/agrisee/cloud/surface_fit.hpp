@@ -7,6 +7,7 @@
 #include <agrisee/cloud/fit.hpp>
 #include <agrisee/cloud/linear_model.hpp>
 #include <agrisee/cloud/surface_model.hpp>
+#include <agrisee/core/median.hpp>
 #include <agrisee/core/pose.hpp>
 #include <agrisee/geometry/direction_bins.hpp>
 
@@ -264,9 +265,7 @@ class SurfaceFit {
       if (i < samples_.own) sorted.push_back(std::abs(residuals_[i]));
     }
     if (sorted.empty()) return false;
-    const auto middle = sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2);
-    std::nth_element(sorted.begin(), middle, sorted.end());
-    noise_ = std::clamp(1.4826 * *middle, parameters_.noise, std::max(parameters_.noise, 0.03));
+    noise_ = std::clamp(1.4826 * median(sorted), parameters_.noise, std::max(parameters_.noise, 0.03));
     const double far = std::max(4.0 * noise_, gate);
     for (std::size_t i = 0; i < samples_.points.size(); ++i) {
       const double t = residuals_[i] / far;

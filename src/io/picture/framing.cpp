@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "io/picture/framing.hpp"
 
+#include <agrisee/core/median.hpp>
 #include <agrisee/neighbors/kdtree.hpp>
 
 #include <algorithm>
@@ -92,9 +93,7 @@ float splat_radius(const Cloud& cloud) {
     if (near.size() > 1) distances.push_back(near.back().distance);
   }
   if (distances.empty()) return 0.003f;
-  const auto middle = distances.begin() + static_cast<std::ptrdiff_t>(distances.size() / 2);
-  std::nth_element(distances.begin(), middle, distances.end());
-  return std::clamp(1.15f * *middle, 0.00005f, 0.006f);
+  return std::clamp(1.15f * median(distances), 0.00005f, 0.006f);
 }
 
 }  // namespace agrisee::io

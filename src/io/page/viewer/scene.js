@@ -22,30 +22,30 @@ attribute vec3 offset, direction;
 attribute vec3 tint;
 attribute float label, seen;
 varying vec2 corner;
-varying vec3 colour;
+varying vec3 shaded;
 void main() {
   corner = position.xy;
-  vec4 centre = modelViewMatrix * vec4(offset, 1.0);
-  vec3 n = normalize(normalMatrix * direction), toEye = normalize(-centre.xyz);
+  vec4 middle = modelViewMatrix * vec4(offset, 1.0);
+  vec3 n = normalize(normalMatrix * direction), toEye = normalize(-middle.xyz);
   bool flat_ = facing || dot(direction, direction) < 0.25;
   if (flat_) n = toEye;
   vec3 u = normalize(cross(n, abs(n.y) < 0.9 ? vec3(0.0, 1.0, 0.0) : vec3(1.0, 0.0, 0.0))), v = cross(n, u);
-  gl_Position = projectionMatrix * (centre + vec4(max(radius, -1.1 * pixel * centre.z) * (corner.x * u + corner.y * v), 0.0));
+  gl_Position = projectionMatrix * (middle + vec4(max(radius, -1.1 * pixel * middle.z) * (corner.x * u + corner.y * v), 0.0));
   if (seen > view) gl_Position = vec4(2.0, 2.0, 2.0, 1.0);
   float light = max(dot(n, normalize(vec3(-0.25, 0.45, 1.0))), 0.0);
   float away = dot(n, toEye);
-  colour = tint * (flat_ ? 0.95 : 0.58 + 0.44 * light);
-  if (away < 0.0) colour = mix(colour, vec3(0.62), 0.45) * 0.85;
+  shaded = tint * (flat_ ? 0.95 : 0.58 + 0.44 * light);
+  if (away < 0.0) shaded = mix(shaded, vec3(0.62), 0.45) * 0.85;
   // While a scan is replayed, what the present view added stands out; beside a selected fruit the rest steps back.
-  if (view < last && seen >= 0.0 && seen < view) colour = mix(colour, ground, 0.45);
-  if (selected > 0.0 && abs(label - selected) > 0.5) colour = mix(colour, ground, 0.72);
+  if (view < last && seen >= 0.0 && seen < view) shaded = mix(shaded, ground, 0.45);
+  if (selected > 0.0 && abs(label - selected) > 0.5) shaded = mix(shaded, ground, 0.72);
 }`;
 const surfelFragment = `
 varying vec2 corner;
-varying vec3 colour;
+varying vec3 shaded;
 void main() {
   if (dot(corner, corner) > 1.0) discard;
-  gl_FragColor = vec4(colour, 1.0);
+  gl_FragColor = vec4(shaded, 1.0);
 }`;
 
 /** Surface elements: discs along the normals, or facing the eye where there are none. `keep(i)` selects points. */

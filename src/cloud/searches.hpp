@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// @file
-/// What many sources do with a Cloud, for which the compiler takes long: compiled once, in cloud_searches.cpp. A source
+/// What many sources do with a Cloud, for which the compiler takes long: compiled once, in searches.cpp. A source
 /// that does not include this compiles its own.
 #pragma once
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "cloud_searches.hpp"
+#include "cloud/searches.hpp"
 
 namespace agrisee {
 
