@@ -16,6 +16,7 @@ Exits with 0 whatever survives.
 import argparse
 import collections
 import concurrent.futures
+import functools
 import os
 import pathlib
 import random
@@ -40,6 +41,12 @@ JUMP = re.compile(r"^( *)if \((.*)\) (continue|break|return\b[^;]*);$")
 CONDITION = re.compile(r"^( *(?:\} else )?(?:if|while) \()(.*)(\) \{)$")
 NUMBER = re.compile(r"(?<![\w.\[])(\d+\.\d+(?:e-?\d+)?f?|\d+)(?![\w.])")
 NEVER = re.compile(r"constexpr|reserve\(|static_assert|template|#|\"|case |enum|using |operator|= default|= delete|throw|check_|//!")
+
+
+@functools.lru_cache(maxsize=None)
+def source(file):
+    """The text of a file, as it was when this program first read it: it may be edited meanwhile."""
+    return (ROOT / file).read_text()
 
 
 def operand(line, at, step):
@@ -106,7 +113,7 @@ def find(files, count, rng):
     """`count` random changes a room, at most one a line: {number: (file, line index, what, function)}."""
     rooms = collections.defaultdict(list)
     for file in files:
-        lines = (ROOT / file).read_text().split("\n")
+        lines = source(file).split("\n")
         for i, line in enumerate(lines):
             if i > 0 and lines[i - 1].rstrip().endswith(("=", "(", ",", "&&", "||", "+", "-", "?", ":")):
                 continue  # the middle of a statement
@@ -131,7 +138,7 @@ def write_tree(work, mutants):
     for number, (file, i, _, change) in mutants.items():
         changed[file][i] = (number, change)
     for file, lines_changed in changed.items():
-        lines = (ROOT / file).read_text().split("\n")
+        lines = source(file).split("\n")
         for i, (number, change) in lines_changed.items():
             lines[i] = change(number)
         target = work / "tree" / file
@@ -161,7 +168,7 @@ def build(work, mutants, targets):
         for n in wrong:
             # Put the line back, in this and all later attempts.
             file = mutants[n][0]
-            shutil.copyfile(ROOT / file, tree / file)
+            (tree / file).write_text(source(file))
             del mutants[n]
     sys.exit("the changed sources do not compile")
 
