@@ -143,33 +143,56 @@ inline std::vector<VotedCell> count_votes(const Uninitialized<std::uint64_t>& vo
   return cells;
 }
 
-/// A center's votes spread over neighboring cells: sum the 27 cells about each one that could have `min_votes` in all.
-/// @return the sums of at least `min_votes`, in the order of their cells
-inline std::vector<VoteSum> sum_votes(const std::vector<VotedCell>& cells, const VoteGrid& grid, double min_votes) {
-  std::vector<VoteSum> sums;
-  // The 27 cells are nine rows of three. The cells of a row are consecutive in the list, and move forward in it as the
-  // cell does.
-  std::array<std::size_t, 9> rows{};
-  std::array<std::uint64_t, 9> back;  // from a cell's key to that of the first cell of each row
-  for (std::uint64_t row = 0; row < 9; ++row) back[row] = grid.pack(1, 1, 1) - grid.pack(0, row % 3, row / 3);
-  for (const VotedCell& c : cells) {
-    if (((&c - cells.data()) & 0xFFFF) == 0) throw_if_cancelled();
-    if (double(c.votes) < min_votes / 27.0) continue;
+/// Sums over the 27 cells about each of some cells, over which a center's votes spread. They are nine rows of three.
+/// The cells of a row are consecutive in the list, and move forward in it as the cell does.
+class RowsOfCells {
+ public:
+  /// @param cells ascending; must outlive this
+  RowsOfCells(const std::vector<VotedCell>& cells, const VoteGrid& grid) : cells_(cells), grid_(grid) {
+    for (std::uint64_t row = 0; row < 9; ++row) back_[row] = grid.pack(1, 1, 1) - grid.pack(0, row % 3, row / 3);
+  }
+
+  /// The votes about a cell; call it for ascending cells.
+  float total(std::uint64_t cell) {
     float total = 0.0f;  // of whole numbers
     for (std::size_t row = 0; row < 9; ++row) {
-      const std::uint64_t first = c.key - back[row];
-      std::size_t& at = rows[row];
-      while (at < cells.size() && cells[at].key < first) ++at;
-      for (std::size_t k = at; k < cells.size() && cells[k].key <= first + 2; ++k) total += cells[k].votes;
+      const std::uint64_t first = cell - back_[row];
+      std::size_t& at = rows_[row];
+      while (at < cells_.size() && cells_[at].key < first) ++at;
+      for (std::size_t k = at; k < cells_.size() && cells_[k].key <= first + 2; ++k) total += cells_[k].votes;
     }
-    if (double(total) < min_votes) continue;
+    return total;
+  }
+
+  /// The mean place of the votes (m) about the cell for which total() was called last.
+  Eigen::Vector3d center(std::uint64_t cell, double total) const {
     Eigen::Vector3d mean = Eigen::Vector3d::Zero();
     for (std::size_t row = 0; row < 9; ++row)
-      for (std::size_t k = rows[row]; k < cells.size() && cells[k].key <= c.key - back[row] + 2; ++k)
-        mean += double(cells[k].votes) * (grid.unpack(cells[k].key) + grid.before).template cast<double>();
-    sums.push_back({c.key, double(total), grid.origin + grid.pitch * mean / double(total)});
+      for (std::size_t k = rows_[row]; k < cells_.size() && cells_[k].key <= cell - back_[row] + 2; ++k)
+        mean += double(cells_[k].votes) * (grid_.unpack(cells_[k].key) + grid_.before).template cast<double>();
+    return grid_.origin + grid_.pitch * mean / total;
   }
-  return sums;
+
+ private:
+  const std::vector<VotedCell>& cells_;
+  const VoteGrid& grid_;
+  std::array<std::size_t, 9> rows_{};  // where each row may begin in the list
+  std::array<std::uint64_t, 9> back_;  // from a cell's key to that of the first cell of each row
+};
+
+/// The cells about which at least `min_votes` votes lie, ascending, with their sums.
+/// @param wanted bool(cell), called for ascending cells: the others are left out
+/// @param found found(cell, total, rows) receives them
+template <typename Wanted, typename Found>
+void sum_votes(const std::vector<VotedCell>& cells, const VoteGrid& grid, double min_votes, Wanted&& wanted,
+               Found&& found) {
+  RowsOfCells rows(cells, grid);
+  for (const VotedCell& c : cells) {
+    if (((&c - cells.data()) & 0xFFFF) == 0) throw_if_cancelled();
+    if (double(c.votes) < min_votes / 27.0 || !wanted(c.key)) continue;
+    const auto total = double(rows.total(c.key));
+    if (total >= min_votes) found(c.key, total, rows);
+  }
 }
 
 /// Most votes first; equal ones in the order of their cells.
@@ -182,19 +205,21 @@ inline void sort_by_votes(std::vector<VoteSum>& sums) {
 /// The cells about which some votes meet, and a quick test of whether a cell is one of them or next to one.
 class VotedPlaces {
  public:
-  /// @param sums in the order of their cells
-  VotedPlaces(const std::vector<VoteSum>& sums, const VoteGrid& grid) : bits_(kBits, false) {
-    const std::uint64_t first = grid.pack(1, 1, 1);
-    for (const VoteSum& s : sums) {
-      cells_.push_back(s.key);
-      for (const std::uint64_t z : {0, 1, 2})
-        for (const std::uint64_t y : {0, 1, 2})
-          for (const std::uint64_t x : {0, 1, 2}) bits_[bit(s.key - first + grid.pack(x, y, z))] = true;
-    }
-  }
+  explicit VotedPlaces(const VoteGrid& grid) : grid_(grid), bits_(kBits, false) {}
 
-  /// Whether a cell is one of the places.
-  bool has(std::uint64_t cell) const { return std::binary_search(cells_.begin(), cells_.end(), cell); }
+  /// Add a cell that comes after those added before.
+  void add(std::uint64_t cell) {
+    cells_.push_back(cell);
+    const std::uint64_t first = cell - grid_.pack(1, 1, 1);
+    for (const std::uint64_t z : {0, 1, 2})
+      for (const std::uint64_t y : {0, 1, 2})
+        for (const std::uint64_t x : {0, 1, 2}) bits_[bit(first + grid_.pack(x, y, z))] = true;
+  }
+  /// Whether a cell is one of the places; ask for ascending cells.
+  bool has(std::uint64_t cell) {
+    while (next_ < cells_.size() && cells_[next_] < cell) ++next_;
+    return next_ < cells_.size() && cells_[next_] == cell;
+  }
   /// False only if a cell is neither one of the places nor next to one.
   bool may_touch(std::uint64_t cell) const { return bits_[bit(cell)]; }
 
@@ -202,7 +227,9 @@ class VotedPlaces {
   static constexpr std::size_t kBits = std::size_t{1} << 20;
   static std::size_t bit(std::uint64_t cell) { return (cell * 0x9E3779B97F4A7C15ull) >> 44; }
 
-  std::vector<std::uint64_t> cells_;
+  const VoteGrid& grid_;
+  std::vector<std::uint64_t> cells_;  // ascending
+  std::size_t next_ = 0;              // the place to compare next in has()
   std::vector<bool> bits_;
 };
 
@@ -240,19 +267,23 @@ std::vector<VotedCenter> vote_for_centers(const PointCloud<S>& cloud, double rad
   constexpr double kFreshShare = 0.1;
   const detail::VoteGrid grid(cloud, radius_max, radius_min / 5.0);
   const auto all = [](auto) { return true; };
-  const auto sums_of = [&](const auto& votes, const auto& keeps, double least) {
-    const auto cells = detail::cast_votes(cloud, grid, radius_min, radius_max, votes, keeps);
-    return detail::sum_votes(detail::count_votes(cells), grid, least);
+  const auto cells_of = [&](const auto& votes, const auto& keeps) {
+    return detail::count_votes(detail::cast_votes(cloud, grid, radius_min, radius_max, votes, keeps));
   };
   std::vector<detail::VoteSum> sums;
+  const auto keep_sum = [&](std::uint64_t cell, double total, const detail::RowsOfCells& rows) {
+    sums.push_back({cell, total, rows.center(cell, total)});
+  };
   if (fresh.empty()) {
-    sums = sums_of(all, all, min_votes);
+    detail::sum_votes(cells_of(all, all), grid, min_votes, all, keep_sum);
   } else {
     const auto is_fresh = [&](std::size_t i) { return fresh[i] != 0; };
-    const detail::VotedPlaces places(sums_of(is_fresh, all, kFreshShare * min_votes), grid);
-    sums = sums_of(
-        all, [&](std::uint64_t cell) { return places.may_touch(cell); }, min_votes);
-    sums.erase(std::remove_if(sums.begin(), sums.end(), [&](const auto& s) { return !places.has(s.key); }), sums.end());
+    detail::VotedPlaces places(grid);
+    detail::sum_votes(cells_of(is_fresh, all), grid, kFreshShare * min_votes, all,
+                      [&](std::uint64_t cell, double, const detail::RowsOfCells&) { places.add(cell); });
+    const auto touches = [&](std::uint64_t cell) { return places.may_touch(cell); };
+    detail::sum_votes(
+        cells_of(all, touches), grid, min_votes, [&](std::uint64_t cell) { return places.has(cell); }, keep_sum);
   }
   detail::sort_by_votes(sums);
   return detail::thin_out(sums, 0.6 * radius_min);
