@@ -18,6 +18,7 @@
 #include <Eigen/Eigenvalues>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <optional>
 
@@ -136,27 +137,64 @@ struct EllipsoidRow {
   Vector9 derivatives;    ///< of the residual by the center / size and by size * A as (xx, yy, zz, xy, xz, yz)
 };
 
+/// What the rows of points consist of. A `Real` is a number, or an Eigen array with one for each of several points:
+/// then the compiler can use vector instructions.
+template <typename Real>
+struct RowTerms {
+  Real g;                           ///< |A (p - c)|
+  Real steep;                       ///< length of the gradient of g at the radial projection (1/m)
+  Real along;                       ///< the gradient times the point's normal (1/m)
+  Real residual;                    ///< distance of the point (m)
+  std::array<Real, 9> derivatives;  ///< as in EllipsoidRow
+};
+
+/// The terms of points (x, y, z), relative to the body's center (m), with normals (nx, ny, nz).
+/// @param size the unknowns are scaled by this length (m)
+template <typename Real>
+RowTerms<Real> row_terms(const Ellipsoid& body, Real x, Real y, Real z, const Real& nx, const Real& ny, const Real& nz,
+                         double size) {
+  using std::sqrt;
+  const Eigen::Matrix3d& A = body.A;
+  const auto row_of_A = [&A](int i, const Real& u, const Real& v, const Real& w) -> Real {
+    return A(i, 0) * u + A(i, 1) * v + A(i, 2) * w;
+  };
+  RowTerms<Real> out;
+  Real ax = row_of_A(0, x, y, z), ay = row_of_A(1, x, y, z), az = row_of_A(2, x, y, z);
+  out.g = sqrt(ax * ax + ay * ay + az * az);
+  x /= out.g, y /= out.g, z /= out.g;
+  ax = row_of_A(0, x, y, z), ay = row_of_A(1, x, y, z), az = row_of_A(2, x, y, z);
+  const Real sx = row_of_A(0, ax, ay, az), sy = row_of_A(1, ax, ay, az), sz = row_of_A(2, ax, ay, az);
+  out.steep = sqrt(sx * sx + sy * sy + sz * sz);
+  out.along = sx * nx + sy * ny + sz * nz;
+  out.residual = (out.g - 1.0) / out.steep;
+  const Real scale = 1.0 / (out.steep * size), inward = -size / out.steep;
+  out.derivatives = {Real(sx * inward),
+                     Real(sy * inward),
+                     Real(sz * inward),
+                     Real(ax * x * scale),
+                     Real(ay * y * scale),
+                     Real(az * z * scale),
+                     Real((ax * y + ay * x) * scale),
+                     Real((ax * z + az * x) * scale),
+                     Real((ay * z + az * y) * scale)};
+  return out;
+}
+
 /// The row of a point.
 /// @param size the unknowns are scaled by this length (m)
 /// @param gate from this residual (m) on the weight is 0
 /// @param cos_max cosine of the largest angle between the point's normal and the body's
 inline EllipsoidRow ellipsoid_row(const Ellipsoid& body, const Eigen::Vector3d& point, const Eigen::Vector3d& normal,
                                   double size, double gate, double cos_max) {
+  const Eigen::Vector3d d = point - body.center;
+  const RowTerms<double> terms = row_terms<double>(body, d.x(), d.y(), d.z(), normal.x(), normal.y(), normal.z(), size);
   EllipsoidRow row;
-  Eigen::Vector3d d = point - body.center;
-  const double g = body.times(d).norm();
-  if (!(g > 1e-9)) return row;
-  d /= g;
-  const Eigen::Vector3d a = body.times(d), slope = body.times(a);
-  const double steep = slope.norm();
-  row.residual = (g - 1.0) / steep;
+  if (!(terms.g > 1e-9)) return row;
+  row.residual = terms.residual;
   const double t = row.residual / gate;
-  if (slope.dot(normal) < cos_max * steep || !(std::abs(t) < 1.0)) return row;
+  if (terms.along < cos_max * terms.steep || !(std::abs(t) < 1.0)) return row;
   row.weight = (1.0 - t * t) * (1.0 - t * t);
-  const double scale = 1.0 / (steep * size);
-  row.derivatives << slope * (-size / steep), a.x() * d.x() * scale, a.y() * d.y() * scale, a.z() * d.z() * scale,
-      (a.x() * d.y() + a.y() * d.x()) * scale, (a.x() * d.z() + a.z() * d.x()) * scale,
-      (a.y() * d.z() + a.z() * d.y()) * scale;
+  row.derivatives = Eigen::Map<const Vector9>(terms.derivatives.data());
   return row;
 }
 
@@ -212,15 +250,31 @@ inline FitSums fit_sums(const std::vector<FitSample>& samples, const Ellipsoid& 
   Eigen::Matrix<double, 10, 10> products = Eigen::Matrix<double, 10, 10>::Zero();
   double weights = 0.0, squares = 0.0;
   std::size_t inliers = 0;
-  for (const FitSample& sample : samples) {
-    if (((&sample - samples.data()) & 0xFFF) == 0) throw_if_cancelled();
-    const auto row = ellipsoid_row(body, sample.point, sample.normal, size, gate, cos_max);
-    if (!(row.weight > 0.0)) continue;
-    Eigen::Matrix<double, 10, 1> j;
-    j << row.derivatives, row.residual;
-    products.noalias() += (row.weight * j).lazyProduct(j.transpose());
-    weights += row.weight;
-    if (std::abs(row.residual) < inlier) ++inliers, squares += row.residual * row.residual;
+  constexpr int kLanes = 16;
+  using Lanes = Eigen::Array<double, kLanes, 1>;
+  for (std::size_t from = 0; from < samples.size(); from += kLanes) {
+    if ((from & 0xFFF) == 0) throw_if_cancelled();
+    const std::size_t count = std::min<std::size_t>(kLanes, samples.size() - from);
+    Eigen::Array<double, kLanes, 6> block;
+    for (std::size_t i = 0; i < kLanes; ++i) {  // the last sample fills a block that is not full
+      const FitSample& s = samples[from + std::min(i, count - 1)];
+      block.row(static_cast<Eigen::Index>(i)) << (s.point - body.center).transpose().array(),
+          s.normal.transpose().array();
+    }
+    const RowTerms<Lanes> terms = row_terms<Lanes>(body, block.col(0), block.col(1), block.col(2), block.col(3),
+                                                   block.col(4), block.col(5), size);
+    const Lanes t = terms.residual / gate;
+    const Lanes weight = (1.0 - t * t) * (1.0 - t * t);
+    for (std::size_t k = 0; k < count; ++k) {
+      const auto i = static_cast<Eigen::Index>(k);
+      if (!(terms.g[i] > 1e-9) || terms.along[i] < cos_max * terms.steep[i] || !(std::abs(t[i]) < 1.0)) continue;
+      Eigen::Matrix<double, 10, 1> j;
+      for (std::size_t a = 0; a < 9; ++a) j[static_cast<Eigen::Index>(a)] = terms.derivatives[a][i];
+      j[9] = terms.residual[i];
+      products.noalias() += (weight[i] * j).lazyProduct(j.transpose());
+      weights += weight[i];
+      if (std::abs(j[9]) < inlier) ++inliers, squares += j[9] * j[9];
+    }
   }
   return {products.topLeftCorner<9, 9>(), -products.topRightCorner<9, 1>(), weights, squares, inliers};
 }
