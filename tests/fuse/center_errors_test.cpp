@@ -61,6 +61,49 @@ EllipsoidFit fit_of(const Scan& scan, int max_points = FitParameters().max_point
 
 Eigen::Matrix3d errors_of(const Scan& scan) { return center_errors({fit_of(scan).body}, scan.views, {})[0]; }
 
+// Balls that are seen at the ends of their axes alone, so that all can be worked out by hand. Binary fractions.
+const Sphere kSmall{{0.25, 0.5, -0.125}, 0.03125}, kOther{{0.5, 0.5, -0.125}, 0.03125};
+constexpr double kOff = 1.0 / 2048.0;  // m
+
+/// Points of a view at an end of an axis of a ball.
+void add_end(sensor::SurfaceImage& image, const Sphere& ball, int axis, double side, double outwards, int count) {
+  const Eigen::Vector3d normal = side * Eigen::Vector3d::Unit(axis);
+  for (int i = 0; i < count; ++i) {
+    image.points.push_back((ball.center + (ball.radius + outwards) * normal).cast<float>());
+    image.normals.push_back(normal.cast<float>());
+  }
+}
+
+/// Six views, each of one end of the axes of some balls.
+/// @param outwards how far the points of each ball are outside of it (m)
+std::vector<sensor::SurfaceImage> six_ends(const std::vector<Sphere>& balls, const std::vector<double>& outwards) {
+  std::vector<sensor::SurfaceImage> images(6);
+  for (int v = 0; v < 6; ++v)
+    for (std::size_t b = 0; b < balls.size(); ++b)
+      add_end(images[static_cast<std::size_t>(v)], balls[b], v / 2, v % 2 ? -1.0 : 1.0, outwards[b], 10);
+  return images;
+}
+
+/// The views, each reported by so much (m) too far in the direction that it shows.
+std::vector<RegisteredView> registered(const std::vector<sensor::SurfaceImage>& images, double too_far = 0.0) {
+  std::vector<RegisteredView> views;
+  for (const sensor::SurfaceImage& image : images) {
+    Pose reported = image.world_T_optical;
+    reported.pretranslate(Eigen::Vector3d(too_far * image.normals[0].cast<double>()));
+    views.push_back({&image, reported});
+  }
+  return views;
+}
+
+/// What is due to uneven skin: a third of all points measure along an axis, and all count as `independent`.
+double uneven(int independent = FitParameters().independent) { return 3.0 * 0.0002 * 0.0002 / independent; }
+
+void check_variance(const Eigen::Matrix3d& covariance, double variance) {
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j)
+      CHECK(covariance(i, j) == Approx(i == j ? variance : 0.0).epsilon(1e-4).margin(1e-6 * variance));
+}
+
 }  // namespace
 
 TEST_CASE("centers are as far off as the views' shared errors say") {
@@ -145,4 +188,92 @@ TEST_CASE("what too few views saw is not told") {
                       scan_of_ball(5, 0.001, 0.0001, 4).views, {})[0]
             .isZero());
   CHECK(center_errors({}, {}, {}).empty());
+}
+
+TEST_CASE("skin that is uneven is all that is wrong with views that agree") {
+  const auto images = six_ends({kSmall}, {0.0});
+  for (const int independent : {1, 150}) {
+    FitParameters parameters;
+    parameters.independent = independent;
+    check_variance(center_errors({Ellipsoid(kSmall)}, registered(images), parameters)[0], uneven(independent));
+  }
+}
+
+TEST_CASE("the variance of views that disagree is shared by bodies and doubled") {
+  // Six residuals of a size have the variance 6/5 of its square about 0. Twice that, of the mean of two views.
+  const auto one = six_ends({kSmall}, {kOff});
+  check_variance(center_errors({Ellipsoid(kSmall)}, registered(one), {})[0], 1.2 * kOff * kOff + uneven());
+  const auto two = six_ends({kSmall, kOther}, {kOff, 0.0});
+  const auto both = center_errors({Ellipsoid(kSmall), Ellipsoid(kOther)}, registered(two), {});
+  for (const Eigen::Matrix3d& covariance : both) check_variance(covariance, 0.6 * kOff * kOff + uneven());
+}
+
+TEST_CASE("what registration moved counts as disagreement and as an error of its own") {
+  // A view reported too far in the direction of its normal had its points outside by as much.
+  for (const double outwards : {0.0, kOff}) {
+    const auto images = six_ends({kSmall}, {outwards});
+    for (const double too_far : {-0.5 * kOff, 3.0 * kOff}) {
+      const double before = outwards + too_far;
+      check_variance(center_errors({Ellipsoid(kSmall)}, registered(images, too_far), {})[0],
+                     1.2 * before * before + too_far * too_far / 3.0 / 6.0 + uneven());
+    }
+  }
+  // Of two bodies, the shifts of one are those of the other.
+  const auto two = six_ends({kSmall, kOther}, {0.0, 0.0});
+  for (const auto& covariance : center_errors({Ellipsoid(kSmall), Ellipsoid(kOther)}, registered(two, kOff), {}))
+    check_variance(covariance, 1.2 * kOff * kOff + kOff * kOff / 18.0 + uneven());
+}
+
+TEST_CASE("ends that are off in one view are errors of patches") {
+  // Each view has both ends of an axis, shifted alike: one residual is the other's negative, so their variance about
+  // their mean, 0, is twice the square; half of that for the mean of both.
+  std::vector<sensor::SurfaceImage> images(3);
+  for (int axis = 0; axis < 3; ++axis)
+    for (const double side : {-1.0, 1.0})
+      add_end(images[static_cast<std::size_t>(axis)], kSmall, axis, side, side * kOff, 5);
+  check_variance(center_errors({Ellipsoid(kSmall)}, registered(images), {})[0], kOff * kOff + uneven());
+}
+
+TEST_CASE("three views of ten points are enough, of nine they are not") {
+  const auto with = [](int count, std::size_t views) {
+    std::vector<sensor::SurfaceImage> images(views);
+    for (std::size_t v = 0; v < views; ++v) {
+      add_end(images[v], kSmall, static_cast<int>(v), 1.0, 0.0, v == 0 ? count : 10);
+      add_end(images[v], kSmall, static_cast<int>(v), 1.0, 0.01, 5);  // too far off to count
+    }
+    return center_errors({Ellipsoid(kSmall)}, registered(images), {})[0].trace();
+  };
+  CHECK(with(10, 3) > 0.0);
+  CHECK(with(9, 3) == 0.0);
+  CHECK(with(10, 2) == 0.0);
+}
+
+TEST_CASE("points with other normals than the body's do not count, parameters are checked") {
+  auto images = six_ends({kSmall}, {0.0});
+  for (sensor::SurfaceImage& image : images)
+    for (std::size_t i = 0; i < 3; ++i) {  // of ten, so too few are left
+      const Eigen::Vector3f n = image.normals[i];
+      image.normals[i] = (0.6f * n + 0.8f * Eigen::Vector3f(n.y(), n.z(), n.x())).normalized();
+    }
+  CHECK(center_errors({Ellipsoid(kSmall)}, registered(images), {})[0].isZero());
+  FitParameters wide;
+  wide.max_angle = deg(60.0);
+  CHECK_FALSE(center_errors({Ellipsoid(kSmall)}, registered(images), wide)[0].isZero());
+  wide.noise = 0.0;
+  CHECK_THROWS_AS(center_errors({}, {}, wide), ParameterError);
+}
+
+TEST_CASE("points count up to four standard deviations or a twentieth of the radius from the body") {
+  FitParameters sharp;
+  sharp.noise = 0.0001;
+  const auto counts = [](double outwards, const FitParameters& parameters) {
+    const auto images = six_ends({kSmall}, {outwards});
+    return !center_errors({Ellipsoid(kSmall)}, registered(images), parameters)[0].isZero(0.0);
+  };
+  for (const double side : {-1.0, 1.0}) {
+    CHECK(counts(side * 0.0039, {}));  // 4 x 1 mm
+    CHECK_FALSE(counts(side * 0.0041, {}));
+    CHECK(counts(side * 0.0015, sharp));  // 31.25 mm / 20
+    CHECK_FALSE(counts(side * 0.0016, sharp));
+  }
 }

@@ -64,6 +64,31 @@ sensor::DepthFrame rim_of(const Ball& ball, double share) {
   return f;
 }
 
+/// A ball so small beside its distance that all its sight lines are nearly parallel.
+const Ball kFar{{0.2, -0.1, 10.0}, 0.05};
+
+/// A view of it in which depths bulge `bulge` times as much as it does, and every second one is off by -+`off` (m).
+sensor::DepthFrame bulging(double bulge, double off = 0.0) {
+  sensor::DepthFrame f;
+  f.intrinsics = {120, 100, 6000.0, 6000.0, 59.5 - 120.0, 49.5 + 60.0};
+  f.detected = true;
+  for (int v = 0; v < 100; ++v)
+    for (int u = 0; u < 120; ++u) {
+      const Eigen::Vector3d ray = f.intrinsics.ray(u, v).normalized();
+      const double middle = kFar.center.dot(ray),
+                   inside = std::pow(kFar.radius, 2) - kFar.center.squaredNorm() + middle * middle;
+      const double z = middle - bulge * std::sqrt(std::max(0.0, inside)) + ((u + v) % 2 ? off : -off);
+      f.depth.push_back(static_cast<float>(inside > 0.0 ? z * ray.z() : 0.0));
+      f.instances.push_back(inside > 0.0);
+    }
+  return f;
+}
+
+constexpr double kRim = 0.87;  // of the radius: depths nearer to the rim do not count
+
+/// The odds of one mask with this score.
+double odds_of(double score) { return 0.5 * std::log(score / (1.0 - score)); }
+
 }  // namespace
 
 TEST_CASE("masks propose the bodies under them") {
@@ -108,6 +133,8 @@ TEST_CASE("a box stands for a mask") {
   const auto evidence = fuse::mask_evidence({{frame, Pose::Identity()}}, apples());
   REQUIRE(evidence.bodies.size() == 1);
   CHECK(evidence.bodies[0].fit.body.mean_radius() == Approx(kLeft.radius).margin(0.001));
+  CHECK(evidence.bodies[0].log_odds == Approx(odds_of(0.95) + 12.7 + 1.75 + 1.0 - 8.0).margin(0.4));
+  CHECK(evidence.most == 4.0);
   frame.detections.push_back(d);
   CHECK_THROWS_WITH(fuse::mask_evidence({{frame, Pose::Identity()}}, apples()), Catch::Contains("listed twice"));
 }
@@ -276,4 +303,139 @@ TEST_CASE("a cloud takes the colors that views saw, and only those") {
   CHECK_THROWS_AS(fuse::colors_of(cloud, {{frame, Pose::Identity()}}), InputError);
   frame.color.clear();
   CHECK(fuse::colors_of(cloud, {{frame, Pose::Identity()}}).empty());
+}
+
+TEST_CASE("a proposal is judged by how its depths bulge and how many agree") {
+  // In units of the radius the body is s = sqrt(1 - x x) deep, and s s is evenly distributed from the rim to 1. A bulge
+  // of b is |b - 1| s off. Within 0.4 are most between 1 - 0.4 / |b - 1| and 1.
+  const double rim = 1.0 - kRim * kRim;
+  for (const double bulge : {-2.0, 0.0, 0.3, 0.5, 1.0, 1.5, 2.0, 3.5}) {
+    const double least = bulge == 1.0 ? 0.0 : 1.0 - 0.4 / std::abs(bulge - 1.0);
+    const double agreement = least * least > rim && least > 0.0 ? (1.0 - least * least) / (1.0 - rim) : 1.0;
+    const double flatness = std::max(0.0, 0.4 - bulge), limited = std::clamp(bulge, -1.0, 3.0);
+    const auto evidence = fuse::mask_evidence({{bulging(bulge), Pose::Identity()}}, apples());
+    REQUIRE(evidence.bodies.size() == 1);
+    INFO("bulge " << bulge);
+    CHECK(evidence.bodies[0].log_odds ==
+          Approx(odds_of(0.95) + 12.7 * agreement + 1.75 * limited - 20.0 * flatness - 8.0).margin(0.45));
+  }
+}
+
+TEST_CASE("a flat mask is less surely flat where its depths scatter") {
+  // s has the variance 1/2 (1 + rim) - (2/3 (1 - rim^3/2) / (1 - rim))^2. Twenty depths count.
+  const double rim = 1.0 - kRim * kRim, mean = 2.0 / 3.0 * (1.0 - std::pow(rim, 1.5)) / (1.0 - rim);
+  const double variance = 0.5 * (1.0 + rim) - mean * mean;
+  for (const double off : {0.02, 0.05}) {  // of the radius
+    const double error = off / std::sqrt(20.0 * variance);
+    // Half of the depths are nearer and half farther: between 0.6 - off and 1 - off are most.
+    const double nearer = 1.0 - 0.6 * 0.6, farther = std::pow(1.0 - 2.0 * off, 2) - std::pow(0.6 - 2.0 * off, 2);
+    const double agreement = 0.5 * (nearer + farther) / (1.0 - rim);
+    const auto evidence = fuse::mask_evidence({{bulging(0.0, off * kFar.radius), Pose::Identity()}}, apples());
+    REQUIRE(evidence.bodies.size() == 1);
+    CHECK(evidence.bodies[0].log_odds ==
+          Approx(odds_of(0.95) + 12.7 * agreement - 20.0 * (0.4 - 2.0 * error) - 8.0).margin(0.45));
+  }
+}
+
+TEST_CASE("masks on a known body add the odds of their scores, none adds those of being overlooked") {
+  sensor::DepthFrame frame = *view_of({kLeft}).frame;
+  const Ellipsoid body(Sphere{kLeft.center, kLeft.radius});
+  sensor::Detection d;
+  d.instance = 1;
+  fuse::MaskParameters parameters;
+  const auto odds = [&](std::size_t views = 1) {
+    frame.detections = {d};
+    return fuse::mask_evidence(std::vector<fuse::DetectedView>(views, {frame, Pose::Identity()}), apples(), parameters)
+        .log_odds(body);
+  };
+  for (const double score : {0.6, 0.9, 0.1}) {
+    d.score = score;
+    CHECK(odds() == Approx(odds_of(score)).margin(0.05));  // pixels at the rim may be beside the mask
+  }
+  d.score = 1.0;
+  CHECK(odds() == Approx(odds_of(0.95)).margin(0.1));
+  d.score = 0.0;
+  CHECK(odds() == Approx(odds_of(0.05)).margin(0.1));
+  d.score = 0.9;
+  d.fruit = false;
+  CHECK(odds() == Approx(-odds_of(0.9)).margin(0.1));
+  CHECK(odds(3) == Approx(-odds_of(0.9) * std::sqrt(3.0)).margin(0.1));
+  CHECK(odds(9) == Approx(-odds_of(0.9) * 3.0).margin(0.3));
+  CHECK(odds(25) == -4.0);
+  parameters.max_log_odds = 2.5;
+  CHECK(odds(25) == -2.5);
+  d.fruit = true;
+  CHECK(odds(25) == 2.5);
+  std::fill(frame.instances.begin(), frame.instances.end(), std::uint16_t(0));
+  for (const double recall : {0.0, 0.5, 0.8}) {
+    parameters.recall = recall;
+    CHECK(odds() == Approx(std::log(1.0 - recall)).margin(1e-9));
+  }
+  for (int v = 0; v < 300; ++v)  // the left half alone
+    for (int u = 0; u < 140; ++u) frame.instances[frame.intrinsics.index(u, v)] = 1;
+  parameters = {};
+  CHECK(odds() == Approx(0.5 * (odds_of(0.9) + std::log(0.5))).margin(0.1));
+}
+
+TEST_CASE("bodies whose depths are not theirs are not shown") {
+  const fuse::DetectedView view = view_of({kLeft});
+  const auto evidence = fuse::mask_evidence({view}, apples());
+  const Eigen::Vector3d sight = kLeft.center.normalized();
+  const auto at = [&](double farther) {  // of its radius
+    return evidence.log_odds(Ellipsoid(Sphere{kLeft.center + farther * kLeft.radius * sight, kLeft.radius}));
+  };
+  for (const double sign : {-1.0, 1.0}) {
+    CHECK(at(0.25 * sign) > 1.0);
+    CHECK(at(0.6 * sign) < 1.0);  // at the rim at most
+    CHECK(at(1.5 * sign) == 0.0);
+  }
+}
+
+TEST_CASE("a fruit of which little is seen is expected to be like the others") {
+  std::vector<Ball> balls;
+  for (int i = 0; i < 5; ++i) balls.push_back({{-0.24 + 0.1 * i, -0.12, 1.0}, 0.03 + 0.0001 * i});
+  balls.push_back({{0.1, 0.1, 1.0}, 0.03});
+  sensor::DepthFrame frame = *view_of(balls).frame;
+  for (int v = 160; v < 300; ++v)  // a leaf leaves the left third of the last
+    for (int u = 253; u < 400; ++u) {
+      frame.depth[frame.intrinsics.index(u, v)] = 0.7f;
+      frame.instances[frame.intrinsics.index(u, v)] = 0;
+    }
+  const auto last = [&](bool alike, std::size_t others) {
+    sensor::DepthFrame some = frame;
+    for (std::uint16_t& i : some.instances)
+      if (i > others && i < 6) i = 0;
+    fuse::MaskParameters parameters;
+    parameters.alike = alike;
+    const auto evidence = fuse::mask_evidence({{some, Pose::Identity()}}, apples(), parameters);
+    REQUIRE(evidence.bodies.size() == others + 1);
+    return evidence.bodies.back().fit;
+  };
+  const EllipsoidFit alike = last(true, 5), alone = last(false, 5), few = last(true, 4);
+  CHECK(alike.body.mean_radius() == Approx(0.0302).margin(0.003));
+  CHECK(alike.shape_covariance(0, 0) < 0.9 * alone.shape_covariance(0, 0));
+  CHECK(few.body.mean_radius() == alone.body.mean_radius());
+}
+
+TEST_CASE("a body explains a mask if at least half of its pixels show it") {
+  for (const int columns : {22, 44}) {  // of the wall beside it, 42 pixels high; of the ball there are 1380 pixels
+    sensor::DepthFrame frame = *view_of({kLeft}).frame;
+    for (int v = 140; v < 182; ++v)
+      for (int u = 200; u < 200 + columns; ++u) frame.instances[frame.intrinsics.index(u, v)] = 1;
+    const auto evidence = fuse::mask_evidence({{frame, Pose::Identity()}}, apples(), {}, fuse::MaskOrder::points_first);
+    CHECK(evidence.remaining({Ellipsoid(Sphere{kLeft.center, kLeft.radius})}).empty() == (columns == 22));
+  }
+}
+
+TEST_CASE("wrong parameters and poses that are not rigid are refused") {
+  const fuse::DetectedView view = view_of({kLeft});
+  fuse::MaskParameters parameters;
+  parameters.edge = 0.0;
+  CHECK_THROWS_AS(fuse::mask_evidence({view}, apples(), parameters), ParameterError);
+  BodyParameters bodies = apples();
+  bodies.radius_min = 0.0;
+  CHECK_THROWS_AS(fuse::mask_evidence({view}, bodies), ParameterError);
+  fuse::DetectedView bent = view;
+  bent.world_T_optical.linear() *= 1.1;
+  CHECK_THROWS_AS(fuse::mask_evidence({bent}, apples()), InputError);
 }

@@ -128,3 +128,115 @@ TEST_CASE("of a small frame every pixel is taken") {
   CHECK(sample_of(frame, place(0)).points ==
         std::vector<Vector3f>{{0, 0, 1}, {1, 0, 1}, {2, 0, 1}, {0, 1, 1}, {1, 1, 1}, {2, 1, 1}});
 }
+
+namespace {
+
+ViewSample points_at(const std::vector<Vector3f>& points, const Vector3d& position = {0, 0, 0}) {
+  ViewSample view;
+  view.points = points;
+  view.world_T_optical.translation() = position;
+  return view;
+}
+
+/// Two views of ten places that are far apart. In the second, at kThere, the first `right` are as reported, the last
+/// `inverted` as they are with poses inverted, and the others nowhere.
+const Vector3d kThere(0.5, 0.7, 0.3);
+std::vector<ViewSample> partly(int right, int inverted) {
+  ViewSample a = points_at({}), b = points_at({}, kThere);
+  for (int i = 0; i < 10; ++i) {
+    const Vector3f place(3.0f * float(i) + 0.2f, 0.4f, 1.0f), there = kThere.cast<float>();
+    a.points.push_back(place);
+    const float sign = i < right ? -1.0f : i >= 10 - inverted ? 1.0f : 100.0f;
+    b.points.push_back(place + sign * there);
+  }
+  return {a, b};
+}
+
+}  // namespace
+
+TEST_CASE("points agree in cells that touch, on all sides") {
+  const Vector3f place(0.5f, 0.5f, 0.5f);
+  for (int n = 0; n < 27; ++n) {
+    const Vector3f step(float(n % 3 - 1), float(n / 3 % 3 - 1), float(n / 9 - 1));
+    CHECK(agreement({points_at({place}), points_at({place + step})}, 1.0) == 1.0);
+    if (n == 13) continue;  // no step
+    CHECK(agreement({points_at({place}), points_at({place + 2.0f * step})}, 1.0) == 0.0);
+    CHECK(agreement({points_at({place}), points_at({place + step})}, 0.25) == 0.0);
+  }
+}
+
+TEST_CASE("a view does not agree with itself, nor do views without points count") {
+  const ViewSample twice = points_at({{0, 0, 1}, {0, 0, 1}}), elsewhere = points_at({{9, 0, 1}});
+  CHECK(agreement({twice, elsewhere}, 0.01) == 0.0);
+  CHECK(agreement({twice, {}, elsewhere, {}, twice}, 0.01) == Approx(2.0 / 3.0));
+}
+
+TEST_CASE("of up to sixteen views all are compared, of up to thirty-two every second one") {
+  for (int count = 2; count <= 32; ++count) {
+    std::vector<ViewSample> views;
+    for (int i = 0; i < count; ++i)  // those with even numbers agree
+      views.push_back(points_at({{i % 2 ? 9.0f + float(i) * 3.0f : 0.0f, 0, 1}}));
+    const int even = (count + 1) / 2;
+    const double share = count > 16 ? 1.0 : even > 1 ? double(even) / count : 0.0;
+    CHECK(agreement(views, 0.01) == Approx(share));
+  }
+}
+
+TEST_CASE("a mistake is named if 40 % of the points agree with it, and twice as many as without") {
+  const auto check = [](int right, int inverted) { return check_poses(partly(right, inverted), kNowhere); };
+  const std::string named = "are inverted (optical_T_world)";
+  CHECK(check(0, 4).mistake == named);
+  CHECK(check(0, 3).mistake.empty());
+  CHECK(check(2, 4).mistake == named);
+  CHECK(check(3, 5).mistake.empty());
+  CHECK(check(3, 6).mistake == named);
+  CHECK(check(3, 6).as_reported == Approx(0.3));
+  CHECK(check(3, 6).mended == Approx(0.6));
+}
+
+TEST_CASE("points are compared in cells of 2 % of their depth, at least 1 cm") {
+  const auto agree = [](float depth, float x) {
+    return check_poses({points_at({{0.005f, 0, depth}}), points_at({{x, 0, depth}})}, kNowhere).as_reported == 1.0;
+  };
+  CHECK(agree(1.0f, 0.039f));
+  CHECK_FALSE(agree(1.0f, 0.041f));
+  CHECK(agree(2.0f, 0.079f));
+  CHECK_FALSE(agree(2.0f, 0.081f));
+  CHECK(agree(0.3f, 0.019f));
+  CHECK_FALSE(agree(0.3f, 0.021f));
+}
+
+TEST_CASE("a single view has to show nothing in the volume before it is mended, and 5 % after") {
+  const Aabb volume{{-0.1, -0.1, -0.1}, {0.1, 0.1, 0.1}};
+  const Vector3d position(0.5, 0.7, 0.3);
+  const auto mistake = [&](int inside, int outside, int as_reported = 0) {
+    ViewSample view = points_at({}, position);
+    for (int i = 0; i < inside; ++i) view.points.push_back(position.cast<float>());  // minus the position: the origin
+    for (int i = 0; i < outside; ++i) view.points.emplace_back(5.0f, 6.0f, 7.0f);
+    for (int i = 0; i < as_reported; ++i) view.points.push_back(-position.cast<float>());
+    return check_poses({view}, volume).mistake;
+  };
+  CHECK(mistake(1, 19) == "are inverted (optical_T_world)");
+  CHECK(mistake(1, 20).empty());
+  CHECK(mistake(10, 9, 1).empty());
+}
+
+TEST_CASE("a large frame is sampled at equal steps, half a step from its border") {
+  sensor::DepthFrame frame;
+  frame.intrinsics = {400, 300, 100.0, 100.0, 0.0, 0.0};
+  frame.depth.assign(120000, 1.0f);
+  const std::vector<Vector3f> points = sample_of(frame, place(0)).points;  // steps of sqrt(120000 / 5000), about 5
+  REQUIRE(points.size() == 80 * 60);
+  CHECK(points[0] == Vector3f(0.02f, 0.02f, 1.0f));
+  CHECK(points[1] == Vector3f(0.07f, 0.02f, 1.0f));
+  CHECK(points[80] == Vector3f(0.02f, 0.07f, 1.0f));
+  CHECK(points.back() == Vector3f(3.97f, 2.97f, 1.0f));
+  frame.depth[frame.intrinsics.index(7, 2)] = 0.0f;
+  CHECK(sample_of(frame, place(0)).points.size() == 80 * 60 - 1);
+}
+
+TEST_CASE("views with mended poses agree as much as with the right ones") {
+  const double agree = check_poses(seen(right), kNowhere).as_reported;
+  for (Pose (*report)(const Pose&) : {inverted, of_body, of_graphics})
+    CHECK(check_poses(seen(report), kNowhere).mended == Approx(agree).margin(0.001));
+}
