@@ -299,3 +299,25 @@ TEST_CASE("no closed surface of too few points; bad input is refused") {
   bad.certain = bad.doubtful;
   CHECK_THROWS_AS(closed_surface(cloud, range(0, cloud.size()), {}, body, up, bad), ParameterError);
 }
+
+TEST_CASE("evidence lets the axis shift and tilt as far as a step may, no farther") {
+  const Cloud cloud = seen(pear, 0.4);
+  detail::SurfaceFit::Samples samples;
+  for (std::size_t i = 0; i < cloud.size(); ++i) {
+    samples.points.push_back(cloud.points[i].cast<double>());
+    samples.normals.push_back(cloud.normals[i].cast<double>());
+  }
+  samples.own = cloud.size();
+  const ClosedSurfaceParameters parameters;
+  const detail::SurfaceModel model(0, parameters);
+  const Pose pose = world_T_body();
+  const detail::SurfaceFit fit(samples, {Ellipsoid(Sphere{pose.translation(), 0.035}), pose.linear().col(2)}, model,
+                               parameters);
+  const auto bins = fit.radial_bins(fit.weights());
+  const detail::LinearModel once = fit.problem(model, bins, 0.02, 1.0), twice = fit.problem(model, bins, 0.02, 2.0);
+  CHECK((once.prior.tail<4>() - Eigen::Vector4d(0.04, 0.04, 0.09, 0.09)).norm() < 1e-12);  // 0.2 radii, 0.3 rad
+  CHECK((twice.prior.tail<4>() - 4.0 * once.prior.tail<4>()).norm() < 1e-12);
+  CHECK(once.prior.head(once.prior.size() - 4) == twice.prior.head(once.prior.size() - 4));
+  CHECK(fit.evidence(model, bins, 0.02) == Approx(detail::robust_evidence(once)).epsilon(1e-12));
+  CHECK(fit.evidence(model, bins, 0.02) != Approx(detail::robust_evidence(twice)).epsilon(1e-6));
+}

@@ -356,3 +356,68 @@ TEST_CASE("the size of a rank is that of a sort") {
     }
   }
 }
+
+TEMPLATE_TEST_CASE("of equally near target points the one with the smaller index is the match", "", float, double) {
+  using S = TestType;
+  IcpParameters parameters;
+  parameters.max_distance = 0.5;
+  const auto match = [&](const std::vector<Vector3<S>>& points, const auto& search) {
+    PointCloud<S> target, source;
+    target.points = points;
+    target.normals.assign(points.size(), Vector3<S>::UnitZ());
+    source.points = {{0, 0, 0}};
+    using Search = std::decay_t<decltype(search)>;
+    detail::IcpProblem<S, PointCloud<S>, PointCloud<S>, Search> problem(source, {}, target, target.normals, parameters,
+                                                                        search, 1);
+    problem.match(Pose::Identity());
+    const Index first = problem.matches()[0];
+    problem.match(Pose(Eigen::Translation3d(0, 0, 0.01)));
+    problem.match(Pose::Identity());  // also when it is looked up again
+    CHECK(problem.matches()[0] == first);
+    return first;
+  };
+  const std::vector<Vector3<S>> four{{S(0.25), 0, 0}, {0, S(-0.25), 0}, {S(-0.25), 0, 0}, {0, S(0.25), 0}};
+  for (std::size_t turn = 0; turn < 4; ++turn) {
+    std::vector<Vector3<S>> points = four;
+    std::rotate(points.begin(), points.begin() + static_cast<std::ptrdiff_t>(turn), points.end());
+    for (const bool mirrored : {false, true}) {
+      if (mirrored) std::reverse(points.begin(), points.end());
+      CHECK(match(points, KdTree<S>(points)) == 0);
+      CHECK(match(points, Grid<S>(points, S(0.1))) == 0);
+      CHECK(match(points, Grid<S>(points, S(1.0))) == 0);
+    }
+  }
+  const std::vector<Vector3<S>> equal(5, Vector3<S>(S(0.25), 0, 0));
+  CHECK(match(equal, KdTree<S>(equal)) == 0);
+  CHECK(match(equal, Grid<S>(equal, S(0.1))) == 0);
+}
+
+TEST_CASE("residuals before and after, by hand; without matches they are zero") {
+  PointCloud<double> plane, patch;
+  for (int i = 0; i < 400; ++i) {
+    plane.points.emplace_back(0.002 * (i % 20), 0.002 * (i / 20), 0.5);
+    plane.normals.push_back(Eigen::Vector3d::UnitZ());
+  }
+  patch = plane;
+  for (std::size_t i = 0; i < patch.size(); ++i) patch.points[i].z() += i % 20 % 4 < 2 ? 0.0005 : 0.0015;
+  IcpParameters parameters;
+  parameters.kernel = RobustKernel::none;
+  const IcpResult result = align(patch, plane, parameters);
+  CHECK(result.accepted);
+  CHECK(result.matches_before == 400);
+  CHECK(result.matches == 400);
+  CHECK(result.rms_before == Approx(std::sqrt((0.25 + 2.25) / 2.0) * 1e-3));
+  CHECK(result.rms_after == Approx(0.5e-3).epsilon(0.02));
+  CHECK(result.translation == Approx(0.001).epsilon(0.01));
+  for (auto& p : patch.points) p.z() += 1.0;
+  for (const RobustKernel kernel : {RobustKernel::none, RobustKernel::tukey}) {
+    parameters.kernel = kernel;
+    const IcpResult away = align(patch, plane, parameters);
+    CHECK(away.matches == 0);
+    CHECK(away.rms_before == 0.0);
+    CHECK(away.rms_after == 0.0);
+    CHECK(away.translation == 0.0);
+    CHECK(away.rotation == 0.0);
+    CHECK_FALSE(away.accepted);
+  }
+}

@@ -2,6 +2,9 @@
 #include <agrisee/cloud/sor.hpp>
 #include <agrisee/neighbors/grid.hpp>
 
+#include <limits>
+#include <map>
+
 #include "cloud/cloud_cases.hpp"
 
 using namespace agrisee;
@@ -105,4 +108,65 @@ TEST_CASE("outlier removal refuses bad parameters by name") {
   CHECK(cases::rejects("std_ratio", [&] { remove_statistical_outliers(cloud, {20, -1.0, false}); }));
   CHECK_THROWS_AS(remove_statistical_outliers(cloud, {20, std::nan(""), false}), ParameterError);
   CHECK_THROWS_AS(remove_statistical_outliers(cloud, {}, KdTree(cases::Points<float>(2, {0, 0, 0}))), InputError);
+}
+
+TEST_CASE("mean distances to the nearest points of a line, by hand") {
+  const cases::Points<double> line{{0, 0, 0}, {1, 0, 0}, {3, 0, 0}, {7, 0, 0}};
+  const std::map<int, std::vector<double>> expected{{0, {0, 0, 0, 0}},
+                                                    {1, {1, 1, 2, 4}},
+                                                    {2, {2, 1.5, 2.5, 5}},
+                                                    {3, {11.0 / 3, 3, 3, 17.0 / 3}},
+                                                    {9, {11.0 / 3, 3, 3, 17.0 / 3}}};
+  for (const auto& [k, distances] : expected)
+    for (const auto& found : {mean_neighbor_distances(line, k), mean_neighbor_distances(line, k, KdTree(line)),
+                              mean_neighbor_distances(line, k, Grid<double>(line, 1.0), 2)}) {
+      CAPTURE(k);
+      REQUIRE(found.size() == 4);
+      for (std::size_t i = 0; i < 4; ++i) CHECK(found[i] == Approx(distances[i]).margin(1e-12));
+    }
+}
+
+TEST_CASE("mean distances on a grid are its edge and its diagonals") {
+  cases::Points<double> grid;
+  for (int i = 0; i < 125; ++i) grid.emplace_back(i % 5, i / 5 % 5, i / 25);
+  for (const auto& found : {mean_neighbor_distances(grid, 6), mean_neighbor_distances(grid, 6, KdTree(grid))}) {
+    CHECK(found[62] == Approx(1.0));                            // the middle
+    CHECK(found[2 + 10] == Approx((5 + std::sqrt(2.0)) / 6));   // the middle of a face
+    CHECK(found[2] == Approx((4 + 2 * std::sqrt(2.0)) / 6));    // of an edge
+    CHECK(found[0] == Approx((3 + 3 * std::sqrt(2.0)) / 6));    // a corner, the first point
+    CHECK(found[124] == Approx((3 + 3 * std::sqrt(2.0)) / 6));  // the last one
+  }
+}
+
+TEST_CASE("mean distances of points alone, not finite, equal and far away") {
+  const float nan = std::nanf(""), far = 1e30f;
+  const auto both = [](const cases::Points<float>& cloud, int k, std::size_t i) {
+    const double one = mean_neighbor_distances(cloud, k)[i],
+                 other = mean_neighbor_distances(cloud, k, KdTree(cloud))[i];
+    CHECK((one == other || (std::isnan(one) && std::isnan(other))));
+    return one;
+  };
+  CHECK(both({{1, 2, 3}}, 5, 0) == 0.0);
+  CHECK(std::isnan(both({{nan, 0, 0}, {1, 2, 3}}, 5, 0)));
+  CHECK(both({{nan, 0, 0}, {1, 2, 3}}, 5, 1) == 0.0);
+  CHECK(both({{1, 2, 3}, {1, 2, 3}, {1, 2, 5}}, 1, 0) == 0.0);
+  CHECK(both({{1, 2, 3}, {1, 2, 3}, {1, 2, 5}}, 2, 1) == Approx(1.0));
+  CHECK(std::isinf(both({{0, 0, 0}, {far, 0, 0}}, 1, 0)));
+}
+
+TEST_CASE("what deviates too much is dropped, by hand") {
+  const double inf = std::numeric_limits<double>::infinity(), nan = std::nan("");
+  const auto kept = [](const std::vector<double>& distances, double alpha, bool sample) {
+    return detail::within_deviation(distances, {20, alpha, sample});
+  };
+  const std::vector<double> four{1, 5, 1, 1};  // mean 2, squares 12
+  CHECK(kept(four, 3.0 / std::sqrt(3.0) - 0.01, false) == Indices{0, 2, 3});
+  CHECK(kept(four, 3.0 / std::sqrt(3.0) + 0.01, false).size() == 4);
+  CHECK(kept(four, 1.49, true) == Indices{0, 2, 3});
+  CHECK(kept(four, 1.5, true).size() == 4);
+  CHECK(kept({inf, 1, 5, nan, 1, 1}, 1.5, true) == Indices{1, 2, 4, 5});
+  CHECK(kept({inf, 1, 5, nan, 1, 1}, 1.49, true) == Indices{1, 4, 5});
+  CHECK(kept({inf, nan, inf}, 0.0, false) == Indices{0, 2});
+  CHECK(kept({7}, 0.0, true) == Indices{0});
+  CHECK(kept({nan}, 1.0, false).empty());
 }

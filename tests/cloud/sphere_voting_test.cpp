@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cstdint>
 #include <limits>
 
 #include "catch.hpp"
@@ -62,4 +63,51 @@ TEST_CASE("points whose normals are not of unit length do not vote") {
   REQUIRE_FALSE(same.empty());
   REQUIRE(some.size() == same.size());
   for (std::size_t k = 0; k < some.size(); ++k) CHECK(some[k].center == same[k].center);
+}
+
+TEST_CASE("a grid of votes about no finite point is empty, and about one point holds all its votes") {
+  const float nan = std::numeric_limits<float>::quiet_NaN();
+  Cloud cloud;
+  cloud.points.assign(5, {nan, 0, 0});
+  cloud.normals.assign(5, Eigen::Vector3f::UnitZ());
+  const detail::VoteGrid none(cloud, 0.05, 0.004);
+  CHECK(none.before == detail::VoteGrid::Cell::Zero());
+  CHECK(none.origin == Eigen::Vector3d::Zero());
+  CHECK(none.pitch == 0.004);
+  CHECK(vote_for_centers(cloud, 0.02, 0.05, 1).empty());
+
+  cloud.points[3] = {1.0f, 2.0f, 3.0f};
+  const detail::VoteGrid one(cloud, 0.05, 0.004);
+  CHECK(one.origin == Eigen::Vector3d(1, 2, 3));
+  for (const std::uint64_t x : {0, 1, 7, 40})
+    for (const std::uint64_t y : {0, 2, 41})
+      for (const std::uint64_t z : {0, 3, 39})
+        CHECK(one.unpack(one.pack(x, y, z)) ==
+              detail::VoteGrid::Cell(std::int64_t(x), std::int64_t(y), std::int64_t(z)));
+  const auto centers = vote_for_centers(cloud, 0.05, 0.05, 1);  // of one radius: the point votes once
+  REQUIRE(centers.size() == 1);
+  CHECK(centers[0].votes == 1.0);
+  CHECK((centers[0].center - Eigen::Vector3d(1, 2, 2.95)).cwiseAbs().maxCoeff() <= 0.0051);  // half a cell of 10 mm
+}
+
+TEST_CASE("normals of about unit length vote, others do not") {
+  const auto admits = [](float length) { return detail::VoteGrid::admits<float>(length * Eigen::Vector3f::UnitX()); };
+  CHECK(admits(1.0f));
+  CHECK(admits(0.72f));
+  CHECK_FALSE(admits(0.70f));
+  CHECK(admits(1.41f));
+  CHECK_FALSE(admits(1.42f));
+}
+
+TEST_CASE("centers are thinned out to a distance, the first ones stay") {
+  std::vector<detail::VoteSum> sums;
+  for (const double x : {0.0, 0.9, 1.0, 1.9, 2.0}) sums.push_back({0, 9.0 - x, {x, 0, 0}});
+  const auto thin = detail::thin_out(sums, 1.0);
+  REQUIRE(thin.size() == 3);
+  CHECK(thin[0].votes == 9.0);
+  CHECK(thin[1].center.x() == 1.0);
+  CHECK(thin[2].center.x() == 2.0);
+  sums.clear();
+  for (int i = 0; i < 500; ++i) sums.push_back({0, 1.0, {2.0 * i, 0, 0}});
+  CHECK(detail::thin_out(sums, 1.0).size() == 400);
 }
