@@ -107,3 +107,16 @@ TEST_CASE("arm reach: what cannot be reached has no view, and an invalid mount i
   w.tool0_T_optical.linear() *= 2.0;
   CHECK_THROWS_AS(reach_of(w), ParameterError);
 }
+
+TEST_CASE("arm reach: the arm is the workcell's") {
+  Workcell w = cell();
+  w.arm = arm::ur_model("ur10e");
+  CHECK(mount_of(w).model.name == w.arm.name);
+  // The camera would stand some 0.8 m before the base: an arm of 1.3 m reaches that, one of 0.5 m does not.
+  ViewRequest far = request(0, 0, 0.4, 0.33, 0.5);
+  far.target.y() += 0.7;
+  w.keep_out.clear();
+  CHECK(reach_of(w)(far, w.start));
+  w.arm = arm::ur_model("ur3");
+  CHECK_FALSE(reach_of(w)(far, w.start));
+}
