@@ -21,8 +21,8 @@
 #include <string>
 #include <utility>
 
-#include "cloud_normals.hpp"
 #include "cloud/searches.hpp"
+#include "cloud_normals.hpp"
 #include "fruit_ripeness.hpp"
 
 namespace agrisee {
