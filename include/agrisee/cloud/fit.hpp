@@ -180,21 +180,26 @@ RowTerms<Real> row_terms(const Ellipsoid& body, Real x, Real y, Real z, const Re
   return out;
 }
 
-/// The row of a point.
-/// @param size the unknowns are scaled by this length (m)
+/// Tukey's biweight of a point with these terms; 0 if it is at the center, beyond the gate, or its normal disagrees.
 /// @param gate from this residual (m) on the weight is 0
 /// @param cos_max cosine of the largest angle between the point's normal and the body's
+inline double row_weight(double g, double steep, double along, double residual, double gate, double cos_max) {
+  const double t = residual / gate;
+  if (!(g > 1e-9) || along < cos_max * steep || !(std::abs(t) < 1.0)) return 0.0;
+  return (1.0 - t * t) * (1.0 - t * t);
+}
+
+/// The row of a point.
+/// @param size the unknowns are scaled by this length (m)
+/// @param gate, cos_max as of row_weight
 inline EllipsoidRow ellipsoid_row(const Ellipsoid& body, const Eigen::Vector3d& point, const Eigen::Vector3d& normal,
                                   double size, double gate, double cos_max) {
   const Eigen::Vector3d d = point - body.center;
   const RowTerms<double> terms = row_terms<double>(body, d.x(), d.y(), d.z(), normal.x(), normal.y(), normal.z(), size);
   EllipsoidRow row;
-  if (!(terms.g > 1e-9)) return row;
-  row.residual = terms.residual;
-  const double t = row.residual / gate;
-  if (terms.along < cos_max * terms.steep || !(std::abs(t) < 1.0)) return row;
-  row.weight = (1.0 - t * t) * (1.0 - t * t);
-  row.derivatives = Eigen::Map<const Vector9>(terms.derivatives.data());
+  if (terms.g > 1e-9) row.residual = terms.residual;
+  row.weight = row_weight(terms.g, terms.steep, terms.along, terms.residual, gate, cos_max);
+  if (row.weight > 0.0) row.derivatives = Eigen::Map<const Vector9>(terms.derivatives.data());
   return row;
 }
 
@@ -263,16 +268,15 @@ inline FitSums fit_sums(const std::vector<FitSample>& samples, const Ellipsoid& 
     }
     const RowTerms<Lanes> terms = row_terms<Lanes>(body, block.col(0), block.col(1), block.col(2), block.col(3),
                                                    block.col(4), block.col(5), size);
-    const Lanes t = terms.residual / gate;
-    const Lanes weight = (1.0 - t * t) * (1.0 - t * t);
     for (std::size_t k = 0; k < count; ++k) {
       const auto i = static_cast<Eigen::Index>(k);
-      if (!(terms.g[i] > 1e-9) || terms.along[i] < cos_max * terms.steep[i] || !(std::abs(t[i]) < 1.0)) continue;
+      const double weight = row_weight(terms.g[i], terms.steep[i], terms.along[i], terms.residual[i], gate, cos_max);
+      if (!(weight > 0.0)) continue;
       Eigen::Matrix<double, 10, 1> j;
       for (std::size_t a = 0; a < 9; ++a) j[static_cast<Eigen::Index>(a)] = terms.derivatives[a][i];
       j[9] = terms.residual[i];
-      products.noalias() += (weight[i] * j).lazyProduct(j.transpose());
-      weights += weight[i];
+      products.noalias() += (weight * j).lazyProduct(j.transpose());
+      weights += weight;
       if (std::abs(j[9]) < inlier) ++inliers, squares += j[9] * j[9];
     }
   }
