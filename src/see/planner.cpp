@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <agrisee/core/parallel.hpp>
 #include <agrisee/see/planner.hpp>
+#include <agrisee/see/selector.hpp>
 
 #include <algorithm>
 #include <utility>

@@ -15,13 +15,12 @@
 /// in `agrisee::agrisee`.
 #pragma once
 
-#include <agrisee/core/parallel.hpp>
 #include <agrisee/core/stop_reason.hpp>
 #include <agrisee/neighbors/grid.hpp>
 #include <agrisee/see/candidates.hpp>
 #include <agrisee/see/density.hpp>
-#include <agrisee/see/selector.hpp>
 #include <agrisee/see/view_controller.hpp>
+#include <agrisee/see/visibility_graph.hpp>
 
 namespace agrisee::see {
 
