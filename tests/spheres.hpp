@@ -59,6 +59,14 @@ void add_sphere(agrisee::Cloud& cloud, const Sphere& s, double spacing, Keep&& k
   }
 }
 
+/// A point in a direction from the center of a sphere, at some radii from it, its normal turned away by an angle (rad).
+inline void add_point(agrisee::Cloud& cloud, const Sphere& s, const Eigen::Vector3d& direction, double radii,
+                      double turned = 0.0) {
+  const Eigen::Vector3d d = direction.normalized();
+  cloud.points.push_back((s.center + s.radius * radii * d).cast<float>());
+  cloud.normals.push_back((std::cos(turned) * d + std::sin(turned) * d.unitOrthogonal()).cast<float>());
+}
+
 inline bool everywhere(const Eigen::Vector3d&) { return true; }
 
 }  // namespace test

@@ -6,6 +6,7 @@
 #include <random>
 
 #include "catch.hpp"
+#include "spheres.hpp"
 
 using namespace agrisee;
 using namespace agrisee::detail;
@@ -215,11 +216,8 @@ TEST_CASE("where the sensor's errors are larger than the tolerance they widen it
 
 namespace {
 
-/// Adds a point in a direction from the origin at some radii from it, its normal turned away by an angle.
 void put(Cloud& cloud, const Eigen::Vector3d& direction, double radii, double turned = 0.0) {
-  const Eigen::Vector3d d = direction.normalized();
-  cloud.points.push_back((kRadius * radii * d).cast<float>());
-  cloud.normals.push_back((std::cos(turned) * d + std::sin(turned) * d.unitOrthogonal()).cast<float>());
+  test::add_point(cloud, {Eigen::Vector3d::Zero(), kRadius}, direction, radii, turned);
 }
 
 /// A point in the middle of each of the bins of directions [first, last).

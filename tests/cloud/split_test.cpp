@@ -20,10 +20,9 @@ FoundBody ball(const Eigen::Vector3d& center = kCenter, double radius = kRadius)
   return body;
 }
 
-/// A point at some radii from the ball's center, its normal turned away by an angle.
-void put(Cloud& cloud, double radii, double turned = 0.0, const Eigen::Vector3d& d = -Eigen::Vector3d::UnitY()) {
-  cloud.points.push_back((kCenter + kRadius * radii * d).cast<float>());
-  cloud.normals.push_back((std::cos(turned) * d + std::sin(turned) * d.unitOrthogonal()).cast<float>());
+/// A point before the ball, at some radii from its center, its normal turned away by an angle.
+void put(Cloud& cloud, double radii, double turned = 0.0) {
+  test::add_point(cloud, {kCenter, kRadius}, -Eigen::Vector3d::UnitY(), radii, turned);
 }
 
 /// The front of the ball, with two points in each direction: one outside it and one as far inside.
