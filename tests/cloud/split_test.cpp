@@ -143,7 +143,8 @@ TEST_CASE("points in dimples and on shoulders of a body become its own") {
     for (int i = 0; i < 9; ++i) put(cloud, 1.0);  // region 1 is the body's
     Labels labels(10, 1), regions(10, 1);
     labels[0] = before, regions[0] = region;
-    detail::extend_labels(labels, cloud, {ball()}, regions, 1, BodyParameters());
+    const auto far = ball(kCenter + Eigen::Vector3d(0, 0, 1));
+    detail::extend_labels(labels, cloud, {ball(), far}, regions, 1, BodyParameters());
     CHECK(std::accumulate(labels.begin() + 1, labels.end(), 0) == 9);
     return labels[0];
   };
