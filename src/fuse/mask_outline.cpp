@@ -217,7 +217,8 @@ class ConeSearch {
     return static_cast<double>(count) * step_ * step_ * pixel_ * pixel_ / (kPi * cone.sine * cone.sine);
   }
 
-  /// The best cone through three places of the border that has a sphere of an expected size.
+  /// The best cone through three places of the border that has a sphere of an expected size. Empty if of each such cone
+  /// more is seen through than borders the mask, where a part seen through counts twice.
   /// @param worst, other as of border_score; with another cone the places are outside of that
   std::optional<Cone> best(const BodyParameters& bodies, double worst = kWorst, const Cone* other = nullptr) const {
     constexpr std::size_t kMost = 30;
@@ -236,8 +237,10 @@ class ConeSearch {
           if (!cone || !bodies.plausible(cone->sphere(Eigen::Vector3d::Zero(), near_).radius)) continue;
           double score = border_score(*cone, worst, other);
           if (best && !(score > most)) continue;
-          score -= kThrough * seen_through(*cone);
-          if (!best || score > most) best = cone, most = score;
+          const double through = kThrough * seen_through(*cone);
+          score -= through;
+          if (best && !(score > most)) continue;
+          if (border_score(*cone, 0.0, other) > through) best = cone, most = score;
         }
     return best;
   }

@@ -123,6 +123,21 @@ TEST_CASE("a disc is guessed as the ball that fills its outline, with its front 
   }
 }
 
+TEST_CASE("there is no guess where each ball of an expected size contradicts the mask or what is seen beside it") {
+  const auto far_wall = [](int, int) { return true; };
+  BodyParameters large;  // the disc is one of 2.1 cm
+  large.radius_min = 0.06, large.radius_max = 0.1;
+  CHECK(Scene().put(3.0, far_wall).mask(disc(90, 50, 12.5)).guesses(large).empty());
+  CHECK(Scene().put(3.0, far_wall).mask(disc(90, 50, 42.5)).guesses(large).size() == 1);
+
+  // One sees past a half disc where the other half of the ball would be.
+  BodyParameters alike;  // as the whole disc, of 3.5 cm
+  alike.radius_min = 0.031, alike.radius_max = 0.04;
+  const auto half = [](int u, int v) { return u <= 80 && disc(80, 60, 20.5)(u, v); };
+  CHECK(Scene().put(3.0, far_wall).mask(half).guesses(alike).empty());
+  CHECK(Scene().put(0.9, [](int u, int) { return u > 80; }).mask(half).guesses(alike).size() == 1);  // a leaf is there
+}
+
 TEST_CASE("the outline has a sight line between each pixel of the mask and each beside it, in order") {
   const Scene scene = Scene().mask(rectangle);
   const MaskGuess guess = scene.guess();
