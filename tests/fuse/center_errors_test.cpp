@@ -95,8 +95,11 @@ std::vector<RegisteredView> registered(const std::vector<sensor::SurfaceImage>& 
   return views;
 }
 
-/// What is due to uneven skin: a third of all points measure along an axis, and all count as `independent`.
-double uneven(int independent = FitParameters().independent) { return 3.0 * 0.0002 * 0.0002 / independent; }
+/// What is due to uneven skin, and to the noise (m) that was smoothed: a third of all points measure along an axis, and
+/// all count as `independent`.
+double uneven(int independent = FitParameters().independent, double noise = 0.0) {
+  return 3.0 * (0.0002 * 0.0002 + 0.01 * noise * noise) / independent;
+}
 
 void check_variance(const Eigen::Matrix3d& covariance, double variance) {
   for (int i = 0; i < 3; ++i)
@@ -222,6 +225,26 @@ TEST_CASE("what registration moved counts as disagreement and as an error of its
   const auto two = six_ends({kSmall, kOther}, {0.0, 0.0});
   for (const auto& covariance : center_errors({Ellipsoid(kSmall), Ellipsoid(kOther)}, registered(two, kOff), {}))
     check_variance(covariance, 1.2 * kOff * kOff + kOff * kOff / 18.0 + uneven());
+}
+
+TEST_CASE("errors of poses, which show across the sight lines, are no errors that the points of a view share") {
+  const auto images = six_ends({kSmall}, {kOff});
+  for (const double aside : {0.5 * kOff, 4.0 * kOff}) {
+    std::vector<RegisteredView> views = registered(images);
+    for (RegisteredView& view : views) {
+      const Eigen::Vector3d normal = view.image->normals[0].cast<double>();
+      view.reported.pretranslate(Eigen::Vector3d(aside * Eigen::Vector3d(normal.z(), normal.x(), normal.y())));
+    }
+    // Six shifts of this length have the variance 6/5 of its square about 0, on two axes.
+    const double shared = std::max(0.0, 1.2 * kOff * kOff - 0.6 * aside * aside);
+    check_variance(center_errors({Ellipsoid(kSmall)}, views, {})[0], shared + aside * aside / 18.0 + uneven());
+  }
+}
+
+TEST_CASE("smoothing more noise makes a center less certain") {
+  auto images = six_ends({kSmall}, {0.0});
+  for (std::size_t v = 0; v < images.size(); ++v) images[v].noise = v % 2 ? 0.001 : 0.003;
+  check_variance(center_errors({Ellipsoid(kSmall)}, registered(images), {})[0], uneven(150, 0.002));
 }
 
 TEST_CASE("ends that are off in one view are errors of patches") {

@@ -3,13 +3,15 @@
 /// The uncertainty of fitted centers due to errors of the views, estimated from how far the views of a scan disagree.
 ///
 /// Errors of neighboring pixels are correlated, so the mean of a view's points on a body is off, however many points
-/// there are. The mean residual of each view on each body, before registration, measures this shared error: the mean of
-/// the squares is its variance. It is propagated through the least-squares fit view by view, as for clustered errors
-/// (Liang & Zeger, Biometrika 1986). An error that is the same in all views causes no disagreement; half of the
-/// variance of an L515's correlated noise is of this kind, so the variance is doubled. Errors that only points near
-/// each other share are propagated in the same way, patch by patch of 15 degrees; their variance is that of the mean
-/// residuals of the patches about that of their view. The scatter of the registration's shifts, divided by the number
-/// of views, is added. Metres, world.
+/// there are. The mean residual of each view on each body, before registration, measures this shared error together
+/// with the error of the view's pose. Errors of poses also show as shifts across the sight lines, which give their
+/// variance; it is subtracted from the mean square of the residuals. What is left is propagated through the
+/// least-squares fit view by view, as for clustered errors (Liang & Zeger, Biometrika 1986). An error that is the same
+/// in all views causes no disagreement; half of the variance of an L515's correlated noise is of this kind, so the
+/// variance is doubled. Errors that only points near each other share are propagated in the same way, patch by patch of
+/// 15 degrees; their variance is that of the mean residuals of the patches about that of their view. Two terms are
+/// added: the scatter of the registration's shifts, divided by the number of views, and what is the same in all views:
+/// uneven skin, and steep surfaces that smoothing flattens, more so the more noise there is. Metres, world.
 #pragma once
 
 #include <agrisee/cloud/fit.hpp>
