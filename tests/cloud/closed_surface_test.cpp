@@ -237,6 +237,29 @@ TEST_CASE("evidence for an ellipsoid: another size costs little, an uneven surfa
   CHECK(even - evidence([](const Eigen::Vector3d& d) { return 0.03 * (1.0 + 0.03 * d.x() * d.y()); }) > 10.0);
 }
 
+TEST_CASE("evidence does not depend on where the axis points, nor on points that are not the fruit's own") {
+  const ClosedSurfaceParameters parameters;
+  const detail::SurfaceModel model(0, parameters);
+  const Ellipsoid body(Sphere{{0.1, 0.5, 0.2}, 0.03});
+  const auto evidence = [&](const Eigen::Vector3d& axis, int others) {
+    constexpr int kPoints = 2000;
+    detail::SurfaceFit::Samples samples;
+    for (int i = 0; i < kPoints + others; ++i) {
+      const Eigen::Vector3d d = detail::spiral_direction(i % kPoints, kPoints);
+      const double along = d.dot(axis);
+      samples.points.push_back(body.center + (i < kPoints ? 0.03 * (1.0 + 0.02 * along * along) : 0.06) * d);
+      samples.normals.push_back(d);
+    }
+    samples.own = kPoints;
+    const detail::SurfaceFit fit(samples, {body, axis}, model, parameters);
+    return detail::ellipsoid_evidence(body, fit, fit.radial_bins(fit.weights()), 0.01, parameters.uneven);
+  };
+  const double expected = evidence(Eigen::Vector3d::UnitZ(), 0);
+  for (const Eigen::Vector3d& axis : {Eigen::Vector3d(1, 0, 0), Eigen::Vector3d(0, -1, 0), Eigen::Vector3d(1, 2, 3)})
+    CHECK(evidence(axis.normalized(), 0) == Approx(expected).margin(2.0));
+  CHECK(evidence(Eigen::Vector3d::UnitZ(), 50) == expected);
+}
+
 TEST_CASE("a closed surface: the covariance of positions inside is that of the body") {
   const auto surface = close(seen(egg, 2.0, 0.0));
   REQUIRE(surface);

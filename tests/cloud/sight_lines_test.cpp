@@ -61,6 +61,23 @@ TEST_CASE("sight lines pass what is before a wall, end at it, and say nothing of
   CHECK(lines.at({0.0, -0.4, 0.0}, 0.005) == Sight::unknown);
 }
 
+TEST_CASE("what is nearer in the next direction hides a place, on all sides alike") {
+  Cloud cloud = wall();
+  cloud.points.push_back(Eigen::Vector3f(0.0f, 0.3f, 0.0f));
+  const SightLines lines(cloud, Eigen::Vector3d::Zero());
+  const auto hidden = [&](const Eigen::Vector3d& step) {  // how far from the middle, in steps of 0.1 mm
+    int steps = 0;
+    while (lines.at(Eigen::Vector3d(0.0, 0.45, 0.0) + 1e-4 * steps * step, 0.005) == Sight::unknown) ++steps;
+    REQUIRE(lines.at(Eigen::Vector3d(0.0, 0.45, 0.0) + 1e-4 * steps * step, 0.005) == Sight::through);
+    return steps;
+  };
+  // Three cells in each direction are hidden: that of the point and those beside it.
+  const int across = hidden(Eigen::Vector3d::UnitX()) + hidden(-Eigen::Vector3d::UnitX());
+  const int up = hidden(Eigen::Vector3d::UnitZ()) + hidden(-Eigen::Vector3d::UnitZ());
+  CHECK(across == Approx(up).margin(2));
+  CHECK(across > 30);
+}
+
 TEST_CASE("a body before a wall was seen through on the side of the sensor, one in the wall was not") {
   const std::vector<SightLines> lines{SightLines(wall(), Eigen::Vector3d::Zero())};
   const double cap = 0.5 * (1.0 - std::cos(deg(60)));  // share of a sphere whose normals are within 60 degrees

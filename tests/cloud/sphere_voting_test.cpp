@@ -90,6 +90,20 @@ TEST_CASE("a grid of votes about no finite point is empty, and about one point h
   CHECK((centers[0].center - Eigen::Vector3d(1, 2, 2.95)).cwiseAbs().maxCoeff() <= 0.0051);  // half a cell of 10 mm
 }
 
+TEST_CASE("a point votes at each radius, from the smallest to the largest, a cell apart") {
+  Cloud cloud;
+  cloud.points.assign(1, {1.0f, 2.0f, 3.0f});
+  cloud.normals.assign(1, Eigen::Vector3f::UnitZ());
+  const auto any = [](auto) { return true; };
+  const auto votes = [&](double radius_min, double radius_max) {
+    const detail::VoteGrid grid(cloud, radius_max, 0.005);
+    return detail::cast_votes(cloud, grid, radius_min, radius_max, any, any).size();
+  };
+  CHECK(votes(0.02, 0.05) == 7);
+  CHECK(votes(0.02, 0.025) == 2);
+  CHECK(votes(0.02, 0.02) == 1);
+}
+
 TEST_CASE("normals of about unit length vote, others do not") {
   const auto admits = [](float length) { return detail::VoteGrid::admits<float>(length * Eigen::Vector3f::UnitX()); };
   CHECK(admits(1.0f));

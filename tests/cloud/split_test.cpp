@@ -74,6 +74,33 @@ TEST_CASE("the last fit moves a body to its points, those of masks stay") {
   CHECK(large.found[0].fit.body.mean_radius() == Approx(0.0287));
 }
 
+TEST_CASE("after the last fit the points are given out anew") {
+  Cloud cloud = rough_front(0.0);
+  put(cloud, 2.0);  // not near the ball
+  Split out;
+  out.labels.assign(cloud.size(), 1);
+  out.found = {ball()};
+  detail::refit(cloud, BodyParameters(), out);
+  CHECK(out.labels.back() == 0);
+  CHECK(std::accumulate(out.labels.begin(), out.labels.end(), 0) + 1 == static_cast<int>(cloud.size()));
+}
+
+TEST_CASE("a split gives a fruit the points of a dimple, and counts balls that are too large") {
+  Cloud cloud = rough_front(0.0);
+  const std::size_t whole = cloud.size();
+  for (int i = 0; i < 5; ++i) put(cloud, 0.75 + 0.01 * i);
+  const Split found = split(cloud);
+  REQUIRE(found.found.size() == 1);
+  for (std::size_t i = whole; i < cloud.size(); ++i) CHECK(found.labels[i] == 1);
+  CHECK(found.bodies.too_large == 0);
+
+  Cloud large;
+  test::add_sphere(large, {kCenter, 0.2}, 0.01, test::everywhere);
+  const Split none = split(large);
+  CHECK(none.found.empty());
+  CHECK(none.bodies.too_large == 1);
+}
+
 TEST_CASE("in a single view points count as fewer, and the size of the other fruit as more") {
   const Cloud cloud = rough_front(0.0);
   const auto variance = [&](bool sized, int independent) {

@@ -71,3 +71,13 @@ TEST_CASE("the less is seen, the less a volume is known") {
   }
   CHECK(relative_volume_error(Cloud{}, {}, Ellipsoid(Sphere{{0, 0, 0}, 0.035})) == 1.0);
 }
+
+TEST_CASE("a volume without points that agree with its body is not known at all, parameters are checked") {
+  Cloud cloud;
+  test::add_sphere(cloud, {{0, 0, 0}, 0.035}, 0.01, test::everywhere);
+  CHECK(relative_volume_error(cloud, all_of(cloud), Ellipsoid(Sphere{{0.2, 0, 0}, 0.035})) == 1.0);
+  FitParameters parameters;
+  parameters.noise = 0.0;
+  CHECK_THROWS_AS(relative_volume_error(cloud, all_of(cloud), Ellipsoid(Sphere{{0, 0, 0}, 0.035}), parameters),
+                  ParameterError);
+}
