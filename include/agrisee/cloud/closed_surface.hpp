@@ -17,6 +17,7 @@
 /// Metres, any frame. Cost: 5 to 20 ms; points are thinned, so it hardly grows with them.
 #pragma once
 
+#include <agrisee/cloud/fit.hpp>
 #include <agrisee/cloud/seen_through.hpp>
 #include <agrisee/cloud/surface_fit.hpp>
 #include <agrisee/core/cancellation.hpp>

@@ -5,7 +5,7 @@
 /// goes on beyond it has normals along the border. Metres, the cloud's frame. Cost: linear in the points.
 #pragma once
 
-#include <agrisee/cloud/fit.hpp>
+#include <agrisee/cloud/body_shape.hpp>
 #include <agrisee/core/cloud.hpp>
 #include <agrisee/geometry/aabb.hpp>
 

@@ -2,13 +2,13 @@
 /// @file
 /// Fits spheres and ellipsoids to points with normals, robustly.
 ///
-/// An ellipsoid is { p : |A (p - c)| = 1 } with A symmetric and positive definite. The distance of a point p from it is
-/// taken to first order at the point's radial projection: (g - 1) g / |A A (p - c)| with g = |A (p - c)| (cf. Taubin,
-/// PAMI 1991). The fit is by Gauss-Newton with Tukey's biweight. A prior pulls the shape towards a sphere as far as the
-/// points leave it open: of a fruit seen only as a crescent the fit gives a sphere, of one seen all around its own
-/// shape. Metres. Cost: linear in the points per iteration.
+/// The fit is by Gauss-Newton with Tukey's biweight. A prior pulls the shape towards a sphere as far as the points
+/// leave it open: of a fruit seen only as a crescent the fit gives a sphere, of one seen all around its own shape.
+/// Metres. Cost: linear in the points per iteration.
 #pragma once
 
+#include <agrisee/cloud/body_shape.hpp>
+#include <agrisee/cloud/ellipsoid_rows.hpp>
 #include <agrisee/cloud/parameters.hpp>
 #include <agrisee/core/cancellation.hpp>
 #include <agrisee/core/cloud.hpp>
@@ -23,62 +23,6 @@
 #include <optional>
 
 namespace agrisee {
-
-/// A sphere (m).
-struct Sphere {
-  Eigen::Vector3d center = Eigen::Vector3d::Zero();  ///< m
-  double radius = 0.0;                               ///< m
-};
-
-/// An ellipsoid in the form that the fit works with.
-struct Ellipsoid {
-  Eigen::Vector3d center = Eigen::Vector3d::Zero();  ///< m
-  Eigen::Matrix3d A = Eigen::Matrix3d::Identity();   ///< symmetric; its eigenvalues are the inverse semi-axes (1/m)
-
-  Ellipsoid() = default;
-  /// A sphere as an ellipsoid.
-  explicit Ellipsoid(const Sphere& s) : center(s.center), A(Eigen::Matrix3d::Identity() / s.radius) {}
-  /// The product A v, written out because Eigen's general product is not inlined.
-  Eigen::Vector3d times(const Eigen::Vector3d& v) const {
-    return {A(0, 0) * v.x() + A(0, 1) * v.y() + A(0, 2) * v.z(), A(1, 0) * v.x() + A(1, 1) * v.y() + A(1, 2) * v.z(),
-            A(2, 0) * v.x() + A(2, 1) * v.y() + A(2, 2) * v.z()};
-  }
-  /// Where a point is relative to the surface.
-  struct Foot {
-    double distance;         ///< signed distance of the point (m), to first order, negative inside
-    Eigen::Vector3d normal;  ///< unit, outward, at the point's foot
-  };
-  /// The foot of p (m).
-  Foot foot(const Eigen::Vector3d& p) const {
-    const Eigen::Vector3d a = times(p - center), n = times(a);
-    const double g = a.norm(), slope = n.norm();
-    if (!(slope > 0.0)) return {-mean_radius(), Eigen::Vector3d::UnitZ()};
-    return {(g - 1.0) * g / slope, n / slope};
-  }
-  /// Signed distance of p from the surface (m); see foot().
-  double distance(const Eigen::Vector3d& p) const { return foot(p).distance; }
-  /// Unit normal at the foot of p, outward.
-  Eigen::Vector3d normal(const Eigen::Vector3d& p) const { return foot(p).normal; }
-  /// Harmonic mean of the semi-axes (m).
-  double mean_radius() const { return 3.0 / A.trace(); }
-  /// Mean of the semi-axes (m), at least mean_radius().
-  double mean_semi_axis() const { return A.inverse().trace() / 3.0; }
-  /// Point of the surface in direction `d` (unit) from the center.
-  Eigen::Vector3d surface(const Eigen::Vector3d& d) const { return center + d / (A * d).norm(); }
-};
-
-/// Semi-axes (m, largest first) and their directions (columns, right-handed).
-inline std::pair<Eigen::Vector3d, Eigen::Matrix3d> semi_axes(const Ellipsoid& e) {
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(e.A);  // ascending: smallest inverse first
-  Eigen::Matrix3d axes = solver.eigenvectors();
-  for (int i = 0; i < 2; ++i) {  // a rule for the signs, so that equal bodies print alike
-    Eigen::Index largest;
-    axes.col(i).cwiseAbs().maxCoeff(&largest);
-    if (axes(largest, i) < 0.0) axes.col(i) *= -1.0;
-  }
-  axes.col(2) = axes.col(0).cross(axes.col(1));
-  return {solver.eigenvalues().cwiseInverse(), axes};
-}
 
 /// What is known of a body's size before its points are looked at: the logarithm of its mean radius is normally
 /// distributed.
@@ -124,84 +68,6 @@ std::optional<Sphere> sphere_from_normals(const PointCloud<S>& cloud, const Indi
 }
 
 namespace detail {
-
-using Vector9 = Eigen::Matrix<double, 9, 1>;
-using Matrix9 = Eigen::Matrix<double, 9, 9>;
-
-/// One row of the least squares: a point's residual from an ellipsoid, with its derivatives. Derivatives are taken at
-/// the point's radial projection, not at the point: there they would be correlated with the point's own error, and
-/// crescents would come out millimetres too large or too small.
-struct EllipsoidRow {
-  double residual = 0.0;  ///< distance of the point (m)
-  double weight = 0.0;    ///< Tukey's biweight; 0: the point is beyond the gate, or its normal disagrees
-  Vector9 derivatives;    ///< of the residual by the center / size and by size * A as (xx, yy, zz, xy, xz, yz)
-};
-
-/// What the rows of points consist of. A `Real` is a number, or an Eigen array with one for each of several points:
-/// then the compiler can use vector instructions.
-template <typename Real>
-struct RowTerms {
-  Real g;                           ///< |A (p - c)|
-  Real steep;                       ///< length of the gradient of g at the radial projection (1/m)
-  Real along;                       ///< the gradient times the point's normal (1/m)
-  Real residual;                    ///< distance of the point (m)
-  std::array<Real, 9> derivatives;  ///< as in EllipsoidRow
-};
-
-/// The terms of points (x, y, z), relative to the body's center (m), with normals (nx, ny, nz).
-/// @param size the unknowns are scaled by this length (m)
-template <typename Real>
-RowTerms<Real> row_terms(const Ellipsoid& body, Real x, Real y, Real z, const Real& nx, const Real& ny, const Real& nz,
-                         double size) {
-  using std::sqrt;
-  const Eigen::Matrix3d& A = body.A;
-  const auto row_of_A = [&A](int i, const Real& u, const Real& v, const Real& w) -> Real {
-    return A(i, 0) * u + A(i, 1) * v + A(i, 2) * w;
-  };
-  RowTerms<Real> out;
-  Real ax = row_of_A(0, x, y, z), ay = row_of_A(1, x, y, z), az = row_of_A(2, x, y, z);
-  out.g = sqrt(ax * ax + ay * ay + az * az);
-  x /= out.g, y /= out.g, z /= out.g;
-  ax = row_of_A(0, x, y, z), ay = row_of_A(1, x, y, z), az = row_of_A(2, x, y, z);
-  const Real sx = row_of_A(0, ax, ay, az), sy = row_of_A(1, ax, ay, az), sz = row_of_A(2, ax, ay, az);
-  out.steep = sqrt(sx * sx + sy * sy + sz * sz);
-  out.along = sx * nx + sy * ny + sz * nz;
-  out.residual = (out.g - 1.0) / out.steep;
-  const Real scale = 1.0 / (out.steep * size), inward = -size / out.steep;
-  out.derivatives = {Real(sx * inward),
-                     Real(sy * inward),
-                     Real(sz * inward),
-                     Real(ax * x * scale),
-                     Real(ay * y * scale),
-                     Real(az * z * scale),
-                     Real((ax * y + ay * x) * scale),
-                     Real((ax * z + az * x) * scale),
-                     Real((ay * z + az * y) * scale)};
-  return out;
-}
-
-/// Tukey's biweight of a point with these terms; 0 if it is at the center, beyond the gate, or its normal disagrees.
-/// @param gate from this residual (m) on the weight is 0
-/// @param cos_max cosine of the largest angle between the point's normal and the body's
-inline double row_weight(double g, double steep, double along, double residual, double gate, double cos_max) {
-  const double t = residual / gate;
-  if (!(g > 1e-9) || along < cos_max * steep || !(std::abs(t) < 1.0)) return 0.0;
-  return (1.0 - t * t) * (1.0 - t * t);
-}
-
-/// The row of a point.
-/// @param size the unknowns are scaled by this length (m)
-/// @param gate, cos_max as of row_weight
-inline EllipsoidRow ellipsoid_row(const Ellipsoid& body, const Eigen::Vector3d& point, const Eigen::Vector3d& normal,
-                                  double size, double gate, double cos_max) {
-  const Eigen::Vector3d d = point - body.center;
-  const RowTerms<double> terms = row_terms<double>(body, d.x(), d.y(), d.z(), normal.x(), normal.y(), normal.z(), size);
-  EllipsoidRow row;
-  if (terms.g > 1e-9) row.residual = terms.residual;
-  row.weight = row_weight(terms.g, terms.steep, terms.along, terms.residual, gate, cos_max);
-  if (row.weight > 0.0) row.derivatives = Eigen::Map<const Vector9>(terms.derivatives.data());
-  return row;
-}
 
 /// Information matrix of the prior that size * A is close to a multiple of the identity (its deviatoric part is small).
 inline Matrix9 shape_information(const Ellipsoid& body, double size, double shape_prior) {

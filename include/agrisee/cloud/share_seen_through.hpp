@@ -3,7 +3,7 @@
 /// The share of a body's surface that sight lines pass through, for any source of sight lines.
 #pragma once
 
-#include <agrisee/cloud/fit.hpp>
+#include <agrisee/cloud/body_shape.hpp>
 #include <agrisee/cloud/seen_through.hpp>
 #include <agrisee/geometry/direction_bins.hpp>
 

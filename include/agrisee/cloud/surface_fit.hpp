@@ -4,7 +4,7 @@
 /// closed_surface.hpp says how the surface is described. Metres, any frame.
 #pragma once
 
-#include <agrisee/cloud/fit.hpp>
+#include <agrisee/cloud/body_shape.hpp>
 #include <agrisee/cloud/linear_model.hpp>
 #include <agrisee/cloud/surface_model.hpp>
 #include <agrisee/core/median.hpp>

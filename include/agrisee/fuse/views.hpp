@@ -6,7 +6,8 @@
 /// World frame, metres.
 #pragma once
 
-#include <agrisee/cloud/fit.hpp>
+#include <agrisee/cloud/body_shape.hpp>
+#include <agrisee/cloud/parameters.hpp>
 #include <agrisee/core/cloud.hpp>
 #include <agrisee/core/pose.hpp>
 #include <agrisee/geometry/aabb.hpp>
