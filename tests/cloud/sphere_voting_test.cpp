@@ -104,6 +104,27 @@ TEST_CASE("a point votes at each radius, from the smallest to the largest, a cel
   CHECK(votes(0.02, 0.02) == 1);
 }
 
+TEST_CASE("cells are found among the places, not before, between or after them") {
+  Cloud cloud;
+  test::add_sphere(cloud, {{0.2, -0.1, 0.4}, 0.03}, 0.003, test::everywhere);
+  const detail::VoteGrid grid(cloud, 0.05, 0.004);
+  const std::array<std::uint64_t, 4> added = {grid.pack(3, 2, 2), grid.pack(5, 2, 2), grid.pack(2, 4, 2),
+                                              grid.pack(2, 2, 9)};
+  detail::VotedPlaces places(grid);
+  for (const std::uint64_t cell : added) places.add(cell);
+  CHECK_FALSE(places.has(grid.pack(2, 2, 2)));
+  for (const std::uint64_t cell : added) {
+    CHECK(places.has(cell));
+    CHECK(places.has(cell));  // the same once more
+    CHECK(places.may_touch(cell));
+    CHECK(places.may_touch(cell - grid.pack(1, 1, 1)));
+    CHECK(places.may_touch(cell + grid.pack(1, 1, 1)));
+    CHECK_FALSE(places.has(cell + 1));
+  }
+  CHECK_FALSE(places.has(grid.pack(9, 9, 9)));
+  CHECK_FALSE(places.has(grid.pack(10, 9, 9)));
+}
+
 TEST_CASE("normals of about unit length vote, others do not") {
   const auto admits = [](float length) { return detail::VoteGrid::admits<float>(length * Eigen::Vector3f::UnitX()); };
   CHECK(admits(1.0f));
