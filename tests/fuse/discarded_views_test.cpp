@@ -78,6 +78,32 @@ TEST_CASE("when two views show that the first was wrong the map starts again") {
   CHECK(discarded(map) == std::vector<bool>{true, false, false, false, true});
 }
 
+TEST_CASE("when the map starts again the first views no longer speak against its points") {
+  FusionParameters parameters;
+  parameters.free_space.margin = 0.25;
+  parameters.free_space.min_refuting = 1;
+  FusedViews map(kVolume, parameters, 1);
+  // Small views of a wall, and points 1 m before the camera: the first view looks through its own.
+  const auto take = [&](float depth, int column, bool consistent) {
+    Observation out;
+    out.surface = wall(depth);
+    out.surface.points_in = 25;
+    out.surface.points.assign(25, at(out.surface, column, 2, 1.0).cast<float>());
+    out.surface.normals.assign(25, -Vector3f::UnitY());
+    out.surface.sigma.assign(25, 0.001f);
+    out.consistent = consistent;
+    return map.take(out, small_pose());
+  };
+  take(2.0f, 3, true);
+  CHECK(map.all().size() == 1);
+  CHECK(map.cloud().empty());
+  take(1.0f, 3, false);
+  CHECK(take(1.0f, 4, false).kept);  // two against one
+  CHECK(discarded(map) == std::vector<bool>{true, false, false});
+  CHECK(map.all().size() == 2);
+  CHECK((map.cloud().points == map.all().points));
+}
+
 TEST_CASE("the map starts again only when more views agree than it is made of") {
   FusedViews map(kVolume, fine(), 1);
   see(map, 0);

@@ -261,6 +261,27 @@ TEST_CASE("how much of a known surface a view measures again") {
   CHECK(returned(view, known, parameters).seen + returned(view, known, parameters).lost == 0);
 }
 
+TEST_CASE("a view measures a point again up to exactly the margin before it and behind it") {
+  SurfaceImage view = wall(2.0f);
+  const auto measured = [&](double z) {
+    SurfaceImage known;
+    known.points = {at(view, 3, 2, z).cast<float>()};
+    known.normals = {-Eigen::Vector3f::UnitY()};
+    const Returned all = returned(view, known, quarter());
+    CHECK(all.lost == 0);
+    return all.seen == 1;
+  };
+  for (const double sign : {-1.0, 1.0}) {
+    CHECK(measured(2.0 + sign * 0.25));
+    CHECK_FALSE(measured(2.0 + sign * 0.2501));
+  }
+  view.noise = 0.25;  // a margin of 0.75
+  for (const double sign : {-1.0, 1.0}) {
+    CHECK(measured(2.0 + sign * 0.75));
+    CHECK_FALSE(measured(2.0 + sign * 0.7501));
+  }
+}
+
 TEST_CASE("a share of returns needs fifty points") {
   CHECK(Returned{0, 49}.share() == 1.0);
   CHECK(Returned{10, 40}.share() == 0.2);

@@ -193,6 +193,23 @@ TEST_CASE("the front is at most 400 points at the depth of most pixels, behind a
   CHECK((guess.sphere.center - guess.outline.sensor).norm() - guess.sphere.radius == Approx(1.0 + 0.00004 * 84));
 }
 
+TEST_CASE("the nearest and the farthest pixel at the depth of most belong to the front") {
+  Scene scene = Scene().mask(disc(80, 60, 10.5));
+  std::vector<Eigen::Vector3d> expected;
+  for (int v = 0; v < kHeight; ++v)
+    for (int u = 0; u < kWidth; ++u) {
+      const std::size_t p = scene.intrinsics.index(u, v);
+      if (!scene.instances[p]) continue;
+      scene.distance[p] = 1.0 + 0.0001 * double(expected.size());  // each its own, 35 mm in all
+      expected.push_back(scene.pose.translation() + scene.distance[p] * scene.direction(u, v));
+    }
+  REQUIRE(expected.size() < 400);
+  const std::vector<Eigen::Vector3d> front = scene.guess().outline.front;
+  REQUIRE(front.size() == expected.size());
+  CHECK((front.front() - expected.front()).norm() < 1e-6);
+  CHECK((front.back() - expected.back()).norm() < 1e-6);
+}
+
 TEST_CASE("the front is thinned from 400 points on") {
   const auto front = [](int columns, int extra) {
     return Scene()

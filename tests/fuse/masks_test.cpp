@@ -427,6 +427,38 @@ TEST_CASE("a body explains a mask if at least half of its pixels show it") {
   }
 }
 
+TEST_CASE("a body explains a mask if at least half of the pixels that have a depth show it") {
+  BodyParameters bodies = apples();
+  bodies.radius_min = 0.004;
+  const auto explained = [&](int on, int off) {  // of 52 pixels so many show the ball or the wall
+    sensor::DepthFrame frame = *view_of({kLeft}).frame;
+    for (int v = 0; v < 300; ++v)
+      for (int u = 0; u < 400; ++u) {
+        const std::size_t p = frame.intrinsics.index(u, v);
+        frame.instances[p] = std::hypot(u - 139.5, v - 161.5) < 4.0;
+        if (!frame.instances[p] || --on >= 0) continue;
+        frame.depth[p] = --off >= 0 ? 2.0f : 0.0f;
+      }
+    const auto evidence = fuse::mask_evidence({{frame, Pose::Identity()}}, bodies, {}, fuse::MaskOrder::points_first);
+    return evidence.remaining({Ellipsoid(Sphere{kLeft.center, kLeft.radius})}).empty();
+  };
+  CHECK(explained(26, 26));
+  CHECK_FALSE(explained(25, 26));
+  CHECK(explained(13, 13));
+  CHECK_FALSE(explained(13, 14));
+}
+
+TEST_CASE("what masks say of a body does not depend on the scale") {
+  const auto odds = [](float scale) {
+    sensor::DepthFrame frame = *view_of({kLeft}).frame;
+    for (float& z : frame.depth) z *= scale;
+    const Sphere ball{double(scale) * kLeft.center, double(scale) * kLeft.radius};
+    return fuse::mask_evidence({{frame, Pose::Identity()}}, apples()).log_odds(Ellipsoid(ball));
+  };
+  CHECK(odds(1.0f) > 1.0);
+  for (const float scale : {1.0f / 1024, 1.0f / 32, 32.0f}) CHECK(odds(scale) == Approx(odds(1.0f)));
+}
+
 TEST_CASE("wrong parameters and poses that are not rigid are refused") {
   const fuse::DetectedView view = view_of({kLeft});
   fuse::MaskParameters parameters;

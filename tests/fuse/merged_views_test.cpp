@@ -64,6 +64,15 @@ TEST_CASE("of raw points at one place the first wins") {
   }
 }
 
+TEST_CASE("a raw view reports all points that it saw, those at known places, too") {
+  MergedViews map(kEverywhere, 1.0, std::nullopt, 1);
+  CHECK(see(map, frame_of({1, 0.5f, 0, 0, 0, 0})).observed == std::vector<Vector3f>{{-1, 0, 1}, {0, 0, 0.5f}});
+  const Change change = see(map, frame_of({1.25f, 5, 0, 0, 0, 5}));
+  CHECK(change.observed == std::vector<Vector3f>{{-1.25f, 0, 1.25f}, {0, 0, 5}, {5, 5, 5}});
+  CHECK(change.added.size() == 2);
+  CHECK(see(map, frame_of({0, 0, 0, 0, 0, 0})).observed.empty());
+}
+
 TEST_CASE("a raw view that is skipped keeps its number") {
   MergedViews map({{-100, -100, -100}, {100, 100, 2}}, 0.5, std::nullopt, 1);
   see(map, frame_of({1, 0, 0, 0, 0, 0}));
