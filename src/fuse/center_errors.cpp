@@ -44,9 +44,10 @@ struct Pull {
 struct Share {
   Matrix9 normal_matrix = Matrix9::Zero();           // of the weighted derivatives
   Eigen::Vector3d normal = Eigen::Vector3d::Zero();  // weighted mean
-  Eigen::Vector3d shift = Eigen::Vector3d::Zero();   // from where the reported pose puts the points (m)
-  Pull all;                                          // as registered
-  std::vector<Pull> patches;                         // of the points in one direction from the body's center
+  Eigen::Vector3d shift =
+      Eigen::Vector3d::Zero();  // from where the reported pose puts the points (m), see center_shifts
+  Pull all;                     // as registered
+  std::vector<Pull> patches;    // of the points in one direction from the body's center
 };
 
 std::optional<Share> share_of(const Ellipsoid& body, const RegisteredView& view, const FitParameters& parameters) {
@@ -84,41 +85,39 @@ std::optional<Share> share_of(const Ellipsoid& body, const RegisteredView& view,
   return out;
 }
 
-Eigen::Vector3d mean_shift(const std::vector<Share>& shares) {
+/// Take the mean shift of the views on a body off their shifts: a shift that all have alike is no error between them.
+void center_shifts(std::vector<Share>& of_body) {
   Eigen::Vector3d mean = Eigen::Vector3d::Zero();
-  for (const Share& s : shares) mean += s.shift / static_cast<double>(shares.size());
-  return mean;
+  for (const Share& s : of_body) mean += s.shift / static_cast<double>(of_body.size());
+  for (Share& s : of_body) s.shift -= mean;
 }
 
-/// Variance of the mean residuals that the views would have on their bodies if none had been registered (m2).
-double shared_variance(const std::vector<std::vector<Share>>& shares) {
+/// The sum of square(share) over its degrees of freedom: of each body one less than it has views.
+template <typename Square>
+double variance_of(const std::vector<std::vector<Share>>& shares, Square&& square) {
   double squares = 0.0, count = 0.0;
   for (const auto& of_body : shares) {
     if (of_body.empty()) continue;
-    const Eigen::Vector3d mean = mean_shift(of_body);
-    for (const Share& s : of_body) {
-      const double residual = s.all.residual - s.normal.dot(s.shift - mean);
-      squares += residual * residual;
-    }
+    for (const Share& s : of_body) squares += square(s);
     count += static_cast<double>(of_body.size() - 1);
   }
   return count > 0.0 ? squares / count : 0.0;
 }
 
-/// Variance along one axis of the errors of the views' poses (m2): of the shifts across the sight lines. Registration
-/// moves a view along its sight lines because of errors of the sensor, too.
+/// Variance of the mean residuals that the views would have on their bodies if none had been registered (m2).
+double shared_variance(const std::vector<std::vector<Share>>& shares) {
+  return variance_of(shares, [](const Share& s) {
+    const double residual = s.all.residual - s.normal.dot(s.shift);
+    return residual * residual;
+  });
+}
+
+/// Variance along one axis of the errors of the views' poses (m2): of the shifts across the sight lines, on two axes.
+/// Registration moves a view along its sight lines because of errors of the sensor, too.
 double pose_variance(const std::vector<std::vector<Share>>& shares) {
-  double squares = 0.0, count = 0.0;
-  for (const auto& of_body : shares) {
-    if (of_body.empty()) continue;
-    const Eigen::Vector3d mean = mean_shift(of_body);
-    for (const Share& s : of_body) {
-      const Eigen::Vector3d shift = s.shift - mean;
-      squares += shift.squaredNorm() - std::pow(shift.dot(s.normal.normalized()), 2);
-    }
-    count += 2.0 * static_cast<double>(of_body.size() - 1);
-  }
-  return count > 0.0 ? squares / count : 0.0;
+  return 0.5 * variance_of(shares, [](const Share& s) {
+           return s.shift.squaredNorm() - std::pow(s.shift.dot(s.normal.normalized()), 2);
+         });
 }
 
 /// Variance of the mean residuals of the patches about those of their views (m2).
@@ -138,8 +137,7 @@ double shift_variance(const std::vector<std::vector<Share>>& shares) {
   double sum = 0.0, count = 0.0;
   for (const auto& of_body : shares) {
     if (of_body.empty()) continue;
-    const Eigen::Vector3d mean = mean_shift(of_body);
-    for (const Share& s : of_body) sum += (s.shift - mean).squaredNorm() / (3.0 * static_cast<double>(of_body.size()));
+    for (const Share& s : of_body) sum += s.shift.squaredNorm() / (3.0 * static_cast<double>(of_body.size()));
     count += 1.0;
   }
   return count > 0.0 ? sum / count : 0.0;
@@ -184,8 +182,10 @@ std::vector<Eigen::Matrix3d> center_errors(const std::vector<Ellipsoid>& bodies,
       throw_if_cancelled();
       if (const auto share = share_of(bodies[b], view, parameters)) shares[b].push_back(*share);
     }
-  for (auto& of_body : shares)
+  for (auto& of_body : shares) {
     if (of_body.size() < kLeastViews) of_body.clear();
+    center_shifts(of_body);
+  }
   const double of_patches = patch_variance(shares);
   const double variance = std::max(0.0, shared_variance(shares) - pose_variance(shares));
   const double shifted = shift_variance(shares), same_in_all = variance_in_all_views(views);
