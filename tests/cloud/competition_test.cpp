@@ -114,13 +114,13 @@ TEST_CASE("a body that is found has the coverage and the confidence of its own f
 }
 
 TEST_CASE("a body that lost points to a better one is fitted and judged again") {
-  // Two balls, one 22 mm aside of the other, and neither with points inside the other. Where they meet, points of the
+  // Two balls, one 26 mm aside of the other, and neither with points inside the other. Where they meet, points of the
   // first lie close enough to the second to pull its first fit, and the first takes points of the second.
   Cloud cloud;
-  const Eigen::Vector3d other = aside(0.022);
-  test::add_sphere(cloud, {kCenter, kRadius}, 0.002, [](const Eigen::Vector3d& d) { return d.x() < 0.45; });
+  const Eigen::Vector3d other = aside(0.026);
+  test::add_sphere(cloud, {kCenter, kRadius}, 0.002, [](const Eigen::Vector3d& d) { return d.x() < 0.6; });
   test::add_sphere(
-      cloud, {other, kRadius}, 0.002, [](const Eigen::Vector3d& d) { return d.x() > -0.3 && d.y() < 0.3; }, 0.0003);
+      cloud, {other, kRadius}, 0.002, [](const Eigen::Vector3d& d) { return d.x() > -0.5 && d.y() < 0.3; }, 0.0003);
   BodyParameters p;
   p.alike = 0.0;
   p.max_overlap = 10.0;  // as deep as they like
@@ -222,6 +222,19 @@ TEST_CASE("the body with the largest surface seen wins first") {
   CHECK(out.found[1].found_by == "half");
   CHECK(out.found[2].found_by == "little");
   CHECK(out.counts.taken == 3);
+}
+
+TEST_CASE("a body that leaves out a lobe of the fruit grows over it") {
+  // Two caps of a fruit: the upper one belongs to a ball that is a fifth larger.
+  Cloud cloud;
+  test::add_sphere(cloud, {kCenter, kRadius}, 0.0022, [](const Eigen::Vector3d& d) { return d.z() < 0.0; });
+  test::add_sphere(cloud, {kCenter, 1.2 * kRadius}, 0.0022, [](const Eigen::Vector3d& d) { return d.z() > 0.2; });
+  const Outcome out = compete(cloud, {{ball(), "lower"}});
+  REQUIRE(out.found.size() == 1);
+  const Ellipsoid& body = out.found[0].fit.body;
+  for (const Eigen::Vector3d& p : {Eigen::Vector3d(kCenter - Eigen::Vector3d(0, 0, kRadius)),
+                                   Eigen::Vector3d(kCenter + Eigen::Vector3d(0, 0, 1.2 * kRadius))})
+    CHECK(std::abs(body.distance(p)) < BodyParameters().near(kRadius));
 }
 
 TEST_CASE("bodies are refused without normals and with bad parameters") {

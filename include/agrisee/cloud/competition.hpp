@@ -87,7 +87,9 @@ class Competition {
         ++(counts_.*(c.doubt ? c.doubt : fault));
         continue;
       }
-      entries_.push_back(std::move(e));
+      std::optional<Entry> wider = outgrown(e);
+      if (!wider || wider->confidence < e.confidence) entries_.push_back(std::move(e));
+      if (wider) entries_.push_back(std::move(*wider));
     }
   }
 
@@ -205,6 +207,13 @@ class Competition {
     return fit_ellipsoid(cloud_, near_, start, fit);
   }
 
+  /// How a body is fitted to few points, to see where it ends up.
+  FitParameters rough() const {
+    FitParameters fit = parameters_.fit;
+    fit.max_points = std::min(120, fit.max_points);
+    return fit;
+  }
+
   /// Whether two bodies agree in center and size to within 5 % of the radius.
   static bool alike(const Ellipsoid& a, const Ellipsoid& b) {
     const double r = a.mean_radius(), gate = 0.05 * r;
@@ -215,9 +224,7 @@ class Competition {
   /// @param known where others ended up; receives this one's place
   /// @return empty if it ends up where another did, or is not worth a better fit, or has none
   std::optional<EllipsoidFit> fitted(const BodyCandidate& candidate, std::vector<Ellipsoid>& known) {
-    FitParameters rough = parameters_.fit;
-    rough.max_points = std::min(120, rough.max_points);
-    const auto first = refine(candidate.body, rough);
+    const auto first = refine(candidate.body, rough());
     if (!first) {
       ++(counts_.*(candidate.doubt ? candidate.doubt : &BodyCounts::not_fitted));
       return std::nullopt;
@@ -232,6 +239,29 @@ class Competition {
     auto fit = refine(first->body, parameters_.fit);
     if (!fit) ++(counts_.*(candidate.doubt ? candidate.doubt : &BodyCounts::not_fitted));
     return fit;
+  }
+
+  /// Another body about the place of an entry, which explains far more of the points there; empty if there is none, or
+  /// it may not win. Lobed fruit, such as peppers, are no ellipsoids: a fit may settle on some lobes and leave others
+  /// out. With a wide gate it takes in the surface that goes on beyond them.
+  std::optional<Entry> outgrown(const Entry& e) {
+    constexpr double kFarMore = 1.3, kUneven = 0.06;  // kUneven: of lobes, as a share of the radius
+    const Verdict& v = e.verdict;
+    // Points beyond those on the body are clutter near it.
+    if (e.mask_log_odds || v.clutter < kFarMore - 1.0) return std::nullopt;
+    const double least = kFarMore * static_cast<double>(v.support);
+    FitParameters wide = rough();
+    wide.max_noise = std::max(wide.max_noise, kUneven);
+    wide.noise = std::max(wide.noise, kUneven * e.fit.body.mean_radius());
+    const auto first = refine(e.fit.body, wide);
+    if (!first || alike(first->body, e.fit.body)) return std::nullopt;
+    const auto fit = refine(first->body, parameters_.fit);
+    if (!fit) return std::nullopt;
+    Entry out = e;
+    out.fit = *fit;
+    out.prior = prior_of(fit->body);
+    if (assess(out) || static_cast<double>(out.verdict.support) < least) return std::nullopt;
+    return out;
   }
 
   /// Whether a rough fit, to the points of near_, is so unlike a fruit that a better one is not worth its time. Size,
