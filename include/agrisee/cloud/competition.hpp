@@ -245,14 +245,14 @@ class Competition {
   /// it may not win. Lobed fruit, such as peppers, are no ellipsoids: a fit may settle on some lobes and leave others
   /// out. With a wide gate it takes in the surface that goes on beyond them.
   std::optional<Entry> outgrown(const Entry& e) {
-    constexpr double kFarMore = 1.3, kUneven = 0.06;  // kUneven: of lobes, as a share of the radius
+    constexpr double kFarMore = 1.3, kLobeSpread = 0.06;  // kLobeSpread: of lobes, as a share of the radius
     const Verdict& v = e.verdict;
     // Points beyond those on the body are clutter near it.
     if (e.mask_log_odds || v.clutter < kFarMore - 1.0) return std::nullopt;
     const double least = kFarMore * static_cast<double>(v.support);
     FitParameters wide = rough();
-    wide.max_noise = std::max(wide.max_noise, kUneven);
-    wide.noise = std::max(wide.noise, kUneven * e.fit.body.mean_radius());
+    wide.max_noise = std::max(wide.max_noise, kLobeSpread);
+    wide.noise = std::max(wide.noise, kLobeSpread * e.fit.body.mean_radius());
     const auto first = refine(e.fit.body, wide);
     if (!first || alike(first->body, e.fit.body)) return std::nullopt;
     const auto fit = refine(first->body, parameters_.fit);
