@@ -7,6 +7,7 @@
 #include <agrisee/cloud/body_counts.hpp>
 #include <agrisee/cloud/body_verdict.hpp>
 #include <agrisee/cloud/fit.hpp>
+#include <agrisee/cloud/found_body.hpp>
 #include <agrisee/cloud/mask_evidence.hpp>
 #include <agrisee/cloud/parameters.hpp>
 #include <agrisee/cloud/seen_through.hpp>
@@ -19,25 +20,6 @@
 #include <vector>
 
 namespace agrisee {
-
-/// A proposed body, and the stage that proposed it.
-struct BodyCandidate {
-  Ellipsoid body;        ///< first guess
-  std::string found_by;  ///< the stage that proposed it; see Fruit::found_by
-  /// The count to raise if its points do not support it, for example because they suggest an unexpected radius.
-  std::size_t BodyCounts::*doubt = nullptr;
-  std::optional<EllipsoidFit> fit = {};      ///< fit to the present points, if already known
-  std::optional<double> mask_log_odds = {};  ///< set if masks proposed it; `fit` is then that of their outlines
-};
-
-/// A body that won its points.
-struct FoundBody {
-  EllipsoidFit fit;         ///< the body with its uncertainty
-  std::string found_by;     ///< the stage that found it; see Fruit::found_by
-  double coverage = 0.0;    ///< share of its surface covered by its points
-  double confidence = 0.0;  ///< probability that it is a fruit, see detail::fruit_probability
-  bool by_mask = false;     ///< `fit` is that of a mask's outline, because few points were seen
-};
 
 namespace detail {
 
@@ -245,7 +227,7 @@ class Competition {
   /// it may not win. Lobed fruit, such as peppers, are no ellipsoids: a fit may settle on some lobes and leave others
   /// out. With a wide gate it takes in the surface that goes on beyond them.
   std::optional<Entry> outgrown(const Entry& e) {
-    constexpr double kFarMore = 1.3, kLobeSpread = 0.06;  // kLobeSpread: of lobes, as a share of the radius
+    constexpr double kFarMore = 1.3, kLobeSpread = 0.06;  // the second: lobes' standard deviation / radius
     const Verdict& v = e.verdict;
     // Points beyond those on the body are clutter near it.
     if (e.mask_log_odds || v.clutter < kFarMore - 1.0) return std::nullopt;

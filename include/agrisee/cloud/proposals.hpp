@@ -4,7 +4,7 @@
 /// points make a fruit follows from the spacing of the cloud. Metres.
 #pragma once
 
-#include <agrisee/cloud/competition.hpp>
+#include <agrisee/cloud/found_body.hpp>
 #include <agrisee/cloud/parameters.hpp>
 #include <agrisee/cloud/sphere_voting.hpp>
 #include <agrisee/neighbors/grid.hpp>

@@ -14,7 +14,7 @@
 /// showed is the reliability of further expectations. World frame, metres; gains in m2 of fruit surface.
 #pragma once
 
-#include <agrisee/cloud/bodies.hpp>
+#include <agrisee/cloud/found_body.hpp>
 #include <agrisee/cloud/parameters.hpp>
 #include <agrisee/fuse/parameters.hpp>
 #include <agrisee/geometry/aabb.hpp>
