@@ -44,10 +44,10 @@ struct Pull {
 struct Share {
   Matrix9 normal_matrix = Matrix9::Zero();           // of the weighted derivatives
   Eigen::Vector3d normal = Eigen::Vector3d::Zero();  // weighted mean
-  Eigen::Vector3d shift =
-      Eigen::Vector3d::Zero();  // from where the reported pose puts the points (m), see center_shifts
-  Pull all;                     // as registered
-  std::vector<Pull> patches;    // of the points in one direction from the body's center
+  // From where the reported pose puts the points (m); less the mean of the body's views after center_shifts.
+  Eigen::Vector3d shift = Eigen::Vector3d::Zero();
+  Pull all;                   // as registered
+  std::vector<Pull> patches;  // of the points in one direction from the body's center
 };
 
 std::optional<Share> share_of(const Ellipsoid& body, const RegisteredView& view, const FitParameters& parameters) {

@@ -114,8 +114,8 @@ TEST_CASE("a body that is found has the coverage and the confidence of its own f
 }
 
 TEST_CASE("a body that lost points to a better one is fitted and judged again") {
-  // Two balls, one 26 mm aside of the other, and neither with points inside the other. Where they meet, points of the
-  // first lie close enough to the second to pull its first fit, and the first takes points of the second.
+  // Two balls, one 26 mm aside of the other; the points of each end up to 5 mm inside the other. Where they meet,
+  // points of the first lie close enough to the second to pull its first fit, and the first takes points of the second.
   Cloud cloud;
   const Eigen::Vector3d other = aside(0.026);
   test::add_sphere(cloud, {kCenter, kRadius}, 0.002, [](const Eigen::Vector3d& d) { return d.x() < 0.6; });
