@@ -52,24 +52,24 @@ struct ParaboloidSums {
     for (int k = 0; k < 6; ++k) rhs[k] += depths[k];
   }
 
-  /// Solve for the first N coefficients, 3 for a plane or 6 for a paraboloid; the others become 0.
+  /// Solve for the coefficients.
   /// @param x receives the coefficients
+  /// @param stiffness inverse variance of the prior that the quadratic ones are 0, for data of unit variance
   /// @param variance if not null, receives the variance of the depth at (0, 0) for data of unit variance
   /// @return false if the sums are degenerate
-  template <int N>
-  bool solve(Eigen::Matrix<double, 6, 1>& x, double* variance) const {
+  bool solve(Eigen::Matrix<double, 6, 1>& x, double stiffness, double* variance) const {
     static constexpr std::size_t kMonomial[6][6] = {{0, 1, 2, 3, 4, 5},    {1, 3, 4, 6, 7, 8},
                                                     {2, 4, 5, 7, 8, 9},    {3, 6, 7, 10, 11, 12},
                                                     {4, 7, 8, 11, 12, 13}, {5, 8, 9, 12, 13, 14}};
-    Eigen::Matrix<double, N, N> a;
-    for (int i = 0; i < N; ++i)
-      for (int j = 0; j < N; ++j) a(i, j) = m[kMonomial[i][j]];
+    Eigen::Matrix<double, 6, 6> a;
+    for (int i = 0; i < 6; ++i)
+      for (int j = 0; j < 6; ++j) a(i, j) = m[kMonomial[i][j]];
     a.diagonal().array() += 1e-9 * weight;
-    const Eigen::LLT<Eigen::Matrix<double, N, N>> solver(a);
+    a.diagonal().tail<3>().array() += stiffness;
+    const Eigen::LLT<Eigen::Matrix<double, 6, 6>> solver(a);
     if (solver.info() != Eigen::Success) return false;
-    x.setZero();
-    x.template head<N>() = solver.solve(rhs.template head<N>());
-    if (variance) *variance = solver.solve(Eigen::Matrix<double, N, 1>::Unit(0))[0];
+    x = solver.solve(rhs);
+    if (variance) *variance = solver.solve(Eigen::Matrix<double, 6, 1>::Unit(0))[0];
     return x.allFinite();
   }
 };

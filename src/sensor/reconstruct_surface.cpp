@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 
 #include "depth_blocks.hpp"
 #include "paraboloid.hpp"
@@ -17,10 +18,13 @@ using detail::Blocks;
 using detail::ParaboloidSums;
 using detail::Tap;
 
-/// The paraboloid fitted around a block: depth over the offset (du, dv) from the block's mean pixel, in cells.
+/// The paraboloid fitted around a block: its height over a plane at the place (a, b), in units of the distance between
+/// blocks. The plane is nearly tangent to the surface if there is little noise, and faces the sensor if there is much.
 struct Patch {
-  Eigen::Matrix<double, 6, 1> x;  ///< coefficients of 1, du, dv, du du, du dv, dv dv
-  double sigma = 0.0;             ///< standard deviation of the depth (m); 0: there is no patch
+  Eigen::Vector3d origin = Eigen::Vector3d::Zero();    ///< of the plane (m, optical frame)
+  Eigen::Matrix3d axes = Eigen::Matrix3d::Identity();  ///< of the plane and its normal, towards the sensor (columns)
+  Eigen::Matrix<double, 6, 1> x = Eigen::Matrix<double, 6, 1>::Zero();  ///< coefficients of 1, a, b, a a, a b, b b (m)
+  double sigma = 0.0;  ///< standard deviation of the depth (m); 0: there is no patch
 };
 
 /// Fits the paraboloids.
@@ -38,7 +42,14 @@ class PatchFitter {
         window_(half_width(noise, parameters)),
         steepest_(std::tan(parameters.max_incidence)),
         bend_(pitch * pitch / (2.0 * parameters.smallest_radius)),
-        taps_(detail::window_taps(window_)) {}
+        tilt_(1.0 / (1.0 + std::pow(noise / (0.5 * pitch), 4))),
+        taps_(detail::window_taps(window_)) {
+    rays_.reserve(blocks.blocks.size());
+    for (const Block& b : blocks.blocks) {
+      const Eigen::Vector3d ray = blocks.cells.ray(double(b.u), double(b.v));
+      rays_.emplace_back(ray.x(), ray.y());
+    }
+  }
 
   /// Fit the paraboloid around cell c; `patch` is left as it is if there is none.
   void fit(std::size_t c, Differences& along, Patch& patch) const {
@@ -46,28 +57,27 @@ class PatchFitter {
     if (!(center.z > 0.0f)) return;
     const auto across = static_cast<std::size_t>(blocks_.cells.width);
     const int cu = static_cast<int>(c % across), cv = static_cast<int>(c / across);
-    const auto [slope_u, slope_v] = first_slope(cu, cv, along);
-    Eigen::Matrix<double, 6, 1> x;
-    x << double(center.z), slope_u, slope_v, 0.0, 0.0, 0.0;
+    Patch found = first_guess(center, first_slope(cu, cv, along));
     // Before the curvature is known it may explain this much, times the squared distance.
-    double slack = bend_ * (1.0 + slope_u * slope_u / (pitch_ * pitch_));
+    double slack = bend_ * (1.0 + (found.x[1] * found.x[1] + found.x[2] * found.x[2]) / (pitch_ * pitch_));
     double scale = noise_, variance = 0.0;
     ParaboloidSums sums;
     int window_cells = 0;
     constexpr int kIterations = 3;
     for (int iteration = 0; iteration < kIterations; ++iteration, slack = 0.0) {
       sums = {};
-      window_cells = add_window(cu, cv, x, scale, slack, sums);
+      window_cells = add_window(cu, cv, found, scale, slack, sums);
       if (sums.weight < 2.5) return;
-      double* wanted_variance = iteration + 1 == kIterations ? &variance : nullptr;
-      if (!(sums.weight > 7.0 ? sums.solve<6>(x, wanted_variance) : sums.solve<3>(x, wanted_variance))) return;
+      // Few cells do not tell the curvature from noise.
+      const double stiffness = sums.weight > 7.0 ? 0.0 : std::pow(scale / (2.0 * bend_), 2);
+      if (!sums.solve(found.x, stiffness, iteration + 1 == kIterations ? &variance : nullptr)) return;
       if (iteration > 0) scale = std::max(noise_, 0.5 * std::sqrt(sums.squares / sums.weight));
     }
     // Cells without neighbors on their own surface are flying pixels.
     if (sums.weight < 0.2 * 0.63 * double(window_cells)) return;
-    if (std::abs(x[0] - double(center.z)) > 4.0 * noise_ + 0.5 * pitch_) return;
-    patch.x = x;
-    patch.sigma = std::max(std::max(scale, noise_) * std::sqrt(std::max(variance, 0.0)), 1e-5);
+    if (std::abs(found.x[0]) > 4.0 * noise_ + 0.5 * pitch_) return;
+    found.sigma = std::max(scale * std::sqrt(std::max(variance, 0.0)), 1e-5);
+    patch = found;
   }
 
  private:
@@ -80,7 +90,7 @@ class PatchFitter {
 
   /// First guess of the slopes (m a cell): medians of the differences between neighboring blocks about a cell, without
   /// those that are too large for the steepest surface that is kept.
-  std::pair<double, double> first_slope(int cu, int cv, Differences& along) const {
+  Eigen::Vector2d first_slope(int cu, int cv, Differences& along) const {
     const double step = steepest_ * pitch_ + 4.0 * noise_;
     const int reach = std::min(window_, 1 + static_cast<int>(noise_ / 0.001));
     const int u_end = std::min(cu + reach, blocks_.cells.width - 1);
@@ -97,30 +107,90 @@ class PatchFitter {
         if (u < u_end) difference(0, blocks_.at(u + 1, v));
         if (v < v_end) difference(1, blocks_.at(u, v + 1));
       }
-    const double slope_u = static_cast<double>(median(along[0]));
+    const auto slope_u = static_cast<double>(median(along[0]));
     return {slope_u, static_cast<double>(median(along[1]))};
   }
 
+  /// The plane through a block with these slopes along u and v (m a cell), as the first guess of a patch.
+  Patch first_guess(const Block& center, const Eigen::Vector2d& slope) const {
+    Patch out;
+    const Eigen::Vector3d ray = blocks_.cells.ray(double(center.u), double(center.v));
+    out.origin = ray * double(center.z);
+    const Eigen::Vector3d normal = out.axes.col(2) = normal_of(out.origin, ray, tilt_ * slope);
+    const Eigen::Vector3d down = ray - ray.dot(normal) * normal;
+    out.axes.col(0) = down.squaredNorm() > 1e-6 ? down.normalized() : any_orthogonal<double>(normal);
+    out.axes.col(1) = normal.cross(out.axes.col(0));
+    const Eigen::Vector3d n = out.axes.transpose() * normal_of(out.origin, ray, slope);
+    out.x[1] = -n[0] / n[2] * pitch_;
+    out.x[2] = -n[1] / n[2] * pitch_;
+    return out;
+  }
+
+  /// Unit normal, towards the sensor, of a plane through a point (m) on a ray with slopes along u and v (m a cell).
+  Eigen::Vector3d normal_of(const Eigen::Vector3d& point, const Eigen::Vector3d& ray,
+                            const Eigen::Vector2d& slope) const {
+    const Eigen::Vector3d along_u = Eigen::Vector3d(point.z() / blocks_.cells.fx, 0.0, 0.0) + ray * slope[0];
+    const Eigen::Vector3d along_v = Eigen::Vector3d(0.0, point.z() / blocks_.cells.fy, 0.0) + ray * slope[1];
+    return along_v.cross(along_u).normalized();
+  }
+
+  /// Where a ray meets a paraboloid, and what was measured there.
+  struct Seen {
+    double a, b;      ///< place in the plane
+    double height;    ///< measured (m)
+    double residual;  ///< measured height over the paraboloid's (m)
+  };
+
+  /// The error of a depth lies along its ray. It is taken as an error of height where the ray meets the paraboloid, so
+  /// that noise does not move the place.
+  /// @param x coefficients of the paraboloid
+  /// @param ray,origin of the cell and of the plane, in the plane's axes, the first two in units of the pitch
+  /// @param z measured depth (m)
+  static Seen on_ray(const Eigen::Matrix<double, 6, 1>& x, const Eigen::Vector3d& ray, const Eigen::Vector3d& origin,
+                     double z) {
+    const double measured = ray[2] * z - origin[2];
+    // On the ray the place is (a, b) + height * (da, db).
+    const double per_height = 1.0 / ray[2], da = ray[0] * per_height, db = ray[1] * per_height;
+    const double a = da * origin[2] - origin[0], b = db * origin[2] - origin[1];
+    const double xa = x[3] * a + x[4] * b, xb = x[5] * b;
+    const double at_plane = x[0] + a * (x[1] + xa) + b * (x[2] + xb);
+    const double rise = 1.0 - da * (x[1] + x[3] * a + xa) - db * (x[2] + x[4] * a + 2.0 * xb);
+    const double bend = da * (x[3] * da + x[4] * db) + x[5] * db * db;
+    const double root = rise * rise - 4.0 * bend * at_plane;
+    if (rise > 0.0 && root > 0.0) {
+      const double slope = std::sqrt(root), met = 2.0 * at_plane / (rise + slope);
+      const double residual = (measured - met) * slope;
+      return {a + met * da, b + met * db, met + residual, residual};
+    }
+    // The ray misses the paraboloid.
+    const double ma = a + measured * da, mb = b + measured * db;
+    return {ma, mb, measured, measured - (x[0] + ma * (x[1] + x[3] * ma + x[4] * mb) + mb * (x[2] + x[5] * mb))};
+  }
+
   /// Add the blocks of the window about a cell, weighted by their nearness and by their residuals from the fit so far.
-  /// @param x the fit so far
+  /// @param patch the fit so far
   /// @param scale standard deviation of the residuals (m)
   /// @param slack how far (m) the surface may bend away at the distance of one cell
   /// @return number of cells of the window that lie in the image
-  int add_window(int cu, int cv, const Eigen::Matrix<double, 6, 1>& x, double scale, double slack,
-                 ParaboloidSums& sums) const {
-    const Block& center = blocks_.at(cu, cv);
+  int add_window(int cu, int cv, const Patch& patch, double scale, double slack, ParaboloidSums& sums) const {
+    Eigen::Matrix3d to_plane = patch.axes.transpose();
+    to_plane.topRows<2>() /= pitch_;
+    const Eigen::Vector3d origin = to_plane * patch.origin;
+    const double gate = 4.0 * scale + 0.2 * pitch_;
     int window_cells = 0;
     for (const Tap& tap : taps_) {
       const int u = cu + tap.du, v = cv + tap.dv;
       if (u < 0 || v < 0 || u >= blocks_.cells.width || v >= blocks_.cells.height) continue;
       ++window_cells;
-      const Block& q = blocks_.at(u, v);
-      if (!(q.z > 0.0f)) continue;
-      const double du = double(q.u - center.u), dv = double(q.v - center.v), z = double(q.z);
-      const double fitted = x[0] + du * (x[1] + x[3] * du + x[4] * dv) + dv * (x[2] + x[5] * dv);
-      const double residual = z - fitted, t = residual / (4.0 * scale + 0.2 * pitch_ + slack * tap.r_sq);
-      if (std::abs(t) >= 1.0) continue;
-      sums.add((1.0 - t * t) * (1.0 - t * t) * tap.near, du, dv, z, residual);
+      const std::size_t i = blocks_.index(u, v);
+      const double z = double(blocks_.blocks[i].z);
+      if (!(z > 0.0)) continue;
+      const Eigen::Vector3d ray = to_plane.col(0) * rays_[i].x() + to_plane.col(1) * rays_[i].y() + to_plane.col(2);
+      const Seen seen = on_ray(patch.x, ray, origin, z);
+      const double wide = gate + slack * (seen.a * seen.a + seen.b * seen.b);
+      if (!(std::abs(seen.residual) < wide)) continue;
+      const double t = seen.residual / wide;
+      sums.add((1.0 - t * t) * (1.0 - t * t) * tap.near, seen.a, seen.b, seen.height, seen.residual);
     }
     return window_cells;
   }
@@ -129,7 +199,9 @@ class PatchFitter {
   double pitch_, noise_;
   int window_;  // half width (cells)
   double steepest_, bend_;
+  double tilt_;  // of a patch's plane, as a share of the slope: noise hides where the slope is
   std::vector<Tap> taps_;
+  std::vector<Eigen::Vector2d> rays_;  // of the blocks: x and y where z is 1
 };
 
 std::vector<Patch> fit_patches(const PatchFitter& fitter, std::size_t n, int threads) {
@@ -147,42 +219,46 @@ struct Sample {
   double cosine;  ///< of the incidence
 };
 
-/// The point of a patch at an offset (du, dv) from the block's mean pixel, in cells.
-Sample sample(const Intrinsics& cells, const Block& block, const Patch& patch, double du, double dv) {
-  const Eigen::Vector3d ray = cells.ray(double(block.u) + du, double(block.v) + dv);
+/// The point of a patch at a place in its plane.
+/// @param pitch distance between blocks at the typical depth (m)
+Sample sample(const Patch& patch, const Eigen::Vector2d& place, double pitch) {
   const auto& x = patch.x;
-  const double z = x[0] + x[1] * du + x[2] * dv + x[3] * du * du + x[4] * du * dv + x[5] * dv * dv;
-  const Eigen::Vector3d along_u = Eigen::Vector3d(z / cells.fx, 0, 0) + ray * (x[1] + 2.0 * x[3] * du + x[4] * dv);
-  const Eigen::Vector3d along_v = Eigen::Vector3d(0, z / cells.fy, 0) + ray * (x[2] + x[4] * du + 2.0 * x[5] * dv);
+  const double a = place[0], b = place[1];
+  const double height = x[0] + a * (x[1] + x[3] * a + x[4] * b) + b * (x[2] + x[5] * b);
+  const Eigen::Vector2d slope(x[1] + 2.0 * x[3] * a + x[4] * b, x[2] + x[4] * a + 2.0 * x[5] * b);
   Sample s;
-  s.point = ray * z;
-  s.normal = along_v.cross(along_u).normalized();
-  s.cosine = -s.normal.dot(ray.normalized());
+  s.point = patch.origin + patch.axes * Eigen::Vector3d(a * pitch, b * pitch, height);
+  s.normal = (patch.axes * Eigen::Vector3d(-slope[0], -slope[1], pitch)).normalized();
+  s.cosine = -s.normal.dot(s.point.normalized());
   return s;
+}
+
+/// The step in a patch's plane that follows the slope of the surface for a length (m).
+/// @param middle the patch's sample in the middle of the block
+Eigen::Vector2d step_down(const Patch& patch, const Sample& middle, double length, double pitch) {
+  const Eigen::Vector3d ray = middle.point.normalized();
+  const Eigen::Vector3d down = patch.axes.transpose() * (ray - ray.dot(middle.normal) * middle.normal).normalized();
+  return length / pitch * down.head<2>();
 }
 
 /// Take one sample of each patch; where the surface is steep several along the slope, so that they stay evenly apart on
 /// the surface.
 /// Samples outside of the volume are left out.
-void sample_patches(const Blocks& blocks, const std::vector<Patch>& patches, const Aabb& volume,
+/// @param pitch distance between blocks at the typical depth (m)
+void sample_patches(const Intrinsics& cells, const std::vector<Patch>& patches, double pitch, const Aabb& volume,
                     const SurfaceParameters& parameters, SurfaceImage& out) {
-  const Intrinsics& cells = blocks.cells;
   const Eigen::Matrix3d rotation = out.world_T_optical.linear();
   const double cos_max = std::cos(parameters.max_incidence);
-  for (std::size_t c = 0; c < patches.size(); ++c) {
-    const Patch& patch = patches[c];
+  for (const Patch& patch : patches) {
     if (!(patch.sigma > 0.0)) continue;
-    Sample s = sample(cells, blocks.blocks[c], patch, 0.0, 0.0);
-    if (!(s.cosine > cos_max)) continue;
-    const Eigen::Vector2d slope = Eigen::Vector2d(patch.x[1], patch.x[2]).normalized();
-    const int m =
-        std::clamp(static_cast<int>(std::lround(s.point.z() / cells.fx / (s.cosine * parameters.spacing))), 1, 5);
+    const Sample middle = sample(patch, {0.0, 0.0}, pitch);
+    if (!(middle.cosine > cos_max)) continue;
+    const double length = middle.point.z() / cells.fx / middle.cosine;  // of the block's surface along the slope (m)
+    const int m = std::clamp(static_cast<int>(std::lround(length / parameters.spacing)), 1, 5);
+    const Eigen::Vector2d step = m > 1 ? step_down(patch, middle, length, pitch) : Eigen::Vector2d(0.0, 0.0);
     for (int i = 0; i < m; ++i) {
-      if (m > 1) {
-        const double t = (i + 0.5) / m - 0.5;
-        s = sample(cells, blocks.blocks[c], patch, t * slope.x(), t * slope.y());
-        if (!(s.cosine > cos_max)) continue;
-      }
+      const Sample s = m > 1 ? sample(patch, ((i + 0.5) / m - 0.5) * step, pitch) : middle;
+      if (!(s.cosine > cos_max)) continue;
       const Eigen::Vector3d point = out.world_T_optical * s.point;
       if (!volume.contains(point)) continue;
       out.points.push_back(point.cast<float>());
@@ -208,7 +284,8 @@ SurfaceImage reconstruct_surface(const DepthFrame& frame, const Pose& world_T_op
   Blocks blocks = detail::make_blocks(frame, inside.depth, b, parameters.spacing, pixel_noise, threads);
   // The noise that is left between blocks decides how far to smooth.
   const double block_noise = std::max(detail::noise_of(blocks), 0.02 * parameters.target_sigma);
-  const PatchFitter fitter(blocks, inside.typical / blocks.cells.fx, block_noise, parameters);
+  const double pitch = inside.typical / blocks.cells.fx;
+  const PatchFitter fitter(blocks, pitch, block_noise, parameters);
   const std::vector<Patch> patches = fit_patches(fitter, blocks.blocks.size(), threads);
 
   SurfaceImage out;
@@ -218,7 +295,7 @@ SurfaceImage reconstruct_surface(const DepthFrame& frame, const Pose& world_T_op
   out.fill = blocks.fill;
   constexpr double kOfMedians = 1.2533;  // sqrt(pi / 2): a median's standard deviation over that of a mean
   out.noise = (b > 1 ? kOfMedians : 1.0) * block_noise;
-  sample_patches(blocks, patches, volume, parameters, out);
+  sample_patches(blocks.cells, patches, pitch, volume, parameters, out);
   out.depth = std::move(blocks.depth);
   return out;
 }

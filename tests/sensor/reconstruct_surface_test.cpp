@@ -114,6 +114,31 @@ TEST_CASE("a noisy surface keeps its shape where it leaves the scan volume") {
   CHECK(std::abs(turned) / double(near_border) < 0.03);
 }
 
+TEST_CASE("the steep sides of a small fruit lie neither too deep nor too high") {
+  // Over the image such a side is no paraboloid, and a plane through a few cells cuts through it.
+  const double noise = GENERATE(0.0, 0.0005, 0.0015);
+  const double radius = GENERATE(0.010, 0.015, 0.030);
+  const Sphere fruit{{0.0, 0.45, 0.2}, radius};
+  const Intrinsics k = intrinsics_from_fov(640, 480, deg(50), deg(39));
+  const SurfaceImage image = reconstruct_surface(test::render({fruit}, k, kPose, noise), kPose, volume());
+  double off[3] = {0.0, 0.0, 0.0}, turned[3] = {0.0, 0.0, 0.0};
+  std::size_t count[3] = {0, 0, 0};
+  for (std::size_t i = 0; i < image.points.size(); ++i) {
+    const Eigen::Vector3d p = image.points[i].cast<double>(), q = p - fruit.center;
+    const double angle = std::acos(-q.normalized().dot((p - kPose.translation()).normalized()));
+    const std::size_t ring = angle < deg(40) ? 0 : angle < deg(60) ? 1 : 2;
+    off[ring] += q.norm() - radius;
+    turned[ring] += std::acos(std::min(1.0, q.normalized().dot(image.normals[i].cast<double>())));
+    ++count[ring];
+  }
+  for (std::size_t ring = 0; ring < 3; ++ring) {
+    CAPTURE(noise, radius, ring, count[ring], off[ring] / double(count[ring]), turned[ring] / double(count[ring]));
+    REQUIRE(count[ring] > 8);
+    CHECK(std::abs(off[ring]) / double(count[ring]) < 0.00006 + 0.06 * noise);
+    CHECK(turned[ring] / double(count[ring]) < deg(4) + 100.0 * noise);
+  }
+}
+
 TEST_CASE("cells and pixels agree where a point is seen") {
   const Intrinsics k = intrinsics_from_fov(640, 480, deg(50), deg(39));
   const SurfaceImage image = reconstruct_surface(test::render(kSpheres, k, kPose), kPose, volume());

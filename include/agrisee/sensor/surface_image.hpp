@@ -21,7 +21,7 @@ struct SurfaceParameters {
   double target_sigma = 0.0004;    ///< a window grows until the cell's standard deviation should be this small (m)
   int max_window = 4;              ///< largest half width of a window (cells)
   double smallest_radius = 0.012;  ///< smallest radius of curvature that smoothing has to preserve (m)
-  double max_incidence = deg(81);  ///< cells seen at a larger angle of incidence are dropped (rad)
+  double max_incidence = deg(84);  ///< cells seen at a larger angle of incidence are dropped (rad)
 
   /// @throws FieldError for the first field that is out of its range
   void check() const { check_fields(*this); }
