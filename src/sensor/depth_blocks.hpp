@@ -45,10 +45,7 @@ struct Blocks {
   std::vector<float> depth;   ///< median depth (m) of all valid pixels of a block, inside the volume or not; 0: none
   double fill = 0.0;          ///< median share of valid pixels in blocks with any
 
-  std::size_t index(int u, int v) const {
-    return static_cast<std::size_t>(v) * static_cast<std::size_t>(cells.width) + static_cast<std::size_t>(u);
-  }
-  const Block& at(int u, int v) const { return blocks[index(u, v)]; }
+  const Block& at(int u, int v) const { return blocks[cells.index(u, v)]; }
 };
 
 /// Divide an image into blocks of b x b pixels.

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// Weighted least squares of a paraboloid over the cells of a round window of an image. It works on moments: adding a
-/// cell costs some thirty multiplications, and solving does not depend on the size of the window. Lengths along the
-/// image are in cells, depths in metres.
+/// cell costs some thirty multiplications, and solving does not depend on the size of the window. Lengths in the plane
+/// below the paraboloid are in units of the distance between cells, heights over it in metres.
 #pragma once
 
 #include <Eigen/Cholesky>
@@ -17,7 +17,6 @@ namespace agrisee::sensor::detail {
 /// A cell of a round window.
 struct Tap {
   int du, dv;   ///< offset from the middle
-  double r_sq;  ///< squared distance from the middle
   double near;  ///< weight for its distance from the middle, 1 in the middle
 };
 
@@ -28,11 +27,11 @@ inline std::vector<Tap> window_taps(int w) {
   for (int dv = -w; dv <= w; ++dv)
     for (int du = -w; du <= w; ++du)
       if (const int r_sq = du * du + dv * dv; r_sq <= most)
-        taps.push_back({du, dv, double(r_sq), std::exp(-double(r_sq) / double(most))});
+        taps.push_back({du, dv, std::exp(-double(r_sq) / double(most))});
   return taps;
 }
 
-/// Weighted sums for the depth z as a paraboloid over (u, v), with the coefficients of 1, u, v, uu, uv, vv. The 21
+/// Weighted sums for the height z as a paraboloid over (u, v), with the coefficients of 1, u, v, uu, uv, vv. The 21
 /// different products of these are 15 different monomials.
 struct ParaboloidSums {
   double weight = 0.0;         ///< sum of the weights
@@ -40,7 +39,7 @@ struct ParaboloidSums {
   std::array<double, 15> m{};  ///< 1, u, v, uu, uv, vv, uuu, uuv, uvv, vvv, uuuu, uuuv, uuvv, uvvv, vvvv
   Eigen::Matrix<double, 6, 1> rhs = Eigen::Matrix<double, 6, 1>::Zero();  ///< right-hand side
 
-  /// Add a cell of weight w at (u, v) with depth z (m) and residual (m).
+  /// Add a cell of weight w at (u, v) with height z (m) and residual (m).
   void add(double w, double u, double v, double z, double residual) {
     const double uu = u * u, uv = u * v, vv = v * v, wuu = w * uu, wuv = w * uv, wvv = w * vv, wz = w * z;
     weight += w;
@@ -48,14 +47,14 @@ struct ParaboloidSums {
     const double products[15] = {w,       w * u,   w * v,    wuu,      wuv,      wvv,      wuu * u, wuu * v,
                                  wvv * u, wvv * v, wuu * uu, wuu * uv, wuu * vv, wuv * vv, wvv * vv};
     for (std::size_t k = 0; k < 15; ++k) m[k] += products[k];
-    const double depths[6] = {wz, wz * u, wz * v, wz * uu, wz * uv, wz * vv};
-    for (int k = 0; k < 6; ++k) rhs[k] += depths[k];
+    const double heights[6] = {wz, wz * u, wz * v, wz * uu, wz * uv, wz * vv};
+    for (int k = 0; k < 6; ++k) rhs[k] += heights[k];
   }
 
   /// Solve for the coefficients.
   /// @param x receives the coefficients
   /// @param stiffness inverse variance of the prior that the quadratic ones are 0, for data of unit variance
-  /// @param variance if not null, receives the variance of the depth at (0, 0) for data of unit variance
+  /// @param variance if not null, receives the variance of the height at (0, 0) for data of unit variance
   /// @return false if the sums are degenerate
   bool solve(Eigen::Matrix<double, 6, 1>& x, double stiffness, double* variance) const {
     static constexpr std::size_t kMonomial[6][6] = {{0, 1, 2, 3, 4, 5},    {1, 3, 4, 6, 7, 8},

@@ -25,6 +25,13 @@ struct Patch {
   Eigen::Matrix3d axes = Eigen::Matrix3d::Identity();  ///< of the plane and its normal, towards the sensor (columns)
   Eigen::Matrix<double, 6, 1> x = Eigen::Matrix<double, 6, 1>::Zero();  ///< coefficients of 1, a, b, a a, a b, b b (m)
   double sigma = 0.0;  ///< standard deviation of the depth (m); 0: there is no patch
+
+  /// Height (m) at a place.
+  double height(double a, double b) const { return x[0] + a * (x[1] + x[3] * a + x[4] * b) + b * (x[2] + x[5] * b); }
+  /// Derivatives of the height by the place (m).
+  Eigen::Vector2d slope(double a, double b) const {
+    return {x[1] + 2.0 * x[3] * a + x[4] * b, x[2] + x[4] * a + 2.0 * x[5] * b};
+  }
 };
 
 /// Fits the paraboloids.
@@ -53,11 +60,10 @@ class PatchFitter {
 
   /// Fit the paraboloid around cell c; `patch` is left as it is if there is none.
   void fit(std::size_t c, Differences& along, Patch& patch) const {
-    const Block& center = blocks_.blocks[c];
-    if (!(center.z > 0.0f)) return;
+    if (!(blocks_.blocks[c].z > 0.0f)) return;
     const auto across = static_cast<std::size_t>(blocks_.cells.width);
     const int cu = static_cast<int>(c % across), cv = static_cast<int>(c / across);
-    Patch found = first_guess(center, first_slope(cu, cv, along));
+    Patch found = first_guess(c, first_slope(cu, cv, along));
     // Before the curvature is known it may explain this much, times the squared distance.
     double slack = bend_ * (1.0 + (found.x[1] * found.x[1] + found.x[2] * found.x[2]) / (pitch_ * pitch_));
     double scale = noise_, variance = 0.0;
@@ -107,15 +113,14 @@ class PatchFitter {
         if (u < u_end) difference(0, blocks_.at(u + 1, v));
         if (v < v_end) difference(1, blocks_.at(u, v + 1));
       }
-    const auto slope_u = static_cast<double>(median(along[0]));
-    return {slope_u, static_cast<double>(median(along[1]))};
+    return {static_cast<double>(median(along[0])), static_cast<double>(median(along[1]))};
   }
 
-  /// The plane through a block with these slopes along u and v (m a cell), as the first guess of a patch.
-  Patch first_guess(const Block& center, const Eigen::Vector2d& slope) const {
+  /// The plane through block c with these slopes along u and v (m a cell), as the first guess of a patch.
+  Patch first_guess(std::size_t c, const Eigen::Vector2d& slope) const {
     Patch out;
-    const Eigen::Vector3d ray = blocks_.cells.ray(double(center.u), double(center.v));
-    out.origin = ray * double(center.z);
+    const Eigen::Vector3d ray = rays_[c].homogeneous();
+    out.origin = ray * double(blocks_.blocks[c].z);
     const Eigen::Vector3d normal = out.axes.col(2) = normal_of(out.origin, ray, tilt_ * slope);
     const Eigen::Vector3d down = ray - ray.dot(normal) * normal;
     out.axes.col(0) = down.squaredNorm() > 1e-6 ? down.normalized() : any_orthogonal<double>(normal);
@@ -143,28 +148,25 @@ class PatchFitter {
 
   /// The error of a depth lies along its ray. It is taken as an error of height where the ray meets the paraboloid, so
   /// that noise does not move the place.
-  /// @param x coefficients of the paraboloid
   /// @param ray,origin of the cell and of the plane, in the plane's axes, the first two in units of the pitch
   /// @param z measured depth (m)
-  static Seen on_ray(const Eigen::Matrix<double, 6, 1>& x, const Eigen::Vector3d& ray, const Eigen::Vector3d& origin,
-                     double z) {
+  static Seen on_ray(const Patch& patch, const Eigen::Vector3d& ray, const Eigen::Vector3d& origin, double z) {
     const double measured = ray[2] * z - origin[2];
     // On the ray the place is (a, b) + height * (da, db).
     const double per_height = 1.0 / ray[2], da = ray[0] * per_height, db = ray[1] * per_height;
     const double a = da * origin[2] - origin[0], b = db * origin[2] - origin[1];
-    const double xa = x[3] * a + x[4] * b, xb = x[5] * b;
-    const double at_plane = x[0] + a * (x[1] + xa) + b * (x[2] + xb);
-    const double rise = 1.0 - da * (x[1] + x[3] * a + xa) - db * (x[2] + x[4] * a + 2.0 * xb);
-    const double bend = da * (x[3] * da + x[4] * db) + x[5] * db * db;
+    const Eigen::Vector2d slope = patch.slope(a, b);
+    const double at_plane = patch.height(a, b), rise = 1.0 - da * slope[0] - db * slope[1];
+    const double bend = da * (patch.x[3] * da + patch.x[4] * db) + patch.x[5] * db * db;
     const double root = rise * rise - 4.0 * bend * at_plane;
     if (rise > 0.0 && root > 0.0) {
-      const double slope = std::sqrt(root), met = 2.0 * at_plane / (rise + slope);
-      const double residual = (measured - met) * slope;
+      const double steepness = std::sqrt(root), met = 2.0 * at_plane / (rise + steepness);
+      const double residual = (measured - met) * steepness;
       return {a + met * da, b + met * db, met + residual, residual};
     }
     // The ray misses the paraboloid.
     const double ma = a + measured * da, mb = b + measured * db;
-    return {ma, mb, measured, measured - (x[0] + ma * (x[1] + x[3] * ma + x[4] * mb) + mb * (x[2] + x[5] * mb))};
+    return {ma, mb, measured, measured - patch.height(ma, mb)};
   }
 
   /// Add the blocks of the window about a cell, weighted by their nearness and by their residuals from the fit so far.
@@ -182,11 +184,11 @@ class PatchFitter {
       const int u = cu + tap.du, v = cv + tap.dv;
       if (u < 0 || v < 0 || u >= blocks_.cells.width || v >= blocks_.cells.height) continue;
       ++window_cells;
-      const std::size_t i = blocks_.index(u, v);
+      const std::size_t i = blocks_.cells.index(u, v);
       const double z = double(blocks_.blocks[i].z);
       if (!(z > 0.0)) continue;
       const Eigen::Vector3d ray = to_plane.col(0) * rays_[i].x() + to_plane.col(1) * rays_[i].y() + to_plane.col(2);
-      const Seen seen = on_ray(patch.x, ray, origin, z);
+      const Seen seen = on_ray(patch, ray, origin, z);
       const double wide = gate + slack * (seen.a * seen.a + seen.b * seen.b);
       if (!(std::abs(seen.residual) < wide)) continue;
       const double t = seen.residual / wide;
@@ -222,12 +224,10 @@ struct Sample {
 /// The point of a patch at a place in its plane.
 /// @param pitch distance between blocks at the typical depth (m)
 Sample sample(const Patch& patch, const Eigen::Vector2d& place, double pitch) {
-  const auto& x = patch.x;
-  const double a = place[0], b = place[1];
-  const double height = x[0] + a * (x[1] + x[3] * a + x[4] * b) + b * (x[2] + x[5] * b);
-  const Eigen::Vector2d slope(x[1] + 2.0 * x[3] * a + x[4] * b, x[2] + x[4] * a + 2.0 * x[5] * b);
+  const Eigen::Vector2d slope = patch.slope(place[0], place[1]);
   Sample s;
-  s.point = patch.origin + patch.axes * Eigen::Vector3d(a * pitch, b * pitch, height);
+  s.point =
+      patch.origin + patch.axes * Eigen::Vector3d(place[0] * pitch, place[1] * pitch, patch.height(place[0], place[1]));
   s.normal = (patch.axes * Eigen::Vector3d(-slope[0], -slope[1], pitch)).normalized();
   s.cosine = -s.normal.dot(s.point.normalized());
   return s;
