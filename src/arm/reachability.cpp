@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <agrisee/arm/reachability.hpp>
 
+#include <array>
+#include <cmath>
+#include <limits>
+
 namespace agrisee::arm {
 
 std::vector<double> distances_to_try(const ReachParameters& p) {
@@ -42,6 +46,34 @@ int roll_of_last_joint(const Mount& mount) {
   return off < 1e-9 ? (ahead.z() > 0.0 ? 1 : -1) : 0;
 }
 
+// Of `rolls` evenly spaced rolls of a sensor on the axis of the last joint the one for which that joint turns least; the
+// first of several. Nothing if none lies within the limits.
+// @param upright,present the last joint's angle without roll, and now (rad)
+// @param sense as returned by roll_of_last_joint; not 0
+// @param angle receives the last joint's angle (rad)
+std::optional<int> nearest_roll(double upright, double present, int sense, int rolls, const JointLimits& limits,
+                                double& angle) {
+  std::optional<int> best;
+  double least = std::numeric_limits<double>::infinity();
+  const auto try_roll = [&](int i) {
+    const auto last = nearest(wrap(upright + sense * kTwoPi * i / rolls), present, limits.min[5], limits.max[5]);
+    if (!last || !(std::abs(*last - present) < least)) return;
+    least = std::abs(*last - present);
+    angle = *last;
+    best = i;
+  };
+  // The roll next to the present angle and its two neighbors; all others are 1.5 steps away or more.
+  const double step = kTwoPi / rolls;
+  const int at = static_cast<int>(std::lround(wrap(sense * (present - upright)) / step)) + rolls;
+  std::array<int, 3> next{(at - 1) % rolls, at % rolls, (at + 1) % rolls};
+  std::sort(next.begin(), next.end());
+  for (const int i : next) try_roll(i);
+  if (least < 1.4 * step) return best;
+  least = std::numeric_limits<double>::infinity();
+  for (int i = 0; i < rolls; ++i) try_roll(i);  // the limits are in the way
+  return best;
+}
+
 // Appends the solutions for `rolls` evenly spaced rolls of a sensor on the axis of the last joint. The rolls of a
 // solution differ in that joint alone and collide with the same things, so only the one with the shortest turn is
 // appended.
@@ -54,19 +86,10 @@ bool add_rolled_solutions(const Mount& mount, const Pose& base_T_tool0, const Jo
   for (const Joints& q : solve(base_T_tool0, present[5], mount.model)) {
     if (!(std::abs(std::sin(q[4])) > 1e-6)) regular = false;
     Joints turned = q;
-    int roll = -1;
-    double least = std::numeric_limits<double>::infinity();
-    for (int i = 0; i < rolls; ++i) {
-      const auto last = nearest(wrap(q[5] + sense * kTwoPi * i / rolls), present[5], mount.model.limits.min[5],
-                                mount.model.limits.max[5]);
-      if (!last || !(std::abs(*last - present[5]) < least)) continue;
-      least = std::abs(*last - present[5]);
-      turned[5] = *last;
-      roll = i;
-    }
-    if (roll < 0) continue;
+    const auto roll = nearest_roll(q[5], present[5], sense, rolls, mount.model.limits, turned[5]);
+    if (!roll) continue;
     if (const auto near = nearest(turned, present, mount.model.limits))
-      out.push_back(candidate(mount, present, *near, roll));
+      out.push_back(candidate(mount, present, *near, *roll));
   }
   if (!regular) out.resize(before);
   return regular;

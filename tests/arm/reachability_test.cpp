@@ -63,11 +63,17 @@ TEST_CASE("reach: the frontal view is out of reach, views beside it are not") {
 }
 
 TEST_CASE("reach: the first distance that serves, and there the shortest move") {
-  const Mount mount = cell();
-  const ReachParameters parameters;
+  Mount mount = cell();
+  ReachParameters parameters;
+  parameters.rolls = GENERATE(1, 3, 24);
+  Joints present = kStart;
+  present[5] = GENERATE(0.0, 2.5, -6.0);
+  mount.model.limits.max[5] = GENERATE(kTwoPi, 1.0);
+  mount.model.limits.min[5] = -mount.model.limits.max[5];
+  INFO(parameters.rolls << " rolls from " << present[5] << ", up to " << mount.model.limits.max[5]);
   for (const double az : {-40.0, -30.0, -20.0, 20.0, 40.0}) {
     const Vector3d d = sight(az, 10);
-    const auto found = reach(mount, kStart, kTruss, d, parameters);
+    const auto found = reach(mount, present, kTruss, d, parameters);
     // By hand: every distance, every roll, every solution.
     std::optional<double> distance;
     double best = std::numeric_limits<double>::infinity();
@@ -75,8 +81,8 @@ TEST_CASE("reach: the first distance that serves, and there the shortest move") 
       for (int i = 0; i < parameters.rolls; ++i) {
         const Pose view = look_along(kTruss - r * d, d, kTwoPi * i / parameters.rolls);
         for (const Joints& q : inverse(view * mount.tool0_T_optical.inverse())) {
-          const auto near = nearest(q, kStart, mount.model.limits);
-          if (near && !collides(*near, mount)) best = std::min(best, move_time(kStart, *near));
+          const auto near = nearest(q, present, mount.model.limits);
+          if (near && !collides(*near, mount)) best = std::min(best, move_time(present, *near));
         }
       }
       if (std::isfinite(best)) {

@@ -41,6 +41,7 @@ struct JointLimits {
 /// The equivalent angle in (-pi, pi] (rad).
 inline double wrap(double angle) {
   if (angle > -kPi && angle <= kPi) return angle;
+  if (std::abs(angle) < 2.9 * kPi) return angle > 0.0 ? angle - kTwoPi : angle + kTwoPi;  // exact
   const double a = std::remainder(angle, kTwoPi);
   return a <= -kPi ? kPi : a;
 }
