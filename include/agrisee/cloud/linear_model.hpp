@@ -27,23 +27,30 @@ struct LinearPosterior {
   double evidence = 0.0;                    ///< logarithm of the probability density of y
 };
 
+/// The inverse covariance of the coefficients given the values; its lower half.
+inline Eigen::MatrixXd information_of(const LinearModel& model) {
+  Eigen::MatrixXd H = Eigen::MatrixXd(model.prior.cwiseInverse().asDiagonal());
+  H.selfadjointView<Eigen::Lower>().rankUpdate(model.B * model.variance.cwiseSqrt().cwiseInverse().asDiagonal());
+  return H;
+}
+
 /// The posterior of the coefficients, and the evidence for the model: the density of the values, with the coefficients
 /// integrated out.
-inline LinearPosterior linear_posterior(const LinearModel& model) {
-  const Eigen::VectorXd root = model.variance.cwiseSqrt().cwiseInverse();
-  const Eigen::MatrixXd scaled = model.B * root.asDiagonal();
-  const Eigen::VectorXd values = root.cwiseProduct(model.y);
-  Eigen::MatrixXd H = Eigen::MatrixXd(model.prior.cwiseInverse().asDiagonal());
-  H.selfadjointView<Eigen::Lower>().rankUpdate(scaled);
+/// @param information as information_of() returns it
+inline LinearPosterior linear_posterior(const LinearModel& model, const Eigen::MatrixXd& information) {
   LinearPosterior out;
-  out.information.compute(H);
-  const Eigen::VectorXd rhs = scaled * values;
+  out.information.compute(information);
+  const Eigen::VectorXd weighed = model.y.cwiseQuotient(model.variance);
+  const Eigen::VectorXd rhs = model.B * weighed;
   out.mean = out.information.solve(rhs);
   const double log_det = out.information.matrixLLT().diagonal().array().log().sum();
-  out.evidence = -0.5 * (values.squaredNorm() - rhs.dot(out.mean)) - log_det - 0.5 * model.prior.array().log().sum() -
+  out.evidence = -0.5 * (weighed.dot(model.y) - rhs.dot(out.mean)) - log_det - 0.5 * model.prior.array().log().sum() -
                  0.5 * model.variance.array().log().sum() -
                  0.5 * static_cast<double>(model.y.size()) * std::log(kTwoPi);
   return out;
+}
+inline LinearPosterior linear_posterior(const LinearModel& model) {
+  return linear_posterior(model, information_of(model));
 }
 
 /// Values more standard deviations than this off count less in evidence.
@@ -54,11 +61,17 @@ constexpr double kFarOff = 3.0;
 inline double robust_evidence(LinearModel model) {
   constexpr int kRounds = 4;
   const Eigen::VectorXd variance = model.variance;
+  Eigen::MatrixXd information = information_of(model);
   for (int round = 0; round < kRounds; ++round) {
-    const Eigen::VectorXd residuals = model.y - model.B.transpose() * linear_posterior(model).mean;
-    model.variance = variance.array().max(residuals.array().square() / (kFarOff * kFarOff));
+    const Eigen::VectorXd residuals = model.y - model.B.transpose() * linear_posterior(model, information).mean;
+    for (Eigen::Index i = 0; i < residuals.size(); ++i) {  // few change
+      const double raised = std::max(variance[i], residuals[i] * residuals[i] / (kFarOff * kFarOff));
+      if (raised == model.variance[i]) continue;
+      information.selfadjointView<Eigen::Lower>().rankUpdate(model.B.col(i), 1.0 / raised - 1.0 / model.variance[i]);
+      model.variance[i] = raised;
+    }
   }
-  return linear_posterior(model).evidence;
+  return linear_posterior(model, information).evidence;
 }
 
 }  // namespace agrisee::detail
