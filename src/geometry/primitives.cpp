@@ -5,7 +5,7 @@ namespace agrisee {
 
 void KeepOut::check() const {
   const auto require = [&](bool ok, const char* what, double value) {
-    check_parameter(ok, ("keep_out '" + name + "': " + what).c_str(), "positive and finite", value);
+    if (!ok) check_parameter(false, ("keep_out '" + name + "': " + what).c_str(), "positive and finite", value);
   };
   if (const Box* box = std::get_if<Box>(&shape)) {
     for (int a = 0; a < 3; ++a) require(box->size[a] > 0.0 && std::isfinite(box->size[a]), "size", box->size[a]);
