@@ -27,7 +27,7 @@ constexpr std::array<const char*, 4> kPlannerNames{"gain", "see", "fixed", "rand
 /// [1], `Parameters::see_alone()` those of SEE++ alone.
 struct Parameters {
   std::string preset = "default";  ///< name of the preset from which these values were made
-  std::string planner = "gain";    ///< one of kPlannerNames: gain, see (SEE++), fixed (a ring of views) or random
+  std::string planner = "gain";    ///< one of kPlannerNames: gain, see (SEE++), fixed (even directions) or random
   int max_views = 30;              ///< largest number of views, for every planner
   bool fuse_surfaces = true;  ///< smooth frames and fuse them as surfels; off: merge raw points, keeping the first ones
   bool register_views = true;      ///< register each view to the map (ICP) before it is fused

@@ -37,8 +37,8 @@ struct PipelineOptions {
 /// One scan of one truss. Use a pipeline in one thread at a time; several pipelines are independent of each other.
 ///
 /// Any call can be cancelled from another thread (core/cancellation.hpp). It then throws Cancelled and leaves the
-/// pipeline as it was before the call. `observe` can be cancelled while it reconstructs and registers the frame; the
-/// update of the map that follows takes some tens of milliseconds and always finishes.
+/// pipeline as it was before the call. `observe` can be cancelled while it reconstructs and registers the frame; once
+/// it updates the map, which takes some tens of milliseconds, it ends as if it had not been cancelled.
 class Pipeline {
  public:
   /// The scan ends after this many refused views in a row.
@@ -57,7 +57,7 @@ class Pipeline {
   /// a copy. The planner uses the detections too. A frame without returns inside the scan volume counts as a view that
   /// showed nothing. A view is marked as discarded if its frame repeats the last one bit for bit (the camera is stuck),
   /// or if it contradicts the other views (fuse/fused_views.hpp), because its pose must then be wrong.
-  /// @return the view as recorded
+  /// @return the view as recorded; the reference is valid until the next observe()
   /// @throws InputError for a frame whose size disagrees with its intrinsics or whose depths cannot be in metres
   ///   (sensor::check_depth_unit), or a pose that is not rigid within kRigidTolerance; Cancelled. The scan so far is
   ///   kept.

@@ -12,7 +12,8 @@
 
 namespace agrisee {
 
-/// The planner that `parameters.planner` names: `gain` (default), `see`, `fixed` (a ring of `max_views`) or `random`.
+/// The planner that `parameters.planner` names: `gain` (default), `see`, `fixed` (`max_views` directions, spread
+/// evenly) or `random`.
 /// @param workcell arm, camera, scan volume
 /// @param parameters of the planner
 /// @param seed of the planner's random draws

@@ -2,8 +2,9 @@
 /// @file
 /// Finds the fruit in a ready cloud: clean, segment, locate ([1], 3.2.3 and 3.2.4).
 ///
-/// Pipeline::result() calls it on the map of a scan; call it yourself on any other cloud. Metres, the cloud's frame.
-/// Defined in `agrisee::agrisee`.
+/// Pipeline::result() calls it on the map of a scan; call it yourself on any other cloud. Metres, the cloud's frame:
+/// positions and sizes may be in any, but growth axes and the order of the fruit need its z axis to point up. The
+/// command `agrisee process` also calls thinned() and sets CloudOrigin::check_normals. Defined in `agrisee::agrisee`.
 #pragma once
 
 #include <agrisee/cloud/seen_through.hpp>
@@ -69,7 +70,7 @@ void check_units(const Cloud& cloud, const Parameters& parameters = {});
 /// (cloud/hidden_points.hpp), so that they were seen from elsewhere, or if less than a third of the surface that is
 /// curved like fruit bulges towards it (cloud/convexity.hpp), so that it is on the wrong side. With
 /// `origin.trust_viewpoint`, or if the doubt is smaller, the result has a warning instead.
-/// @param cloud points (m), any frame; normals and views if it has them
+/// @param cloud points (m), z up; normals and views if it has them
 /// @param parameters of all stages
 /// @param origin where the points were seen from
 /// @param seen_through evidence of free space from the views, or empty
@@ -91,7 +92,7 @@ ScanResult process(Cloud&& cloud, const Parameters& parameters = {}, const Cloud
 /// Like process(const Cloud&, ...), for any other cloud that meets the contract of core/traits.hpp: vectors and maps of
 /// Eigen or, with a header of `interop/`, clouds of PCL, Open3D and ROS. Its finite points are copied once, into the
 /// result's `raw` cloud. Its views are unknown.
-/// @param cloud points (m), any frame
+/// @param cloud points (m), z up
 /// @param parameters, origin, seen_through, threads as above
 /// @throws as above
 template <typename C, typename = scalar_t<C>>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// @file
-/// What a scan reports: views, stop reasons, fruit. All poses are in world (the arm's base frame {M}) unless named
-/// otherwise.
+/// What a scan reports: views, stop reasons, fruit. All poses are in world (Workcell::world_T_base says where the arm
+/// stands in it; in [1] it is the arm's base frame {M}) unless named otherwise.
 #pragma once
 
 #include <agrisee/cloud/body_counts.hpp>
@@ -113,8 +113,7 @@ struct Picking {
   bool reachable = false;  ///< the fruit can be picked
   PickingReason reason = PickingReason::not_tested;     ///< why it cannot be picked, if so
   Eigen::Vector3d direction = Eigen::Vector3d::Zero();  ///< unit, from pre-grasp to the center; zero without a body
-  Pose world_T_pre_grasp =
-      Pose::Identity();          ///< of the tool: z along the direction (REP-103's optical frame); with a body
+  Pose world_T_pre_grasp = Pose::Identity();  ///< of the tool, z along `direction`; identity if the fruit has no body
   std::optional<Joints> joints;  ///< at the pre-grasp pose (rad), if it is reachable and the arm model gives them
   std::vector<int> after;        ///< ids of the fruit that are in the way and must be picked first
 };

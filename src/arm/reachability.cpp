@@ -46,8 +46,8 @@ int roll_of_last_joint(const Mount& mount) {
   return off < 1e-9 ? (ahead.z() > 0.0 ? 1 : -1) : 0;
 }
 
-// Of `rolls` evenly spaced rolls of a sensor on the axis of the last joint the one for which that joint turns least; the
-// first of several. Nothing if none lies within the limits.
+// Of `rolls` evenly spaced rolls of a sensor on the axis of the last joint the one for which that joint turns least;
+// the first of several. Nothing if none lies within the limits.
 // @param upright,present the last joint's angle without roll, and now (rad)
 // @param sense as returned by roll_of_last_joint; not 0
 // @param angle receives the last joint's angle (rad)

@@ -9,7 +9,7 @@ namespace agrisee {
 enum class StopReason {
   not_stopped,        ///< it has not ended
   no_frontier,        ///< nothing worth seeing is left
-  no_reachable_view,  ///< the arm can reach no view of what is left
+  no_reachable_view,  ///< the arm can reach no view of what is left, or refused too many (Pipeline::kMostRefusals)
   low_gain,           ///< the expected gain of the best reachable view is below the threshold
   max_views,          ///< the view budget is used up
   nothing_seen        ///< the first views returned no point inside the scan volume

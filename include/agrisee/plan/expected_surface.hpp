@@ -8,10 +8,10 @@
 /// through a sample it is moved inwards, because the surface must lie deeper, or dropped. In addition, voxels near
 /// the ellipsoids that no sight line has reached stand for fruit that may be hidden there. A view shows a sample when
 /// the sample lies in the image and within the sensor's range, faces the sensor, and no ellipsoid or other point of the
-/// cloud hides it. Each view that should have shown a sample but did not lowers its area, because the prediction seems
-/// to be wrong there. A body with a fruit probability below one half is weighted by twice that probability, so that a
-/// view of a body that hardly shows is worth the move. The share of the expected surface that the last views really
-/// showed is the reliability of further expectations. World frame, metres; gains in m2 of fruit surface.
+/// cloud hides it. The area of a sample shrinks with each view that should have shown it but did not, because the
+/// prediction seems to be wrong there. A body with a fruit probability p below one half counts with the weight 2 p
+/// instead of not at all, so that doubtful bodies are looked at. The share of the expected surface that the last views
+/// really showed is the reliability of further expectations. World frame, metres; gains in m2 of fruit surface.
 #pragma once
 
 #include <agrisee/cloud/found_body.hpp>

@@ -4,13 +4,14 @@
 ///
 /// A depth sensor measures far more densely (0.5 mm at arm's length) than a fruit's surface needs, and its error lies
 /// along the ray. The steps:
-/// 1. Crop: only pixels inside the scan volume count, and those that only their noise moved out of it.
+/// 1. Crop: only pixels inside the scan volume count, and those outside whose distance from it is within the noise.
 /// 2. Blocks: the image is divided into blocks of b x b pixels, of about the wanted spacing. Each block keeps the mean
 ///    of those of its pixels that agree with its median.
 /// 3. Fit: a paraboloid is fitted around each block, over a window that grows with the noise of the blocks. It stands
-///    on a plane nearly tangent to the surface: over the image, the steep side of a small fruit is no paraboloid. The
-///    errors lie along the rays. Weights exclude surface beyond a depth edge (iteratively reweighted least squares with
-///    Tukey's biweight). The fit's height, slope and variance at the block give point, normal and uncertainty.
+///    on a plane nearly tangent to the surface: depth as a function of the pixel would be no paraboloid on the steep
+///    side of a small fruit. Residuals are measured along the rays. Weights exclude surface beyond a depth edge
+///    (iteratively reweighted least squares with Tukey's biweight). The fit's height, slope and variance at the block
+///    give point, normal and uncertainty.
 /// 4. Sample: each fit gives one surface point, or several along the slope where the surface is steep. Points outside
 ///    of the volume are dropped.
 ///

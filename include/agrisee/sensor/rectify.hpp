@@ -63,8 +63,9 @@ Distortion distortion_from(const List& coefficients) {
   return out;
 }
 
-/// Check that the distortion is one-to-one in the image, which wrong coefficients often violate.
-/// @throws InputError if two points of the image would be seen in one pixel
+/// Check that the radial distortion grows from the middle of the image to its corners, which wrong coefficients often
+/// violate. The tangential terms are not checked.
+/// @throws InputError if two radii would be seen as one
 inline void check(const Distortion& lens, const Intrinsics& k) {
   const Eigen::Vector3d a = k.ray(-0.5, -0.5), b = k.ray(k.width - 0.5, k.height - 0.5);
   const double farthest = Eigen::Vector2d(std::max(-a.x(), b.x()), std::max(-a.y(), b.y())).norm();

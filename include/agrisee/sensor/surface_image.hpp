@@ -48,8 +48,8 @@ struct SurfaceImage {
   std::vector<float> sigma;                 ///< standard deviations of the points along the ray (m), positive
   std::size_t points_in = 0;                ///< number of pixels that returned a point inside the scan volume
   double noise = 0.0;                       ///< standard deviation of the cells' raw depths (m)
-  /// Share of the pixels on a surface that return something: the median in the cells that have any and, once the view
-  /// is compared with others (fuse::returned), no more than the share of their surface that it measures.
+  /// Share of the pixels with a return, where there is a surface: the median of the cells with at least one return.
+  /// Once the view is compared with others (fuse::returned), at most the share of their surface that it measures.
   double fill = 0.0;
 
   /// Index of the cell in which a point is seen, or -1 if it is outside the image or behind the sensor.
