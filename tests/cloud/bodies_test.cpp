@@ -293,7 +293,7 @@ TEST_CASE("bodies are tracked where a cloud has grown") {
   CHECK_THROWS_AS(track(after, first.found, {}, {}, fresh), InputError);
 }
 
-TEST_CASE("masks propose bodies for what points leave, unless sight lines go through these") {
+TEST_CASE("masks propose bodies for what points leave, unless sight lines or points speak against these") {
   const Sphere seen{{0.0, 0.5, 0.3}, 0.035};
   const Eigen::Vector3d hidden(0.09, 0.5, 0.3);
   Cloud cloud;
@@ -318,6 +318,15 @@ TEST_CASE("masks propose bodies for what points leave, unless sight lines go thr
   CHECK(with.found[1].confidence == Approx(1.0 / (1.0 + std::exp(-2.0))));
   const SeenThrough through = [&](const Ellipsoid& body) { return (body.center - hidden).norm() < 0.02 ? 0.3 : 0.0; };
   CHECK(split(cloud, {}, through, 1, masks).found.size() == 1);
+
+  for (int i = -6; i <= 6; ++i)  // a leaf where the fruit's front would be
+    for (int k = -6; k <= 6; ++k) {
+      const Eigen::Vector3d across = front().unitOrthogonal(), along = front().cross(across);
+      const Eigen::Vector3d p = hidden + 0.03 * front() + 0.002 * (i * across + k * along);
+      cloud.points.push_back(p.cast<float>());
+      cloud.normals.push_back(front().cast<float>());
+    }
+  CHECK(split(cloud, {}, {}, 1, masks).found.size() == 1);
 }
 
 TEST_CASE("masks change how far a body of points is believed") {
