@@ -43,6 +43,8 @@ struct Verdict {
   std::size_t support = 0;     ///< points on the surface
   std::optional<double> seen_on = {};  ///< see SeenOn; empty if not known
   double score() const { return coverage - 2.0 * inside - 1.5 * seen_through; }
+  /// How far the roundness is below that of nearly all fruit, as several views show it.
+  double flatness() const { return std::max(0.0, 0.5 - roundness); }
 };
 
 /// Sums over the points on a body's surface or nearly so; positions are relative to the body's center.
@@ -182,7 +184,7 @@ inline double fruit_probability(const Verdict& v, const EllipsoidFit& fit, const
   if (v.support == 0 || !(v.coverage > 0.0)) return 0.0;
   constexpr double kMostPoints = 1500.0, kMostMisfit = 0.08, kRoundEnough = 0.8, kLarge = 0.5;  // more changes nothing
   constexpr double kSingleView = -0.4, kSeenOn = 2.8, kUsual = 0.42;
-  constexpr double kHardlyRound = 0.5, kNoisy = 0.028, kBeyond = 30.0;  // kNoisy in m
+  constexpr double kNoisy = 0.028, kBeyond = 30.0;  // kNoisy in m
   const double radius = fit.body.mean_radius();
   // The same share of a smaller surface has fewer points. Where several views agree on a body they count as on one of
   // 0.42 times the largest expected radius; in a single view scraps of leaves are small, too.
@@ -197,8 +199,7 @@ inline double fruit_probability(const Verdict& v, const EllipsoidFit& fit, const
                           1.7 * std::min(radius / parameters.radius_max, kLarge);
   // Several views see that a stump is a cylinder, and one does not.
   const double view = v.seen_on ? kSingleView + kSeenOn * std::log(*v.seen_on)
-                                : parameters.ridge * std::min(0.0, v.roundness - kHardlyRound) +
-                                      kNoisy / radius * parameters.normal_noise;
+                                : kNoisy / radius * parameters.normal_noise - parameters.ridge * v.flatness();
   const double beyond = std::max(0.0, fit.body.mean_semi_axis() / parameters.radius_max - 1.0);
   return 1.0 / (1.0 + std::exp(-(evidence + view - kBeyond * beyond + prior)));
 }

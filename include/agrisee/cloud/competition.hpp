@@ -156,11 +156,11 @@ class Competition {
   /// Log-odds against a body that masks of several views proposed, from sight lines through it, points inside it, and
   /// points on it that are not round. Those of a single view were weighed when the body was proposed.
   double against_masks(const Ellipsoid& body, const Verdict& v) const {
-    constexpr double kThrough = 25.0, kUnsure = 0.02, kInside = 10.0, kFlat = 20.0, kRound = 0.5, kFewPoints = 10.0;
+    constexpr double kThrough = 25.0, kUnsure = 0.02, kInside = 10.0, kFlat = 20.0, kFewPoints = 10.0;
     if (!masks_.remaining) return 0.0;
     const double through = seen_through_ ? seen_through_(body) : 0.0, n = static_cast<double>(v.support);
     return kThrough * std::max(0.0, through - kUnsure) + kInside * v.inside +
-           kFlat * std::max(0.0, kRound - v.roundness) * n / (n + kFewPoints);
+           kFlat * v.flatness() * n / (n + kFewPoints);
   }
 
   /// Log-odds of a body by the masks and by the sizes of the other fruit.
