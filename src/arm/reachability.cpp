@@ -3,7 +3,6 @@
 
 #include <array>
 #include <cmath>
-#include <limits>
 
 namespace agrisee::arm {
 
@@ -46,21 +45,22 @@ int roll_of_last_joint(const Mount& mount) {
   return off < 1e-9 ? (ahead.z() > 0.0 ? 1 : -1) : 0;
 }
 
-// Of `rolls` evenly spaced rolls of a sensor on the axis of the last joint the one for which that joint turns least;
-// the first of several. Nothing if none lies within the limits.
+// A roll of a sensor on the axis of the last joint, and that joint's angle (rad).
+struct Roll {
+  int number;
+  double angle;
+};
+
+// Of `rolls` evenly spaced rolls the one for which the last joint turns least; the first of several. Nothing if none
+// lies within the limits.
 // @param upright,present the last joint's angle without roll, and now (rad)
 // @param sense as returned by roll_of_last_joint; not 0
-// @param angle receives the last joint's angle (rad)
-std::optional<int> nearest_roll(double upright, double present, int sense, int rolls, const JointLimits& limits,
-                                double& angle) {
-  std::optional<int> best;
-  double least = std::numeric_limits<double>::infinity();
+std::optional<Roll> nearest_roll(double upright, double present, int sense, int rolls, const JointLimits& limits) {
+  std::optional<Roll> best;
+  const auto turn = [&](double angle) { return std::abs(angle - present); };
   const auto try_roll = [&](int i) {
-    const auto last = nearest(wrap(upright + sense * kTwoPi * i / rolls), present, limits.min[5], limits.max[5]);
-    if (!last || !(std::abs(*last - present) < least)) return;
-    least = std::abs(*last - present);
-    angle = *last;
-    best = i;
+    const auto angle = nearest(wrap(upright + sense * kTwoPi * i / rolls), present, limits.min[5], limits.max[5]);
+    if (angle && (!best || turn(*angle) < turn(best->angle))) best = Roll{i, *angle};
   };
   // The roll next to the present angle and its two neighbors; all others are 1.5 steps away or more.
   const double step = kTwoPi / rolls;
@@ -68,8 +68,8 @@ std::optional<int> nearest_roll(double upright, double present, int sense, int r
   std::array<int, 3> next{(at - 1) % rolls, at % rolls, (at + 1) % rolls};
   std::sort(next.begin(), next.end());
   for (const int i : next) try_roll(i);
-  if (least < 1.4 * step) return best;
-  least = std::numeric_limits<double>::infinity();
+  if (best && turn(best->angle) < 1.4 * step) return best;
+  best.reset();
   for (int i = 0; i < rolls; ++i) try_roll(i);  // the limits are in the way
   return best;
 }
@@ -85,11 +85,12 @@ bool add_rolled_solutions(const Mount& mount, const Pose& base_T_tool0, const Jo
   bool regular = true;
   for (const Joints& q : solve(base_T_tool0, present[5], mount.model)) {
     if (!(std::abs(std::sin(q[4])) > 1e-6)) regular = false;
-    Joints turned = q;
-    const auto roll = nearest_roll(q[5], present[5], sense, rolls, mount.model.limits, turned[5]);
+    const auto roll = nearest_roll(q[5], present[5], sense, rolls, mount.model.limits);
     if (!roll) continue;
+    Joints turned = q;
+    turned[5] = roll->angle;
     if (const auto near = nearest(turned, present, mount.model.limits))
-      out.push_back(candidate(mount, present, *near, *roll));
+      out.push_back(candidate(mount, present, *near, roll->number));
   }
   if (!regular) out.resize(before);
   return regular;

@@ -4,15 +4,16 @@
 namespace agrisee {
 
 void KeepOut::check() const {
-  const auto require = [&](bool ok, const char* what, double value) {
-    if (!ok) check_parameter(false, ("keep_out '" + name + "': " + what).c_str(), "positive and finite", value);
+  const auto check_length = [&](const char* what, double value) {
+    const bool ok = value > 0.0 && std::isfinite(value);  // the name is made for an error alone
+    if (!ok) check_parameter(ok, ("keep_out '" + name + "': " + what).c_str(), "positive and finite", value);
   };
   if (const Box* box = std::get_if<Box>(&shape)) {
-    for (int a = 0; a < 3; ++a) require(box->size[a] > 0.0 && std::isfinite(box->size[a]), "size", box->size[a]);
+    for (int a = 0; a < 3; ++a) check_length("size", box->size[a]);
     if (!box->center.allFinite()) throw ParameterError("keep_out '" + name + "': center must be finite");
   } else if (const Cylinder* c = std::get_if<Cylinder>(&shape)) {
-    require(c->radius > 0.0 && std::isfinite(c->radius), "radius", c->radius);
-    require(c->height > 0.0 && std::isfinite(c->height), "height", c->height);
+    check_length("radius", c->radius);
+    check_length("height", c->height);
     if (!c->center.allFinite()) throw ParameterError("keep_out '" + name + "': center must be finite");
   }
 }

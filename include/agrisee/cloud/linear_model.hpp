@@ -49,6 +49,7 @@ inline LinearPosterior linear_posterior(const LinearModel& model, const Eigen::M
                  0.5 * static_cast<double>(model.y.size()) * std::log(kTwoPi);
   return out;
 }
+/// The same, with information_of(model).
 inline LinearPosterior linear_posterior(const LinearModel& model) {
   return linear_posterior(model, information_of(model));
 }
