@@ -154,6 +154,43 @@ TEST_CASE("a calyx that stands out of the top is not taken for the fruit's own t
   CHECK(surface->volume == Approx(volume).epsilon(0.05));
 }
 
+TEST_CASE("a leaf that lies on a fruit is not taken for a neck of it") {
+  const auto [volume, center] = truth(pepper);
+  const Cloud skin = seen(pepper, 0.0);
+  const Pose pose = world_T_body();
+  for (const double turn : {-50.0, 80.0}) {  // degrees about the axis from the side that is seen
+    CAPTURE(turn);
+    // A blade of 30 by 50 mm that touches the shoulder and goes on upwards, seen instead of the skin behind it.
+    const Eigen::Vector3d out =
+        Eigen::AngleAxisd(deg(turn), Eigen::Vector3d::UnitZ()) * Eigen::Vector3d(0.0, -0.9, 0.3);
+    const Eigen::Vector3d normal = out.normalized(), aside = normal.cross(Eigen::Vector3d::UnitZ()).normalized();
+    const Eigen::Vector3d up = aside.cross(normal), foot = pepper(normal) * normal;
+    Cloud cloud;
+    for (std::size_t i = 0; i < skin.size(); ++i) {
+      const Eigen::Vector3d q = pose.inverse() * skin.points[i].cast<double>() - foot;
+      if (q.dot(up) > 0.0 && std::abs(q.dot(aside)) < 0.015 && q.dot(normal) > -0.025) continue;
+      cloud.points.push_back(skin.points[i]);
+      cloud.normals.push_back(skin.normals[i]);
+    }
+    const std::size_t blade = cloud.size();
+    for (double a = -0.015; a < 0.015; a += 0.0025)
+      for (double b = 0.0; b < 0.05; b += 0.0025) {
+        cloud.points.push_back((pose * (foot + a * aside + b * up)).cast<float>());
+        cloud.normals.push_back((pose.linear() * normal).cast<float>());
+      }
+    const auto surface = close(cloud);
+    REQUIRE(surface);
+    CHECK((surface->center - pose * center).norm() < 0.0015);
+    CHECK(surface->volume == Approx(volume).epsilon(0.05));
+    for (std::size_t i = 0; i < cloud.size(); ++i) {
+      const Eigen::Vector3d q = pose.inverse() * cloud.points[i].cast<double>();
+      const bool other = std::binary_search(surface->others.begin(), surface->others.end(), static_cast<Index>(i));
+      if (i < blade) CHECK_FALSE(other);
+      if (q.norm() > 1.2 * pepper(q.normalized())) CHECK(other);
+    }
+  }
+}
+
 TEST_CASE("sight lines bound the side that was not seen") {
   struct Case {
     Radius radius;
@@ -356,7 +393,7 @@ TEST_CASE("bins of a ball lie at its radius, and what is no fruit's does not cou
     CHECK(bin.logarithm == Approx(std::log(0.03)).epsilon(1e-9));
     CHECK(bin.direction.norm() == Approx(1.0));
   }
-  REQUIRE(fit.step(model, 0.15, false));
+  REQUIRE(fit.step(model, {0.15, 0.15, false, false}));
   CHECK(fit.residuals().back() == Approx(std::log(2.0)).epsilon(1e-3));
   CHECK(fit.misfit() < 1e-6);
 }

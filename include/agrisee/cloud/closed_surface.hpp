@@ -10,7 +10,9 @@
 /// process regression with a covariance that depends on the axis (Rasmussen & Williams, Gaussian Processes for Machine
 /// Learning, 2006, 2.1 and 5.4.1). n is chosen by the evidence. Shift and tilt of the axis are unknowns of the same
 /// least-squares problem and are applied after each step. Points far from the surface, or with other normals, lose
-/// their weight (Tukey's biweight). Evidence is robust as well: a sepal that lies on a round fruit is no reason to give
+/// their weight (Tukey's biweight), those inside later than those outside: other things may lie outside, but nothing
+/// can be seen inside. Where many points lie deep inside, as beside a leaf that looks like a neck of the fruit, the
+/// surface is drawn back to them. Evidence is robust as well: a sepal that lies on a round fruit is no reason to give
 /// up the ellipsoid. Unlabeled points on the surface join the fruit: the neck of a pear is too far from any ellipsoid
 /// to be labeled before. Where no point was seen, sight lines can show that the surface lies farther inside.
 ///
@@ -48,6 +50,8 @@ struct ClosedSurface {
   Eigen::Matrix3d spread = Eigen::Matrix3d::Zero();             ///< covariance of the positions inside it (m2)
   double rms = 0.0;                                             ///< root mean square distance of its points (m)
   Indices joined;  ///< unlabeled points on it, ascending; none if the weight is 0
+  Indices
+      others;  ///< the fruit's points that lie far outside of it, on something else; none if the weight is below 0.5
 };
 
 namespace detail {
@@ -194,8 +198,14 @@ SurfacePoints surface_points(const PointCloud<S>& cloud, const Indices& own, con
 /// Numbers of lobes that are tried; 0 is a body of revolution.
 constexpr std::array<int, 8> kLobes = {0, 3, 4, 5, 6, 7, 8, 9};
 
-/// Relative distances beyond which points lose weight, step by step.
+/// Relative distances outside the surface beyond which points lose weight, step by step.
 constexpr std::array<double, 4> kGates = {0.15, 0.08, 0.05, 0.04};
+
+/// The gates of step `k`, the last for all that follow. Points inside may lie farther off.
+inline SurfaceFit::Gates gates(std::size_t k, bool join = true) {
+  const double outside = kGates[std::min(k, kGates.size() - 1)];
+  return {outside, 1.5 * outside, false, join};
+}
 
 /// A fit of the model number `model`.
 struct FittedSurface {
@@ -204,6 +214,14 @@ struct FittedSurface {
   double evidence;  ///< for the fit (nats)
 };
 
+/// Evidence (nats) for a fit by the fruit's points, less what contradicts it.
+inline double evidence_less_contradictions(const SurfaceFit& fit, const SurfaceModel& model) {
+  constexpr double kFar = 0.5;             // points farther off than this do not tell fits apart
+  constexpr double kContradiction = 20.0;  // nats
+  return fit.evidence(model, fit.radial_bins(fit.plain_weights(kFar)), kEvidenceNoise) -
+         kContradiction * static_cast<double>(fit.contradictions());
+}
+
 /// Fit from one first guess: a body of revolution, then the model for which there is most evidence.
 /// @param models one for each of kLobes
 /// @return empty if the points do not determine it
@@ -211,10 +229,9 @@ inline std::optional<FittedSurface> fit_from(const SurfaceFit::Start& start, con
                                              const std::vector<SurfaceModel>& models,
                                              const ClosedSurfaceParameters& parameters) {
   constexpr std::size_t kSteps = 4;  // as a body of revolution, then with its lobes
-  constexpr double kFar = 0.5;       // points farther off than this do not tell fits apart
   SurfaceFit fit(samples, start, models[0], parameters);
   for (std::size_t k = 0; k < kSteps; ++k)
-    if (!fit.step(models[0], kGates[k], k >= 2)) return std::nullopt;
+    if (!fit.step(models[0], gates(k, k >= 2))) return std::nullopt;
   const std::vector<double> plain = fit.plain_weights(0.2);
   const std::vector<RadialBin> bins = fit.radial_bins(plain);
   if (bins.empty()) return std::nullopt;
@@ -230,10 +247,28 @@ inline std::optional<FittedSurface> fit_from(const SurfaceFit::Start& start, con
   if (model > 0) fit.set_weights(plain);
   for (std::size_t k = 0; k < kSteps; ++k) {
     if (k == 1) fit.open_top();
-    if (!fit.step(models[model], kGates[std::min<std::size_t>(k + 1, 3)], true)) return std::nullopt;
+    if (!fit.step(models[model], gates(k + 1))) return std::nullopt;
   }
-  const double evidence = fit.evidence(models[model], fit.radial_bins(fit.plain_weights(kFar)), kEvidenceNoise);
+  const double evidence = evidence_less_contradictions(fit, models[model]);
   return FittedSurface{std::move(fit), model, evidence};
+}
+
+/// A fit without what other things have added to the fruit. A leaf that lies on it looks like a neck, and the fruit's
+/// points beside the leaf then lie deep inside that neck. Steps that count them draw the surface back to them, and the
+/// leaf's points lose their weight.
+/// @return the given fit if nothing contradicts it, or if there is more evidence for it
+inline FittedSurface without_neighbors(FittedSurface fitted, const SurfaceModel& model) {
+  if (fitted.fit.contradictions() == 0) return fitted;
+  constexpr int kDraw = 8, kSettle = 2;     // steps
+  constexpr double kAnywhereInside = 0.32;  // of the radius
+  SurfaceFit fit = fitted.fit;
+  for (int k = 0; k < kDraw; ++k)
+    if (!fit.step(model, {kGates.back(), kAnywhereInside, true})) return fitted;
+  for (int k = 0; k < kSettle; ++k)
+    if (!fit.step(model, gates(kGates.size()))) return fitted;
+  const double evidence = evidence_less_contradictions(fit, model);
+  if (!(evidence > fitted.evidence)) return fitted;
+  return {std::move(fit), fitted.model, evidence};
 }
 
 /// The best of the fits from several first guesses; empty if none succeeds.
@@ -312,19 +347,20 @@ std::optional<ClosedSurface> closed_surface(const PointCloud<S>& cloud, const In
                                                               static_cast<std::size_t>(parameters.max_points));
   std::vector<detail::SurfaceModel> models;
   for (const int n : detail::kLobes) models.emplace_back(n, parameters);
-  auto best = detail::best_fit(detail::first_guesses(cloud, own, body, axis), points.samples, models, parameters);
-  if (!best) return std::nullopt;
-  detail::SurfaceFit& fit = best->fit;
-  const detail::SurfaceModel& model = models[best->model];
+  auto found = detail::best_fit(detail::first_guesses(cloud, own, body, axis), points.samples, models, parameters);
+  if (!found) return std::nullopt;
+  const std::size_t number = found->model;
+  const detail::SurfaceModel& model = models[number];
+  detail::SurfaceFit fit = detail::without_neighbors(std::move(*found), model).fit;
 
   constexpr int kLimited = 3;  // steps with the limits by free space
   for (int k = 0; is_free && k < kLimited; ++k) {
     fit.set_limits(detail::free_space_limits(fit, model, is_free));
-    if (!fit.step(model, detail::kGates.back(), true)) return std::nullopt;
+    if (!fit.step(model, detail::gates(detail::kGates.size()))) return std::nullopt;
   }
 
   ClosedSurface out;
-  out.lobes = detail::kLobes[best->model];
+  out.lobes = detail::kLobes[number];
   std::vector<detail::RadialBin> bins = fit.radial_bins(fit.weights());
   if (bins.size() < 12) return std::nullopt;
   bins.insert(bins.end(), fit.limits().begin(), fit.limits().end());
@@ -338,6 +374,10 @@ std::optional<ClosedSurface> closed_surface(const PointCloud<S>& cloud, const In
       std::clamp((out.evidence - parameters.doubtful) / (parameters.certain - parameters.doubtful), 0.0, 1.0);
   out.weight = t * t * (3.0 - 2.0 * t);
   detail::explain_points(fit, points, out);
+  constexpr double kFarOutside = 0.1;  // of the distance from the center
+  for (const Index i : out.weight > 0.5 ? own : Indices{})
+    if (fit.foot(model, cloud.points[static_cast<std::size_t>(i)].template cast<double>()).distance > kFarOutside)
+      out.others.push_back(i);
   return out;
 }
 

@@ -52,6 +52,14 @@ class SurfaceFit {
     double top = 1.0;      ///< points in directions nearer to the axis than this cosine are left out until open_top()
   };
 
+  /// Which points a step takes in, by their distance from the surface, relative to the radius.
+  struct Gates {
+    double outside;           ///< farther outside, points lose all weight: other things may lie there
+    double inside;            ///< farther inside likewise, but nothing behind the surface could have been seen
+    bool any_normal = false;  ///< whether the fruit's points inside count if their normals just face outwards
+    bool join = true;         ///< whether points of no fruit count as well
+  };
+
   /// @param model of revolution
   SurfaceFit(const Samples& samples, const Start& start, const SurfaceModel& model,
              const ClosedSurfaceParameters& parameters)
@@ -78,9 +86,9 @@ class SurfaceFit {
     residuals_.assign(samples.points.size(), 0.0);
   }
 
-  /// Steps with `model`; see the constants of closed_surface.
+  /// Steps with `model`.
   /// @return false if the surface degenerates
-  bool step(const SurfaceModel& model, double gate, bool join) {
+  bool step(const SurfaceModel& model, const Gates& gates) {
     std::vector<RadialBin> bins = radial_bins(weights_);
     if (bins.size() < 12) return false;
     bins.insert(bins.end(), limits_.begin(), limits_.end());
@@ -96,7 +104,7 @@ class SurfaceFit {
     turn_.row(2) = axis;
     turn_.row(1) = turn_.row(2).cross(turn_.row(0));
     coefficients_ = posterior.mean.head(posterior.mean.size() - kExtra);
-    return weigh(model, gate, join);
+    return weigh(model, gates);
   }
 
   /// Evidence for `model` about the present axis and center.
@@ -134,6 +142,23 @@ class SurfaceFit {
   }
   void set_weights(std::vector<double> weights) { weights_ = std::move(weights); }
 
+  /// Directions, as bins, in which many of the fruit's points lie deep inside the surface: seen through it, were it
+  /// there.
+  std::size_t contradictions() const {
+    constexpr double kDeep = 0.2, kMany = 0.4;
+    using Bins = CubeBins<8>;
+    std::array<std::size_t, Bins::kCount> all{}, deep{};
+    for (std::size_t i = 0; i < samples_.own; ++i) {
+      const auto bin = static_cast<std::size_t>(Bins::bin(samples_.points[i] - center_));
+      ++all[bin];
+      deep[bin] += residuals_[i] < -kDeep;
+    }
+    std::size_t out = 0;
+    for (std::size_t b = 0; b < Bins::kCount; ++b)
+      out += static_cast<double>(deep[b]) > kMany * static_cast<double>(all[b]);
+    return out;
+  }
+
   /// Mean distance of the fruit's points from the surface, relative, each at most 0.05.
   double misfit() const {
     double sum = 0.0;
@@ -163,6 +188,28 @@ class SurfaceFit {
       out.push_back(bin);
     }
     return out;
+  }
+
+  /// The surface near a point.
+  struct Foot {
+    double distance;  ///< of the point along the normal, relative to its distance from the center; inside negative
+    Eigen::Vector3d normal;  ///< of the surface (unit, outwards)
+  };
+
+  Foot foot(const SurfaceModel& model, const Eigen::Vector3d& point) const {
+    const Eigen::Vector3d q = turn_ * (point - center_);
+    const double r = q.norm();
+    if (!(r > 1e-9)) return {-1.0, Eigen::Vector3d::Zero()};
+    const Eigen::Vector3d u = q / r;
+    Eigen::VectorXd values(coefficients_.size());
+    model.basis.values(u, values.data());
+    const double logarithm = std::log(r) - size_ - values.dot(coefficients_);
+    const double slope = model.basis.slope(u, values.data(), coefficients_);
+    const double s = std::sqrt(u.x() * u.x() + u.y() * u.y());
+    const double c = s > 0.0 ? u.x() / s : 1.0, d = s > 0.0 ? u.y() / s : 0.0;
+    const Eigen::Vector3d normal = u - slope * Eigen::Vector3d(u.z() * c, u.z() * d, -s);
+    const double steepness = normal.norm();
+    return {logarithm / steepness, turn_.transpose() * (normal / steepness)};
   }
 
   /// Distance (m) of the surface from the center in a direction of the axis' frame (unit).
@@ -219,6 +266,7 @@ class SurfaceFit {
   double noise() const { return noise_; }
   const std::vector<double>& weights() const { return weights_; }
   const std::vector<RadialBin>& limits() const { return limits_; }
+  /// Distances of the points as of Foot.
   const std::vector<double>& residuals() const { return residuals_; }
 
  private:
@@ -241,37 +289,23 @@ class SurfaceFit {
   }
 
   /// New residuals, noise and weights of all points.
-  bool weigh(const SurfaceModel& model, double gate, bool join) {
-    constexpr double kOwnCosine = 0.6, kJoinedCosine = 0.8;  // of the angle between normals of point and surface
+  bool weigh(const SurfaceModel& model, const Gates& gates) {
+    constexpr double kOwnCosine = 0.9, kJoinedCosine = 0.8;  // of the angle between normals of point and surface
     std::vector<double> cosines(samples_.points.size(), 0.0), sorted;
     sorted.reserve(samples_.own);
-    std::vector<double> values(model.basis.size());
     for (std::size_t i = 0; i < samples_.points.size(); ++i) {
-      const Eigen::Vector3d q = turn_ * (samples_.points[i] - center_);
-      const double r = q.norm();
-      if (!(r > 1e-9)) {
-        residuals_[i] = 1.0;
-        continue;
-      }
-      const Eigen::Vector3d u = q / r;
-      model.basis.values(u, values.data());
-      residuals_[i] = std::log(r) - size_ -
-                      Eigen::Map<const Eigen::VectorXd>(values.data(), coefficients_.size()).dot(coefficients_);
-      const double slope = model.basis.slope(u, values.data(), coefficients_);
-      const double s = std::sqrt(u.x() * u.x() + u.y() * u.y());
-      const double c = s > 0.0 ? u.x() / s : 1.0, d = s > 0.0 ? u.y() / s : 0.0;
-      const Eigen::Vector3d normal = u - slope * Eigen::Vector3d(u.z() * c, u.z() * d, -s);
-      cosines[i] = normal.normalized().dot(turn_ * samples_.normals[i]);
-      if (i < samples_.own) sorted.push_back(std::abs(residuals_[i]));
+      const Foot foot = this->foot(model, samples_.points[i]);
+      residuals_[i] = foot.distance;
+      cosines[i] = foot.normal.dot(samples_.normals[i]);
+      if (i < samples_.own) sorted.push_back(std::abs(foot.distance));
     }
     if (sorted.empty()) return false;
     noise_ = std::clamp(1.4826 * median(sorted), parameters_.noise, std::max(parameters_.noise, 0.03));
-    const double far = std::max(4.0 * noise_, gate);
+    const double outside = std::max(4.0 * noise_, gates.outside), inside = std::max(4.0 * noise_, gates.inside);
     for (std::size_t i = 0; i < samples_.points.size(); ++i) {
-      const double t = residuals_[i] / far;
-      const bool own = i < samples_.own;
-      const bool counts = own ? cosines[i] > kOwnCosine
-                              : join && cosines[i] > kJoinedCosine && std::abs(residuals_[i]) < parameters_.join;
+      const double r = residuals_[i], t = r / (r > 0.0 ? outside : inside);
+      const bool counts = i < samples_.own ? cosines[i] > (gates.any_normal && r < 0.0 ? 0.0 : kOwnCosine)
+                                           : gates.join && cosines[i] > kJoinedCosine && std::abs(r) < parameters_.join;
       weights_[i] = counts && std::abs(t) < 1.0 && !at_top(i) ? (1.0 - t * t) * (1.0 - t * t) : 0.0;
     }
     return true;
