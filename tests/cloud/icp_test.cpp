@@ -264,6 +264,38 @@ TEST_CASE("errors that neighbors share move no pose that was right") {
   CHECK(align(moved(off, view), target, IcpParameters::of_views()).accepted);
 }
 
+TEST_CASE("a material that the sensor sees too deep moves no pose that was right") {
+  // Leaves before and behind the truss, three times its points; the view sees them 3 mm too deep.
+  const auto scene = [](std::size_t fruit, std::uint64_t seed, double deep) {
+    auto cloud = truss<double>(fruit, seed, 6, 0.0);
+    Rng rng(seed + 10);
+    for (std::size_t i = 0; i < 3 * fruit; ++i) {
+      const double x = 0.2 * rng.uniform() - 0.1, z = 0.4 + 0.25 * rng.uniform(), slope = 0.4 * std::cos(30.0 * x + z);
+      cloud.points.emplace_back(x, (i % 2 ? 0.43 : 0.57) + deep + slope / 30.0 * std::sin(30.0 * z), z);
+      cloud.normals.push_back(
+          Eigen::Vector3d(std::sin(30.0 * x + z) * 0.4 * std::sin(30.0 * z), -1.0, slope * std::cos(30.0 * z))
+              .normalized());
+    }
+    return cloud;
+  };
+  const auto target = scene(3000, 1, 0.0);
+  const auto view = scene(600, 2, 0.003);
+  IcpParameters anyhow = IcpParameters::of_views();
+  anyhow.max_worse = 1.0;
+  const IcpResult pulled = align(view, target, anyhow);
+  CHECK(pulled.accepted);
+  CHECK(pulled.target_T_source.translation().norm() > 0.002);
+  CHECK(pulled.worse > 0.15);
+  const IcpResult kept = align(view, target, IcpParameters::of_views());
+  CHECK_FALSE(kept.accepted);
+  CHECK(kept.worse == pulled.worse);
+  // Where all surfaces say the same, the pose is put right.
+  const IcpResult put_right = align(moved(kSmall, scene(600, 2, 0.0)), target, IcpParameters::of_views());
+  CHECK(put_right.accepted);
+  CHECK(put_right.worse < 0.05);
+  CHECK(error(put_right, kSmall) < 0.0005);
+}
+
 TEST_CASE("ICP of next to nothing, degenerate clouds and bad input") {
   const auto target = truss<float>(500, 1, 2, 0.0);
   const Cloud none;

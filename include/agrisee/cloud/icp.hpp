@@ -16,12 +16,16 @@
 
 #include <agrisee/cloud/icp_problem.hpp>
 #include <agrisee/cloud/parameters.hpp>
+#include <agrisee/core/median.hpp>
 #include <agrisee/core/pose.hpp>
 #include <agrisee/geometry/aabb.hpp>
 #include <agrisee/neighbors/grid.hpp>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <map>
+#include <vector>
 
 namespace agrisee {
 
@@ -32,7 +36,9 @@ struct IcpResult {
   /// Residual (m) at the initial pose: sqrt(mean(2 rho(r))) over the points that are matched both at the initial pose
   /// and at the end; that is the root mean square if the kernel is `none`. 0 without matches.
   double rms_before = 0.0;
-  double rms_after = 0.0;          ///< residual (m) at the end, over the same points
+  double rms_after = 0.0;  ///< residual (m) at the end, over the same points
+  /// Share of these points in regions, cubes of six times `max_distance`, where the median residual has grown clearly.
+  double worse = 0.0;
   std::size_t matches_before = 0;  ///< number of matched points at the initial pose
   std::size_t matches = 0;         ///< number of matched points at the end
   int iterations = 0;              ///< steps taken
@@ -105,6 +111,31 @@ void compare_residuals(const Problem& problem, const std::vector<Index>& matches
   }
 }
 
+/// Enter the share of the points in regions that fit worse than before, of those that are matched at both times.
+template <typename Problem>
+void compare_regions(const Problem& problem, const std::vector<Index>& matches_before,
+                     const std::vector<double>& residuals_before, const IcpParameters& parameters, IcpResult& result) {
+  constexpr double kEdge = 6.0;                      // of a region, in largest distances
+  constexpr double kClearly = 1.3, kAtLeast = 0.02;  // the second in largest distances
+  constexpr std::size_t kFewest = 8;                 // points in a region
+  std::map<std::array<double, 3>, std::array<std::vector<double>, 2>> regions;
+  for (std::size_t i = 0; i < matches_before.size(); ++i) {
+    if (matches_before[i] < 0 || problem.matches()[i] < 0) continue;
+    const Eigen::Vector3d cell = (problem.points()[i] / (kEdge * parameters.max_distance)).array().floor();
+    auto& [before, after] = regions[{cell.x(), cell.y(), cell.z()}];
+    before.push_back(std::abs(residuals_before[i]));
+    after.push_back(std::abs(problem.residuals()[i]));
+  }
+  std::size_t points = 0, worse = 0;
+  for (auto& region : regions) {
+    auto& [before, after] = region.second;
+    if (before.size() < kFewest) continue;
+    points += before.size();
+    if (median(after) > kClearly * median(before) + kAtLeast * parameters.max_distance) worse += before.size();
+  }
+  if (points > 0) result.worse = static_cast<double>(worse) / static_cast<double>(points);
+}
+
 /// True if the data favor the correction that `result` describes over the pose that was given. Compared
 /// are the likelihood of the residuals, if one in `independent` matches has an error of its own, and what the
 /// correction costs: half the logarithm of that number for each direction that is corrected (Schwarz, Annals of
@@ -125,8 +156,9 @@ inline bool worth_a_correction(const IcpResult& result, const IcpParameters& par
 ///
 /// A source point is matched with the nearest target point within `max_distance` whose normal agrees; a point whose
 /// normal is needed but zero is not matched. The motion found is dropped (`accepted` is false and the initial pose is
-/// returned) if it does not lower the residual (by more than chance would, see IcpParameters::independent), is larger
-/// than the limits, loses half of the matches, or has fewer than `min_matches`.
+/// returned) if it does not lower the residual (by more than chance would, see IcpParameters::independent), or raises
+/// it in too many places (`max_worse`), is larger than the limits, loses half of the matches, or has fewer than
+/// `min_matches`.
 /// @param source points (m) to be aligned with the target
 /// @param source_normals one unit normal per source point, or empty: the angle between normals is not tested then
 /// @param target points (m) that stay where they are
@@ -162,11 +194,13 @@ IcpResult register_cloud(const Source& source, const std::vector<Vector3<scalar_
   const std::vector<double> residuals_before = problem.residuals();
   const Pose pose = detail::converge(problem, parameters, initial, result);
   detail::compare_residuals(problem, matches_before, residuals_before, parameters, result);
+  detail::compare_regions(problem, matches_before, residuals_before, parameters, result);
   result.translation = (pose * problem.centroid() - initial * problem.centroid()).norm();
   result.rotation = angle_of(initial.inverse() * pose);
   result.accepted = result.matches >= static_cast<std::size_t>(parameters.min_matches) &&
                     2 * result.matches > result.matches_before && detail::worth_a_correction(result, parameters) &&
-                    result.translation <= parameters.max_translation && result.rotation <= parameters.max_rotation;
+                    result.worse <= parameters.max_worse && result.translation <= parameters.max_translation &&
+                    result.rotation <= parameters.max_rotation;
   if (result.accepted) result.target_T_source = pose;
   return result;
 }

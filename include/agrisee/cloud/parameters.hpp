@@ -126,6 +126,9 @@ struct IcpParameters {
   double independent = 0.0;
   double pose_translation = 0.002;  ///< expected error of the initial position (m); only `independent` > 0 reads it
   double pose_rotation = deg(0.3);  ///< expected error of the initial rotation (rad); only `independent` > 0 reads it
+  /// A correction is rejected if more than this share of the points lie where it makes the residuals larger. A wrong
+  /// pose is wrong for all of them, but a sensor may see one material, such as leaves, too deep and another not.
+  double max_worse = 1.0;
 
   /// The defaults, which suit the stages of [1]; it does no registration and gives no values.
   static IcpParameters paper() { return {}; }
@@ -133,6 +136,7 @@ struct IcpParameters {
   static IcpParameters of_views() {
     IcpParameters p;
     p.independent = 30.0;
+    p.max_worse = 0.1;
     return p;
   }
 
@@ -160,6 +164,7 @@ struct IcpParameters {
     f("independent", p.independent, Range::not_negative());
     f("pose_translation", p.pose_translation, Range::positive());
     f("pose_rotation", p.pose_rotation, Range::positive().in_radians());
+    f("max_worse", p.max_worse, Range::between(0.0, 1.0));
   }
 };
 

@@ -264,6 +264,8 @@ class IcpResult:
     @property
     def rms_after(self) -> float: ...
     @property
+    def worse(self) -> float: ...
+    @property
     def matches(self) -> int: ...
     @property
     def iterations(self) -> int: ...
@@ -371,6 +373,7 @@ def icp(
     independent: float = ...,
     pose_translation: float = ...,
     pose_rotation: float = ...,
+    max_worse: float = ...,
 ) -> IcpResult: ...
 def fit_ellipsoid(
     points: _Rows,
@@ -428,6 +431,7 @@ class IcpParameters:
     independent: float
     pose_translation: float
     pose_rotation: float
+    max_worse: float
     __hash__: ClassVar[None]  # type: ignore[assignment]
     def to_dict(self) -> Dict[str, Any]: ...
     def update(self, values: Mapping[str, Any]) -> None: ...
