@@ -19,15 +19,14 @@
 /// Metres, any frame. Cost: 5 to 20 ms; points are thinned, so it hardly grows with them.
 #pragma once
 
-#include <agrisee/cloud/fit.hpp>
+#include <agrisee/cloud/body_shape.hpp>
 #include <agrisee/cloud/seen_through.hpp>
 #include <agrisee/cloud/surface_fit.hpp>
-#include <agrisee/core/cancellation.hpp>
+#include <agrisee/cloud/surface_search.hpp>
 #include <agrisee/core/cloud.hpp>
 #include <agrisee/core/error.hpp>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <optional>
 #include <utility>
@@ -55,9 +54,6 @@ struct ClosedSurface {
 };
 
 namespace detail {
-
-/// Standard deviation of a point, relative to the radius, that evidence for or against the ellipsoid assumes at least.
-constexpr double kEvidenceNoise = 0.01;
 
 /// Evidence for an ellipsoid with small, even deviations, from the same bins.
 inline double ellipsoid_evidence(const Ellipsoid& body, const SurfaceFit& fit, const std::vector<RadialBin>& bins,
@@ -116,31 +112,6 @@ inline void integrate(const SurfaceModel& model, const SurfaceFit& fit, const Li
   out.axis = turn.row(2);
 }
 
-/// First guesses of a fruit's surface: the ellipsoid with the given axis and with each of its own. The points at the
-/// stem may be those of a calyx that stands out, and the ellipsoid may have followed them; the second guess is nearly a
-/// sphere, and these points stay out of it until the sides have shaped the surface.
-template <typename S>
-std::vector<SurfaceFit::Start> first_guesses(const PointCloud<S>& cloud, const Indices& own, const Ellipsoid& body,
-                                             const Eigen::Vector3d& axis) {
-  constexpr double kTop = 0.3, kNearlySphere = 0.02, kAlike = 0.5;
-  std::vector<SurfaceFit::Start> out{{body, axis}};
-  Indices below;
-  for (const Index i : own) {
-    const Eigen::Vector3d q = cloud.points[static_cast<std::size_t>(i)].template cast<double>() - body.center;
-    if (q.dot(axis) <= kTop * q.norm() * axis.norm()) below.push_back(i);
-  }
-  FitParameters rounder;
-  rounder.shape_prior = kNearlySphere;
-  const auto sphere = sphere_from_normals(cloud, below);
-  const bool usable = sphere && std::abs(std::log(sphere->radius / body.mean_radius())) < kAlike;
-  const auto fit = fit_ellipsoid(cloud, below, usable ? Ellipsoid(*sphere) : body, rounder);
-  out.push_back({fit ? fit->body : body, axis, kTop});
-  const Eigen::Matrix3d axes = semi_axes(body).second;
-  for (int k = 0; k < 3; ++k)
-    if (std::abs(axes.col(k).dot(axis)) < 0.9) out.push_back({body, axes.col(k)});
-  return out;
-}
-
 /// Where the surface lies in space that sight lines passed through, and no point was seen: the distance up to which
 /// they leave room for it.
 /// @return in the axis' frame; their weights are small, since free space is known with an error of some millimetres
@@ -193,101 +164,6 @@ SurfacePoints surface_points(const PointCloud<S>& cloud, const Indices& own, con
     out.near.push_back(i);
   }
   return out;
-}
-
-/// Numbers of lobes that are tried; 0 is a body of revolution.
-constexpr std::array<int, 8> kLobes = {0, 3, 4, 5, 6, 7, 8, 9};
-
-/// Relative distances outside the surface beyond which points lose weight, step by step.
-constexpr std::array<double, 4> kGates = {0.15, 0.08, 0.05, 0.04};
-
-/// The gates of step `k`, the last for all that follow. Points inside may lie farther off.
-inline SurfaceFit::Gates gates(std::size_t k, bool join = true) {
-  const double outside = kGates[std::min(k, kGates.size() - 1)];
-  return {outside, 1.5 * outside, false, join};
-}
-
-/// A fit of the model number `model`.
-struct FittedSurface {
-  SurfaceFit fit;
-  std::size_t model;
-  double evidence;  ///< for the fit (nats)
-};
-
-/// Evidence (nats) for a fit by the fruit's points, less what contradicts it.
-inline double evidence_less_contradictions(const SurfaceFit& fit, const SurfaceModel& model) {
-  constexpr double kFar = 0.5;             // points farther off than this do not tell fits apart
-  constexpr double kContradiction = 20.0;  // nats
-  return fit.evidence(model, fit.radial_bins(fit.plain_weights(kFar)), kEvidenceNoise) -
-         kContradiction * static_cast<double>(fit.contradictions());
-}
-
-/// Fit from one first guess: a body of revolution, then the model for which there is most evidence.
-/// @param models one for each of kLobes
-/// @return empty if the points do not determine it
-inline std::optional<FittedSurface> fit_from(const SurfaceFit::Start& start, const SurfaceFit::Samples& samples,
-                                             const std::vector<SurfaceModel>& models,
-                                             const ClosedSurfaceParameters& parameters) {
-  constexpr std::size_t kSteps = 4;  // as a body of revolution, then with its lobes
-  SurfaceFit fit(samples, start, models[0], parameters);
-  for (std::size_t k = 0; k < kSteps; ++k)
-    if (!fit.step(models[0], gates(k, k >= 2))) return std::nullopt;
-  const std::vector<double> plain = fit.plain_weights(0.2);
-  const std::vector<RadialBin> bins = fit.radial_bins(plain);
-  if (bins.empty()) return std::nullopt;
-  std::size_t model = 0;
-  double largest = 0.0;
-  for (std::size_t m = 0; m < models.size(); ++m) {
-    const double evidence = fit.evidence_for(models[m], models[0], bins, 0.006);
-    if (m > 0 && !(evidence > largest)) continue;
-    largest = evidence;
-    model = m;
-  }
-  fit.change(models[model], models[0]);
-  if (model > 0) fit.set_weights(plain);
-  for (std::size_t k = 0; k < kSteps; ++k) {
-    if (k == 1) fit.open_top();
-    if (!fit.step(models[model], gates(k + 1))) return std::nullopt;
-  }
-  const double evidence = evidence_less_contradictions(fit, models[model]);
-  return FittedSurface{std::move(fit), model, evidence};
-}
-
-/// A fit without what other things have added to the fruit. A leaf that lies on it looks like a neck, and the fruit's
-/// points beside the leaf then lie deep inside that neck. Steps that count them draw the surface back to them, and the
-/// leaf's points lose their weight.
-/// @return the given fit if nothing contradicts it, or if there is more evidence for it
-inline FittedSurface without_neighbors(FittedSurface fitted, const SurfaceModel& model) {
-  if (fitted.fit.contradictions() == 0) return fitted;
-  constexpr int kDraw = 8, kSettle = 2;     // steps
-  constexpr double kAnywhereInside = 0.32;  // of the radius
-  SurfaceFit fit = fitted.fit;
-  for (int k = 0; k < kDraw; ++k)
-    if (!fit.step(model, {kGates.back(), kAnywhereInside, true})) return fitted;
-  for (int k = 0; k < kSettle; ++k)
-    if (!fit.step(model, gates(kGates.size()))) return fitted;
-  const double evidence = evidence_less_contradictions(fit, model);
-  if (!(evidence > fitted.evidence)) return fitted;
-  return {std::move(fit), fitted.model, evidence};
-}
-
-/// The best of the fits from several first guesses; empty if none succeeds.
-inline std::optional<FittedSurface> best_fit(const std::vector<SurfaceFit::Start>& starts,
-                                             const SurfaceFit::Samples& samples,
-                                             const std::vector<SurfaceModel>& models,
-                                             const ClosedSurfaceParameters& parameters) {
-  constexpr double kGoodFit = 0.006;  // misfit of a fit after which no other start is tried
-  constexpr double kClearly = 10.0;   // nats by which the guess without the points at the stem has to be better
-  std::optional<FittedSurface> best;
-  for (const SurfaceFit::Start& start : starts) {
-    throw_if_cancelled();
-    auto fitted = fit_from(start, samples, models, parameters);
-    if (!fitted) continue;
-    if (best && !(fitted->evidence > best->evidence + (start.top < 1.0 ? kClearly : 0.0))) continue;
-    best.emplace(std::move(*fitted));
-    if (best->fit.misfit() < kGoodFit) break;
-  }
-  return best;
 }
 
 /// Evidence (nats) for a closed surface over the ellipsoid, from the points that either of the two explains.
