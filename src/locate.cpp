@@ -126,8 +126,8 @@ Likeness likeness(const ClosedSurface& surface, const BodyParameters& bodies) {
 }
 
 /// The closed surface of each found fruit, empty where there is none, as for bodies by masks, of which few points are
-/// seen. Points of no fruit that are on one join it, and the fruit's points far off it leave it. What has a surface
-/// that no fruit has loses its points; what may have one keeps its ellipsoid.
+/// seen. Points of no fruit that are on one join it, and the fruit's points far off it leave it; fruit that come later
+/// may take these. What has a surface that no fruit has loses its points; what may have one keeps its ellipsoid.
 /// @param members the points of each fruit; none for what is no fruit
 /// @param labels one per point: the fruit's number from 1, or 0
 std::vector<std::optional<ClosedSurface>> closed_surfaces(const Cloud& cloud, const Split& split,
@@ -154,7 +154,7 @@ std::vector<std::optional<ClosedSurface>> closed_surfaces(const Cloud& cloud, co
       continue;
     }
     for (const Index i : surfaces[f]->joined) labels[static_cast<std::size_t>(i)] = static_cast<int>(f) + 1;
-    for (const Index i : surfaces[f]->others) labels[static_cast<std::size_t>(i)] = 0;
+    for (const Index i : surfaces[f]->left_out) labels[static_cast<std::size_t>(i)] = 0;
     members[f].insert(members[f].end(), surfaces[f]->joined.begin(), surfaces[f]->joined.end());
     std::sort(members[f].begin(), members[f].end());
     members[f].erase(std::remove_if(members[f].begin(), members[f].end(),

@@ -136,7 +136,9 @@ void bind_stage_results(py::module_& m) {
       .def_readonly("accepted", &IcpResult::accepted, "whether the correction lowers the residual within its limits")
       .def_readonly("rms_before", &IcpResult::rms_before, "residual (m) at the initial pose")
       .def_readonly("rms_after", &IcpResult::rms_after, "final residual (m), over the same points")
-      .def_readonly("worse", &IcpResult::worse, "share of these points where the residuals grew")
+      .def_readonly(
+          "worse", &IcpResult::worse,
+          "share of the matched points in regions where the residuals grew clearly; see IcpParameters.max_worse")
       .def_readonly("matches", &IcpResult::matches, "final number of matched points")
       .def_readonly("iterations", &IcpResult::iterations, "number of iterations")
       .def_readonly("constrained", &IcpResult::constrained,

@@ -72,7 +72,7 @@ Outcome run(const Work& work, double at) {
   return out;
 }
 
-/// Fruit without number, seen from all sides, some 0.5 mm apart.
+/// Ten fruit, seen from all sides; 250,000 points are some 0.7 mm apart.
 Cloud large(std::size_t n) {
   Cloud cloud;
   Rng rng(61);

@@ -65,6 +65,7 @@ def test_icp():
     found = agrisee.icp(target - shift, target, target_normals=normals)
     assert found.accepted and np.allclose(found.target_T_source[:3, 3], shift, atol=2e-4)
     assert found.rms_after < 0.1 * found.rms_before and "accepted" in repr(found)
+    assert found.worse == 0.0
     start = np.eye(4)
     start[:3, 3] = shift
     again = agrisee.icp((target - shift).astype(np.float32), target, target_normals=normals, initial=start)

@@ -10,11 +10,12 @@
 /// process regression with a covariance that depends on the axis (Rasmussen & Williams, Gaussian Processes for Machine
 /// Learning, 2006, 2.1 and 5.4.1). n is chosen by the evidence. Shift and tilt of the axis are unknowns of the same
 /// least-squares problem and are applied after each step. Points far from the surface, or with other normals, lose
-/// their weight (Tukey's biweight), those inside later than those outside: other things may lie outside, but nothing
-/// can be seen inside. Where many points lie deep inside, as beside a leaf that looks like a neck of the fruit, the
-/// surface is drawn back to them. Evidence is robust as well: a sepal that lies on a round fruit is no reason to give
-/// up the ellipsoid. Unlabeled points on the surface join the fruit: the neck of a pear is too far from any ellipsoid
-/// to be labeled before. Where no point was seen, sight lines can show that the surface lies farther inside.
+/// their weight (Tukey's biweight). Points inside may lie farther off than points outside: other things may lie in
+/// front of a fruit, but nothing behind its surface can be seen. Where many points lie deep inside, as beside a leaf
+/// that looks like a neck of the fruit, the surface is drawn back to them. Evidence is robust as well: a sepal that
+/// lies on a round fruit is no reason to give up the ellipsoid. Unlabeled points on the surface join the fruit: the
+/// neck of a pear is too far from any ellipsoid to be labeled before. Where no point was seen, sight lines can show
+/// that the surface lies farther inside.
 ///
 /// Metres, any frame. Cost: 5 to 20 ms; points are thinned, so it hardly grows with them.
 #pragma once
@@ -48,9 +49,8 @@ struct ClosedSurface {
   double volume_error = 0.0;                                    ///< its standard error, relative
   Eigen::Matrix3d spread = Eigen::Matrix3d::Zero();             ///< covariance of the positions inside it (m2)
   double rms = 0.0;                                             ///< root mean square distance of its points (m)
-  Indices joined;  ///< unlabeled points on it, ascending; none if the weight is 0
-  Indices
-      others;  ///< the fruit's points that lie far outside of it, on something else; none if the weight is below 0.5
+  Indices joined;    ///< unlabeled points on it, ascending; none if the weight is 0
+  Indices left_out;  ///< points of the fruit far outside it, as on a leaf, in their order; none unless weight > 0.5
 };
 
 namespace detail {
@@ -232,7 +232,7 @@ std::optional<ClosedSurface> closed_surface(const PointCloud<S>& cloud, const In
   constexpr int kLimited = 3;  // steps with the limits by free space
   for (int k = 0; is_free && k < kLimited; ++k) {
     fit.set_limits(detail::free_space_limits(fit, model, is_free));
-    if (!fit.step(model, detail::gates(detail::kGates.size()))) return std::nullopt;
+    if (!fit.step(model, detail::last_gates())) return std::nullopt;
   }
 
   ClosedSurface out;
@@ -250,10 +250,12 @@ std::optional<ClosedSurface> closed_surface(const PointCloud<S>& cloud, const In
       std::clamp((out.evidence - parameters.doubtful) / (parameters.certain - parameters.doubtful), 0.0, 1.0);
   out.weight = t * t * (3.0 - 2.0 * t);
   detail::explain_points(fit, points, out);
-  constexpr double kFarOutside = 0.1;  // of the distance from the center
-  for (const Index i : out.weight > 0.5 ? own : Indices{})
-    if (fit.foot(model, cloud.points[static_cast<std::size_t>(i)].template cast<double>()).distance > kFarOutside)
-      out.others.push_back(i);
+  if (out.weight > 0.5) {
+    const double far_outside = std::max(0.1, 4.0 * fit.noise());  // relative; closer points shape the surface
+    for (const Index i : own)
+      if (fit.foot(model, cloud.points[static_cast<std::size_t>(i)].template cast<double>()).distance > far_outside)
+        out.left_out.push_back(i);
+  }
   return out;
 }
 

@@ -37,7 +37,8 @@ struct IcpResult {
   /// and at the end; that is the root mean square if the kernel is `none`. 0 without matches.
   double rms_before = 0.0;
   double rms_after = 0.0;  ///< residual (m) at the end, over the same points
-  /// Share of these points in regions, cubes of six times `max_distance`, where the median residual has grown clearly.
+  /// Of these points in cubes with at least 8 of them, the share in cubes whose median residual grew clearly. The cubes
+  /// have edges of six times `max_distance`, in the source's frame. 0 if no cube has 8.
   double worse = 0.0;
   std::size_t matches_before = 0;  ///< number of matched points at the initial pose
   std::size_t matches = 0;         ///< number of matched points at the end
@@ -115,9 +116,9 @@ void compare_residuals(const Problem& problem, const std::vector<Index>& matches
 template <typename Problem>
 void compare_regions(const Problem& problem, const std::vector<Index>& matches_before,
                      const std::vector<double>& residuals_before, const IcpParameters& parameters, IcpResult& result) {
-  constexpr double kEdge = 6.0;                      // of a region, in largest distances
-  constexpr double kClearly = 1.3, kAtLeast = 0.02;  // the second in largest distances
-  constexpr std::size_t kFewest = 8;                 // points in a region
+  constexpr double kEdge = 6.0;                      // edge of a region, in units of max_distance
+  constexpr double kClearly = 1.3, kAtLeast = 0.02;  // grown by this factor, and by this much in units of max_distance
+  constexpr std::size_t kFewest = 8;                 // points in a region that counts
   std::map<std::array<double, 3>, std::array<std::vector<double>, 2>> regions;
   for (std::size_t i = 0; i < matches_before.size(); ++i) {
     if (matches_before[i] < 0 || problem.matches()[i] < 0) continue;
@@ -156,9 +157,9 @@ inline bool worth_a_correction(const IcpResult& result, const IcpParameters& par
 ///
 /// A source point is matched with the nearest target point within `max_distance` whose normal agrees; a point whose
 /// normal is needed but zero is not matched. The motion found is dropped (`accepted` is false and the initial pose is
-/// returned) if it does not lower the residual (by more than chance would, see IcpParameters::independent), or raises
-/// it in too many places (`max_worse`), is larger than the limits, loses half of the matches, or has fewer than
-/// `min_matches`.
+/// returned) if it does not lower the residual (by more than chance would, see IcpParameters::independent), raises it
+/// for too many points (IcpParameters::max_worse), is larger than the limits, loses half of the matches, or has fewer
+/// than `min_matches`.
 /// @param source points (m) to be aligned with the target
 /// @param source_normals one unit normal per source point, or empty: the angle between normals is not tested then
 /// @param target points (m) that stay where they are

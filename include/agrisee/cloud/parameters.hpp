@@ -126,8 +126,9 @@ struct IcpParameters {
   double independent = 0.0;
   double pose_translation = 0.002;  ///< expected error of the initial position (m); only `independent` > 0 reads it
   double pose_rotation = deg(0.3);  ///< expected error of the initial rotation (rad); only `independent` > 0 reads it
-  /// A correction is rejected if more than this share of the points lie where it makes the residuals larger. A wrong
-  /// pose is wrong for all of them, but a sensor may see one material, such as leaves, too deep and another not.
+  /// A correction is rejected if more than this share of the matched points lies in regions where it makes the
+  /// residuals larger. The correction of a wrong pose makes them smaller everywhere. A sensor that sees one material
+  /// too deep, such as leaves, causes a correction that helps there and harms elsewhere. 1: no such test.
   double max_worse = 1.0;
 
   /// The defaults, which suit the stages of [1]; it does no registration and gives no values.

@@ -14,6 +14,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 #include <vector>
 
 namespace agrisee {
@@ -52,12 +53,15 @@ class SurfaceFit {
     double top = 1.0;      ///< points in directions nearer to the axis than this cosine are left out until open_top()
   };
 
-  /// Which points a step takes in, by their distance from the surface, relative to the radius.
+  /// How far from the surface a point may lie and still count in a step, relative to the radius; at least four times
+  /// the noise.
   struct Gates {
-    double outside;           ///< farther outside, points lose all weight: other things may lie there
-    double inside;            ///< farther inside likewise, but nothing behind the surface could have been seen
-    bool any_normal = false;  ///< whether the fruit's points inside count if their normals just face outwards
-    bool join = true;         ///< whether points of no fruit count as well
+    double outside;  ///< for points outside: small, since other things may lie there
+    double inside;   ///< for points inside: larger, since the surface would have hidden whatever lies behind it
+    /// The fruit's points inside count if their normals face outwards at all, not only if they agree with the
+    /// surface's.
+    bool any_normal = false;
+    bool join = true;  ///< whether points of no fruit count as well
   };
 
   /// @param model of revolution
@@ -142,10 +146,10 @@ class SurfaceFit {
   }
   void set_weights(std::vector<double> weights) { weights_ = std::move(weights); }
 
-  /// Directions, as bins, in which many of the fruit's points lie deep inside the surface: seen through it, were it
-  /// there.
+  /// Number of directions (bins) in which a large share of the fruit's points, of few or many, lies deep inside the
+  /// surface. They contradict it: if the surface were there, it would have hidden them.
   std::size_t contradictions() const {
-    constexpr double kDeep = 0.2, kMany = 0.4;
+    constexpr double kDeep = 0.2, kShare = 0.4;  // relative; of the points in a bin
     using Bins = CubeBins<8>;
     std::array<std::size_t, Bins::kCount> all{}, deep{};
     for (std::size_t i = 0; i < samples_.own; ++i) {
@@ -155,7 +159,7 @@ class SurfaceFit {
     }
     std::size_t out = 0;
     for (std::size_t b = 0; b < Bins::kCount; ++b)
-      out += static_cast<double>(deep[b]) > kMany * static_cast<double>(all[b]);
+      out += static_cast<double>(deep[b]) > kShare * static_cast<double>(all[b]);
     return out;
   }
 
@@ -190,10 +194,13 @@ class SurfaceFit {
     return out;
   }
 
-  /// The surface near a point.
+  /// Where a point lies relative to the surface.
   struct Foot {
-    double distance;  ///< of the point along the normal, relative to its distance from the center; inside negative
-    Eigen::Vector3d normal;  ///< of the surface (unit, outwards)
+    /// To first order along the normal: the logarithm of the point's distance from the center over that of the surface,
+    /// divided by the steepness of the profile; negative inside.
+    double distance;
+    /// Of the body of revolution (unit, outwards), as lobes do not tilt it; zero for a point at the center.
+    Eigen::Vector3d normal;
   };
 
   Foot foot(const SurfaceModel& model, const Eigen::Vector3d& point) const {
@@ -266,7 +273,7 @@ class SurfaceFit {
   double noise() const { return noise_; }
   const std::vector<double>& weights() const { return weights_; }
   const std::vector<RadialBin>& limits() const { return limits_; }
-  /// Distances of the points as of Foot.
+  /// Foot::distance of each point.
   const std::vector<double>& residuals() const { return residuals_; }
 
  private:

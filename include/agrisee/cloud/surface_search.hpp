@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// @file
-/// The search for a fruit's closed surface: fits from several first guesses, with several numbers of lobes, of which
-/// the one with the most evidence is kept. Metres, any frame.
+/// The search for a fruit's closed surface: fits from several first guesses and with several numbers of lobes. The fit
+/// with the most evidence is kept, and drawn back where a leaf has added to it. Metres, any frame.
 #pragma once
 
 #include <agrisee/cloud/fit.hpp>
@@ -57,6 +57,7 @@ inline SurfaceFit::Gates gates(std::size_t k, bool join = true) {
   const double outside = kGates[std::min(k, kGates.size() - 1)];
   return {outside, 1.5 * outside, false, join};
 }
+inline SurfaceFit::Gates last_gates() { return gates(kGates.size() - 1); }
 
 /// A fit of the model number `model`.
 struct FittedSurface {
@@ -110,13 +111,13 @@ inline std::optional<FittedSurface> fit_from(const SurfaceFit::Start& start, con
 /// @return the given fit if nothing contradicts it, or if there is more evidence for it
 inline FittedSurface without_neighbors(FittedSurface fitted, const SurfaceModel& model) {
   if (fitted.fit.contradictions() == 0) return fitted;
-  constexpr int kDraw = 8, kSettle = 2;     // steps
-  constexpr double kAnywhereInside = 0.32;  // of the radius
+  constexpr int kDraw = 8, kSettle = 2;  // steps
+  constexpr double kDeepInside = 0.32;   // relative; more than the depth of a contradiction
   SurfaceFit fit = fitted.fit;
   for (int k = 0; k < kDraw; ++k)
-    if (!fit.step(model, {kGates.back(), kAnywhereInside, true})) return fitted;
+    if (!fit.step(model, {kGates.back(), kDeepInside, true})) return fitted;
   for (int k = 0; k < kSettle; ++k)
-    if (!fit.step(model, gates(kGates.size()))) return fitted;
+    if (!fit.step(model, last_gates())) return fitted;
   const double evidence = evidence_less_contradictions(fit, model);
   if (!(evidence > fitted.evidence)) return fitted;
   return {std::move(fit), fitted.model, evidence};
@@ -136,7 +137,7 @@ inline std::optional<FittedSurface> best_fit(const std::vector<SurfaceFit::Start
     if (!fitted) continue;
     if (best && !(fitted->evidence > best->evidence + (start.top < 1.0 ? kClearly : 0.0))) continue;
     best.emplace(std::move(*fitted));
-    if (best->fit.misfit() < kGoodFit) break;
+    if (best->fit.misfit() < kGoodFit && best->fit.contradictions() == 0) break;
   }
   return best;
 }
