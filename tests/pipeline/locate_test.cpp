@@ -80,6 +80,31 @@ TEST_CASE("a flat body that is wider than any expected fruit is none, though its
   CHECK(located(flat, parameters) == 0);
 }
 
+TEST_CASE("points labeled as a fruit's that lie far outside its closed surface lose their label") {
+  Cloud cloud = pear();
+  const std::size_t skin = cloud.size();
+  for (int i = 0; i < 81; ++i) {  // a piece of leaf in front, 20 mm wide
+    cloud.points.emplace_back(0.0025f * static_cast<float>(i % 9) - 0.01f, -0.043f,
+                              0.0025f * static_cast<float>(i / 9));
+    cloud.normals.push_back(-Eigen::Vector3f::UnitY());
+  }
+  Indices own(skin);
+  std::iota(own.begin(), own.end(), Index{0});
+  const auto fit = fit_ellipsoid(cloud, own, Ellipsoid(*sphere_from_normals(cloud, own)));
+  REQUIRE(fit);
+  Split split;
+  split.labels.assign(cloud.size(), 1);
+  split.found.resize(1);
+  split.found[0].fit = *fit;
+  Labels labels;
+  const std::vector<Fruit> fruits = locate(cloud, split, Eigen::Vector3d::Zero(), {}, labels);
+  REQUIRE(fruits.size() == 1);
+  Labels expected(skin, 1);
+  expected.resize(cloud.size(), 0);
+  CHECK(labels == expected);
+  CHECK(fruits[0].points == skin);
+}
+
 TEST_CASE("a body whose ellipsoid explains it is not judged by a closed surface") {
   Cloud ball;
   test::add_sphere(ball, {{0.1, 0.5, 0.2}, 0.03}, 0.0025, [](const Eigen::Vector3d& d) { return d.y() < 0.3; });
