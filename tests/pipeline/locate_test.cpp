@@ -30,10 +30,9 @@ Cloud pear(double half_length = 0.048) {
   return cloud;
 }
 
-/// How many fruit are located in a cloud that is segmented as one body. All points are labeled if there is one, none
-/// otherwise.
-std::size_t located(const Cloud& cloud, const Parameters& parameters) {
-  Indices own(cloud.size());
+/// A segmentation in which all points are one body's, with the ellipsoid of the first `skin` points.
+Split one_body(const Cloud& cloud, std::size_t skin) {
+  Indices own(skin);
   std::iota(own.begin(), own.end(), Index{0});
   const auto sphere = sphere_from_normals(cloud, own);
   REQUIRE(sphere);
@@ -43,6 +42,13 @@ std::size_t located(const Cloud& cloud, const Parameters& parameters) {
   split.labels.assign(cloud.size(), 1);
   split.found.resize(1);
   split.found[0].fit = *fit;
+  return split;
+}
+
+/// How many fruit are located in a cloud that is segmented as one body. All points are labeled if there is one, none
+/// otherwise.
+std::size_t located(const Cloud& cloud, const Parameters& parameters) {
+  const Split split = one_body(cloud, cloud.size());
   Labels labels;
   const std::vector<Fruit> fruits = locate(cloud, split, Eigen::Vector3d::Zero(), parameters, labels);
   REQUIRE(labels == Labels(cloud.size(), fruits.empty() ? 0 : 1));
@@ -88,16 +94,8 @@ TEST_CASE("points labeled as a fruit's that lie far outside its closed surface l
                               0.0025f * static_cast<float>(i / 9));
     cloud.normals.push_back(-Eigen::Vector3f::UnitY());
   }
-  Indices own(skin);
-  std::iota(own.begin(), own.end(), Index{0});
-  const auto fit = fit_ellipsoid(cloud, own, Ellipsoid(*sphere_from_normals(cloud, own)));
-  REQUIRE(fit);
-  Split split;
-  split.labels.assign(cloud.size(), 1);
-  split.found.resize(1);
-  split.found[0].fit = *fit;
   Labels labels;
-  const std::vector<Fruit> fruits = locate(cloud, split, Eigen::Vector3d::Zero(), {}, labels);
+  const std::vector<Fruit> fruits = locate(cloud, one_body(cloud, skin), Eigen::Vector3d::Zero(), {}, labels);
   REQUIRE(fruits.size() == 1);
   Labels expected(skin, 1);
   expected.resize(cloud.size(), 0);
