@@ -24,6 +24,7 @@
 #include <agrisee/cloud/seen_through.hpp>
 #include <agrisee/cloud/surface_fit.hpp>
 #include <agrisee/cloud/surface_search.hpp>
+#include <agrisee/core/cancellation.hpp>
 #include <agrisee/core/cloud.hpp>
 #include <agrisee/core/error.hpp>
 
@@ -252,9 +253,11 @@ std::optional<ClosedSurface> closed_surface(const PointCloud<S>& cloud, const In
   detail::explain_points(fit, points, out);
   if (out.weight > 0.5) {
     const double far_outside = std::max(0.1, 4.0 * fit.noise());  // relative; closer points shape the surface
-    for (const Index i : own)
-      if (fit.foot(model, cloud.points[static_cast<std::size_t>(i)].template cast<double>()).distance > far_outside)
-        out.left_out.push_back(i);
+    for (std::size_t k = 0; k < own.size(); ++k) {
+      if ((k & 0xFF) == 0) throw_if_cancelled();
+      const Eigen::Vector3d p = cloud.points[static_cast<std::size_t>(own[k])].template cast<double>();
+      if (fit.foot(model, p).distance > far_outside) out.left_out.push_back(own[k]);
+    }
   }
   return out;
 }
