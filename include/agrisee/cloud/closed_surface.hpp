@@ -252,11 +252,12 @@ std::optional<ClosedSurface> closed_surface(const PointCloud<S>& cloud, const In
   out.weight = t * t * (3.0 - 2.0 * t);
   detail::explain_points(fit, points, out);
   if (out.weight > 0.5) {
+    Eigen::VectorXd values;
     const double far_outside = std::max(0.1, 4.0 * fit.noise());  // relative; closer points shape the surface
     for (std::size_t k = 0; k < own.size(); ++k) {
       if ((k & 0xFF) == 0) throw_if_cancelled();
       const Eigen::Vector3d p = cloud.points[static_cast<std::size_t>(own[k])].template cast<double>();
-      if (fit.foot(model, p).distance > far_outside) out.left_out.push_back(own[k]);
+      if (fit.foot(model, p, values).distance > far_outside) out.left_out.push_back(own[k]);
     }
   }
   return out;

@@ -203,12 +203,13 @@ class SurfaceFit {
     Eigen::Vector3d normal;
   };
 
-  Foot foot(const SurfaceModel& model, const Eigen::Vector3d& point) const {
+  /// @param values scratch, so that many points need no memory each
+  Foot foot(const SurfaceModel& model, const Eigen::Vector3d& point, Eigen::VectorXd& values) const {
     const Eigen::Vector3d q = turn_ * (point - center_);
     const double r = q.norm();
     if (!(r > 1e-9)) return {-1.0, Eigen::Vector3d::Zero()};
     const Eigen::Vector3d u = q / r;
-    Eigen::VectorXd values(coefficients_.size());
+    values.resize(coefficients_.size());
     model.basis.values(u, values.data());
     const double logarithm = std::log(r) - size_ - values.dot(coefficients_);
     const double slope = model.basis.slope(u, values.data(), coefficients_);
@@ -300,8 +301,9 @@ class SurfaceFit {
     constexpr double kOwnCosine = 0.9, kJoinedCosine = 0.8;  // of the angle between normals of point and surface
     std::vector<double> cosines(samples_.points.size(), 0.0), sorted;
     sorted.reserve(samples_.own);
+    Eigen::VectorXd values;
     for (std::size_t i = 0; i < samples_.points.size(); ++i) {
-      const Foot foot = this->foot(model, samples_.points[i]);
+      const Foot foot = this->foot(model, samples_.points[i], values);
       residuals_[i] = foot.distance;
       cosines[i] = foot.normal.dot(samples_.normals[i]);
       if (i < samples_.own) sorted.push_back(std::abs(foot.distance));
