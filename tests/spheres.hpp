@@ -7,7 +7,7 @@
 #include <agrisee/core/random.hpp>
 #include <agrisee/sensor/depth_frame.hpp>
 
-namespace test {
+namespace agrisee::test {
 
 using agrisee::Sphere;
 
@@ -69,4 +69,4 @@ inline void add_point(agrisee::Cloud& cloud, const Sphere& s, const Eigen::Vecto
 
 inline bool everywhere(const Eigen::Vector3d&) { return true; }
 
-}  // namespace test
+}  // namespace agrisee::test

@@ -11,6 +11,8 @@ using namespace agrisee;
 using namespace agrisee::arm;
 using Eigen::Vector3d;
 
+namespace reachability_test {
+
 namespace {
 
 const Vector3d kTruss(0.015, 0.545, 0.21);
@@ -182,3 +184,5 @@ TEST_CASE("reach: nothing out there, and bad input by name") {
   refused([nan](auto& p) { p.distance = nan; });
   refused([](auto& p) { p.distance_max = std::numeric_limits<double>::infinity(); });
 }
+
+}  // namespace reachability_test

@@ -11,6 +11,8 @@
 using namespace agrisee;
 using namespace agrisee::arm;
 
+namespace ur_test {
+
 namespace {
 
 Joints joints(double a, double b, double c, double d, double e, double f) {
@@ -302,3 +304,5 @@ TEST_CASE("models are found by name") {
   CHECK(ur_model("ur10e").limits.velocity[0] == Approx(deg(120)));
   CHECK_THROWS_WITH(ur_model("ur7"), Catch::Matchers::Contains("known are ur3, ur3e, ur5e, ur10e"));
 }
+
+}  // namespace ur_test

@@ -7,6 +7,8 @@
 
 using namespace agrisee;
 
+namespace competition_test {
+
 TEST_CASE("regions that are too small, or hollow, propose nothing and are counted") {
   const auto counts = [](double radius, float outward) {  // of a ball, where fruit of 30 to 40 mm are expected
     Cloud cloud;
@@ -246,3 +248,5 @@ TEST_CASE("bodies are refused without normals and with bad parameters") {
   cloud.normals.pop_back();
   CHECK_THROWS_AS(find_bodies(cloud, {}), InputError);
 }
+
+}  // namespace competition_test

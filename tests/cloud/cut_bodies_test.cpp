@@ -6,6 +6,8 @@
 
 using namespace agrisee;
 
+namespace cut_bodies_test {
+
 namespace {
 
 constexpr double kRadius = 0.025;
@@ -99,3 +101,5 @@ TEST_CASE("every face of the scan volume is a border") {
       CHECK(goes_on_beyond(cloud, all_of(cloud), body, box));
     }
 }
+
+}  // namespace cut_bodies_test

@@ -10,6 +10,8 @@
 using namespace agrisee;
 using namespace agrisee::detail;
 
+namespace fit_test {
+
 namespace {
 
 using CloudD = PointCloud<double>;
@@ -523,3 +525,5 @@ TEST_CASE("noise is at most a share of the radius, and at least that of the sens
   CHECK(noise(0.002, 0.05, 0.0018) == Approx(0.0018));
   CHECK(noise(0.002, 0.05, 0.0012) == Approx(0.0015));
 }
+
+}  // namespace fit_test

@@ -8,6 +8,8 @@
 
 using namespace agrisee;
 
+namespace proposals_test {
+
 namespace {
 
 BodyParameters between(double radius_min, double radius_max) {
@@ -174,3 +176,5 @@ TEST_CASE("a small surface has no more than 60 proposals, a large one more") {
   CHECK(proposed(0.002) == 60);  // 80 balls, but together not the surface of 21 discs
   CHECK(proposed(0.01) >= 80);   // 80 balls, the surface of over 140 discs
 }
+
+}  // namespace proposals_test

@@ -9,6 +9,8 @@
 
 using namespace agrisee;
 
+namespace sor_test {
+
 namespace {
 
 /// The paper's equations, word for word.
@@ -170,3 +172,5 @@ TEST_CASE("what deviates too much is dropped, by hand") {
   CHECK(kept({7}, 0.0, true) == Indices{0});
   CHECK(kept({nan}, 1.0, false).empty());
 }
+
+}  // namespace sor_test

@@ -9,6 +9,8 @@
 
 using namespace agrisee;
 
+namespace split_test {
+
 namespace {
 
 constexpr double kRadius = 0.03;
@@ -254,3 +256,5 @@ TEST_CASE("a point gets the nearest body within the tolerance whose normal agree
   CHECK(label(1.03, 0.0, {ball(kCenter, 1.02 * kRadius), ball()}) == 1);
   CHECK(label(1.0, 0.0, {}) == 0);
 }
+
+}  // namespace split_test

@@ -7,6 +7,8 @@
 
 using namespace agrisee;
 
+namespace volume_test {
+
 namespace {
 
 Indices all_of(const Cloud& cloud) {
@@ -81,3 +83,5 @@ TEST_CASE("a volume without points that agree with its body is not known at all,
   CHECK_THROWS_AS(relative_volume_error(cloud, all_of(cloud), Ellipsoid(Sphere{{0, 0, 0}, 0.035}), parameters),
                   ParameterError);
 }
+
+}  // namespace volume_test

@@ -6,7 +6,7 @@
 #include <agrisee/core/pose.hpp>
 #include <agrisee/sensor/surface_image.hpp>
 
-namespace test {
+namespace agrisee::test {
 
 /// The camera of the small views: it looks along y of world.
 inline agrisee::Pose small_pose() { return agrisee::look_along({1, 2, 3}, {0, 1, 0}); }
@@ -42,4 +42,4 @@ inline Eigen::Vector3d at(const agrisee::sensor::SurfaceImage& view, int u, int 
   return view.world_T_optical * Eigen::Vector3d(view.intrinsics.ray(u, v) * z);
 }
 
-}  // namespace test
+}  // namespace agrisee::test

@@ -13,6 +13,8 @@ using sensor::SurfaceImage;
 using test::at;
 using test::wall;
 
+namespace free_space_test {
+
 namespace {
 
 /// Parameters with a margin that is exact in binary.
@@ -291,3 +293,5 @@ TEST_CASE("a share of returns needs fifty points") {
   sum += {0, 20};
   CHECK(sum.share() == 0.5);
 }
+
+}  // namespace free_space_test

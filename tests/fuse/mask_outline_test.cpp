@@ -12,6 +12,8 @@ using namespace agrisee;
 using fuse::guess_bodies;
 using fuse::MaskGuess;
 
+namespace mask_outline_test {
+
 namespace {
 
 constexpr int kWidth = 160, kHeight = 120;
@@ -451,3 +453,5 @@ TEST_CASE("a disc with a stalk is a large ball, unless one sees through it") {
       CHECK(size(1.045) == Approx(38.0).margin(2.0));
     }
 }
+
+}  // namespace mask_outline_test

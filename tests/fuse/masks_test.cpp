@@ -8,6 +8,8 @@
 
 using namespace agrisee;
 
+namespace masks_test {
+
 namespace {
 
 /// A ball (m, world) before a wall at z = 2 m.
@@ -471,3 +473,5 @@ TEST_CASE("wrong parameters and poses that are not rigid are refused") {
   bent.world_T_optical.linear() *= 1.1;
   CHECK_THROWS_AS(fuse::mask_evidence({bent}, apples()), InputError);
 }
+
+}  // namespace masks_test

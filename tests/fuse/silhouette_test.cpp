@@ -5,6 +5,8 @@
 
 using namespace agrisee;
 
+namespace silhouette_test {
+
 namespace {
 
 /// An ellipsoid with semi-axes of 40, 32 and 36 mm.
@@ -244,3 +246,5 @@ TEST_CASE("without a front the expected radius says how far away a body is") {
   REQUIRE(fit);
   CHECK(fit->body.mean_radius() == Approx(0.041).margin(0.00015));
 }
+
+}  // namespace silhouette_test

@@ -6,7 +6,7 @@
 
 #include "spheres.hpp"
 
-namespace test {
+namespace agrisee::test {
 
 using namespace agrisee;
 using namespace agrisee::fuse;
@@ -85,4 +85,4 @@ inline std::vector<Vector3f> add(SurfelMap& surfels, const sensor::SurfaceImage&
   return added;
 }
 
-}  // namespace test
+}  // namespace agrisee::test

@@ -8,7 +8,7 @@
 
 #include "catch.hpp"
 
-namespace test {
+namespace agrisee::test {
 
 /// A result's cloud of 12 fruit and what is none, as a file of its own that goes when this does.
 struct ResultCloud {
@@ -38,4 +38,4 @@ struct ResultCloud {
   agrisee::io::Rgb color(std::size_t i) const { return agrisee::io::fruit_color(labels[i]); }
 };
 
-}  // namespace test
+}  // namespace agrisee::test

@@ -7,7 +7,7 @@
 #include "catch.hpp"
 #include "spheres.hpp"
 
-namespace test {
+namespace agrisee::test {
 
 /// What an eye at the origin sees of two fruit, with normals, and amid them a pixel without return.
 inline agrisee::Cloud two_fruit() {
@@ -44,4 +44,4 @@ inline void check_same(const agrisee::ScanResult& a, const agrisee::ScanResult& 
   }
 }
 
-}  // namespace test
+}  // namespace agrisee::test

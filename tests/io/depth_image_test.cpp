@@ -8,6 +8,8 @@
 using namespace agrisee;
 using namespace agrisee::test;
 
+namespace depth_image_test {
+
 namespace {
 
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
@@ -154,3 +156,5 @@ TEST_CASE("images that are no depth images are refused") {
   survive_damage(folder, "a.png", png, load);
   survive_damage(folder, "a.npy", npy("<f4", "(2, 2)", four), load);
 }
+
+}  // namespace depth_image_test

@@ -8,6 +8,8 @@
 using namespace agrisee;
 using namespace agrisee::test;
 
+namespace pcd_test {
+
 namespace {
 
 const auto reader = [](const std::filesystem::path& path) { return io::read_pcd(path); };
@@ -177,3 +179,5 @@ TEST_CASE("damaged PCD files neither crash nor hang") {
   survive_damage(folder, "b.pcd", xyz_header(20, 1, "binary") + plain, reader);
   survive_damage(folder, "c.pcd", xyz_header(2, 1, "ascii") + "1 2 3\n4 5 6\n", reader);
 }
+
+}  // namespace pcd_test

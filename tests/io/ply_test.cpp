@@ -13,6 +13,8 @@
 using namespace agrisee;
 using namespace agrisee::test;
 
+namespace ply_test {
+
 namespace {
 
 const auto reader = [](const std::filesystem::path& path) { return io::read_ply(path); };
@@ -312,3 +314,5 @@ TEST_CASE("writing is atomic: a failure leaves the old file and no litter") {
   require_file_error(folder.path(), "directory", [](const auto& p) { io::write_ply(p, {}); });
   CHECK(folder.files() == 1);
 }
+
+}  // namespace ply_test

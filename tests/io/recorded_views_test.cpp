@@ -9,6 +9,8 @@
 using namespace agrisee;
 using namespace agrisee::test;
 
+namespace recorded_views_test {
+
 namespace {
 
 const std::string kCamera = "camera: {width: 4, height: 2, fx: 5, fy: 6, cx: 1.5, cy: 0.5}\n";
@@ -208,3 +210,5 @@ TEST_CASE("recorded views: a lens's distortion is taken out, and written again")
   CHECK_THROWS_WITH(load(with(", distortion: [1, 2]")), Catch::Contains("views.yaml:1: camera.distortion: "));
   CHECK_THROWS_WITH(load(with(", distortion: [-3, 0, 0, 0]")), Catch::Contains("folds the image"));
 }
+
+}  // namespace recorded_views_test

@@ -10,6 +10,8 @@
 using namespace agrisee;
 using namespace agrisee::test;
 
+namespace results_test {
+
 namespace {
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
@@ -434,3 +436,5 @@ TEST_CASE("foreign results: columns in another order, further columns and keys")
   REQUIRE(fruits[0].body);
   CHECK(fruits[0].body->axes.isIdentity());
 }
+
+}  // namespace results_test

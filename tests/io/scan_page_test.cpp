@@ -10,6 +10,8 @@
 using namespace agrisee;
 using namespace agrisee::test;
 
+namespace scan_page_test {
+
 namespace {
 
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
@@ -266,3 +268,5 @@ TEST_CASE("the page of a scan stays small") {
   CHECK(data["cloud"]["total"] == 2000);
   CHECK(array_of<std::uint16_t>(data["cloud"]["labels"]).size() == 286);
 }
+
+}  // namespace scan_page_test

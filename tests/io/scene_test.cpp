@@ -8,6 +8,8 @@
 using namespace agrisee;
 using namespace agrisee::test;
 
+namespace scene_test {
+
 namespace {
 
 const auto reader = [](const std::filesystem::path& path) { io::read_scene(path); };
@@ -128,7 +130,7 @@ TEST_CASE("a text is read as the file that it stands for") {
   CHECK(file.workcell.name == "small");
   REQUIRE(file.scene.objects.size() == 1);
   CHECK(file.scene.objects[0].mesh.triangles.size() == 4);
-  CHECK_THROWS_WITH(io::scene_from_yaml("name: small\n", "cell"), ::test::says("cell"));
+  CHECK_THROWS_WITH(io::scene_from_yaml("name: small\n", "cell"), test::says("cell"));
 }
 
 TEST_CASE("scenes round trip") {
@@ -395,3 +397,5 @@ TEST_CASE("scenes that the format cannot express are not written") {
   CHECK(folder.files() == files);
   CHECK_THROWS_AS(io::write_scene(folder / "no/such/folder.yaml", good), FileError);
 }
+
+}  // namespace scene_test

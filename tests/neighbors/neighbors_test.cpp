@@ -8,6 +8,8 @@
 
 using namespace agrisee;
 
+namespace neighbors_test {
+
 namespace {
 
 using shapes::brute;
@@ -142,3 +144,5 @@ TEST_CASE("a search refuses a cell size that is no size") {
   CHECK_THROWS_AS(Grid<float>(std::vector<Eigen::Vector3f>(3), 0.0f), ParameterError);
   CHECK_THROWS_AS(Grid<float>(std::vector<Eigen::Vector3f>(3), std::nanf("")), ParameterError);
 }
+
+}  // namespace neighbors_test

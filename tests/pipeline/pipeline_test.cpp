@@ -11,6 +11,8 @@
 
 using namespace agrisee;
 
+namespace pipeline_test {
+
 namespace {
 
 Workcell cell() {
@@ -394,3 +396,5 @@ TEST_CASE("ready clouds: nothing, little and degenerate clouds give no fruit") {
     CHECK(process(line, Parameters::paper()).fruits.empty());
   }
 }
+
+}  // namespace pipeline_test

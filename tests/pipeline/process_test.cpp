@@ -10,6 +10,8 @@
 
 using namespace agrisee;
 
+namespace process_test {
+
 namespace {
 
 const Eigen::Vector3d kEye(0.0, 0.0, 0.2);
@@ -387,3 +389,5 @@ TEST_CASE("without bodies the border of the scan volume takes no fruit away") {
       CHECK((process(cloud, parameters, origin).labels == free.labels));
     }
 }
+
+}  // namespace process_test

@@ -6,6 +6,8 @@
 
 using namespace cases;
 
+namespace directions_test {
+
 namespace {
 
 /// The volume is centered at (0.3, 0.4, 0.2), in the direction (0.6, 0.8) from the robot.
@@ -137,3 +139,5 @@ TEST_CASE("directions: a cancelled search for the first view asks for no further
   CHECK_THROWS_AS(first_view(kVolume, kRobot, Joints::Zero(), cancelling, band()), Cancelled);
   CHECK(flight.asked.size() == 7);
 }
+
+}  // namespace directions_test

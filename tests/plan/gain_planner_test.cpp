@@ -7,6 +7,8 @@
 
 using namespace cases;
 
+namespace gain_planner_test {
+
 namespace {
 
 const Vector3d kFruit(0.0, 0.5, 0.2), kRobot(0.0, 0.0, 0.0);
@@ -276,3 +278,5 @@ TEST_CASE("gain planner: parameters out of their range are refused") {
   p.expected.voxel = 0.0;
   CHECK_THROWS_AS(planner_of(p), ParameterError);
 }
+
+}  // namespace gain_planner_test

@@ -6,6 +6,8 @@
 
 using namespace cases;
 
+namespace reliability_test {
+
 TEST_CASE("expected surface: how far it can be relied on follows from what views showed of what they promised") {
   // Half of a fruit is known. A view of the other half promises much of it.
   ExpectedSurfaceParameters p = bare();
@@ -68,3 +70,5 @@ TEST_CASE("expected surface: older views count less for how far it can be relied
   CHECK(now > 0.55);
   CHECK(now < 0.9);
 }
+
+}  // namespace reliability_test

@@ -6,6 +6,8 @@
 
 using namespace cases;
 
+namespace see_planner_test {
+
 namespace {
 
 const Vector3d kFruit(0.0, 0.5, 0.2), kSensor(0.0, 0.1, 0.2), kRobot(0.0, 0.0, 0.0);
@@ -314,3 +316,5 @@ TEST_CASE("see planner: a cancelled call asks for one proposal at most and leave
   twins.explorer.refuse(proposal);
   check_taken(twins.next(fly), twins.proposal());
 }
+
+}  // namespace see_planner_test

@@ -9,6 +9,8 @@
 
 using namespace cases;
 
+namespace unknown_space_test {
+
 namespace {
 
 constexpr double kVoxel = 1.0 / 64, kArea = 0x1p-10;  // edge (m), and the fruit it stands for (m2)
@@ -265,3 +267,5 @@ TEST_CASE("unknown space: parameters out of their range are refused") {
   refused([](auto& p) { p.samples = 0; });
   refused([](auto& p) { p.missed_factor = 1.1; });
 }
+
+}  // namespace unknown_space_test

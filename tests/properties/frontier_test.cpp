@@ -9,6 +9,8 @@
 
 using namespace agrisee;
 
+namespace frontier_test {
+
 namespace {
 
 /// A cap of a sphere on irregular doubles: nothing ties.
@@ -87,3 +89,5 @@ TEST_CASE("frontier frames move with the cloud, and keep their directions when i
   for (std::size_t i = 0; i < order.size(); ++i) where[static_cast<std::size_t>(order[i])] = static_cast<Index>(i);
   check(frames(laws::pick(cloud, order), laws::pick(where, of), eye, with(1.0, 66)), Pose::Identity(), 1.0);
 }
+
+}  // namespace frontier_test

@@ -341,15 +341,15 @@ TEST_CASE("records of which no report can be written are rejected") {
                          const std::vector<study::SceneRecord>& scenes = {}, const std::string& name = "r.md") {
     report::write_experiment_report(folder / name, cells, scenes, kInfo);
   };
-  CHECK_THROWS_WITH(write({}), ::test::says("there is no record of a scan"));
+  CHECK_THROWS_WITH(write({}), test::says("there is no record of a scan"));
   CHECK_THROWS_AS(write({}), InputError);
   CHECK_THROWS_WITH(write({cell("a", 3, 0, 1), cell("a", 3, 0, 1)}),
-                    ::test::says("there are two records of the cell a__"));
+                    test::says("there are two records of the cell a__"));
   CHECK_THROWS_WITH(write({cell("a", 3, 0, 1)}, {scene("a", 3, 0), scene("a", 3, 0)}),
-                    ::test::says("there are two records of the scene"));
+                    test::says("there are two records of the scene"));
   auto uneven = cell("a", 3, 0, 1);
   uneven.fruits.pop_back();
-  CHECK_THROWS_WITH(write({uneven}), ::test::says("different numbers of located and evaluated fruit"));
+  CHECK_THROWS_WITH(write({uneven}), test::says("different numbers of located and evaluated fruit"));
   CHECK_THROWS_AS(write({cell("a", 3, 0, 1)}, {}, "report"), InputError);
   CHECK(folder.files() == 0);
   folder.file("blocked", "x");

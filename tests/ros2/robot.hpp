@@ -25,7 +25,7 @@
 #include "messages.hpp"
 #include "spheres.hpp"
 
-namespace test {
+namespace agrisee::test {
 
 using namespace agrisee;
 using rclcpp::Parameter;
@@ -227,4 +227,4 @@ class Robot {
   Pose world_T_optical_ = Pose::Identity();
 };
 
-}  // namespace test
+}  // namespace agrisee::test

@@ -10,6 +10,8 @@
 using namespace agrisee;
 using namespace agrisee::study;
 
+namespace color_camera_test {
+
 namespace {
 
 const Pose kPose = look_along({0.0, 0.0, 0.2}, {0.0, 1.0, 0.0}, 0.0);
@@ -165,3 +167,5 @@ TEST_CASE("ripeness is judged fruit by fruit") {
   CHECK(all.adjacent == Approx(1.0 / 3.0));
   CHECK(all.share_error == Approx(0.25 / 3.0));
 }
+
+}  // namespace color_camera_test

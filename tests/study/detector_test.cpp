@@ -10,6 +10,8 @@
 using namespace agrisee;
 using namespace agrisee::study;
 
+namespace detector_test {
+
 namespace {
 
 const Pose kPose = look_along({0.0, 0.0, 0.0}, {0.0, 1.0, 0.0}, 0.0);
@@ -172,3 +174,5 @@ TEST_CASE("detectors have names, and their parameters limits") {
   p.miss = 2.0;
   CHECK_THROWS_AS(eye.look(p, 0), ParameterError);
 }
+
+}  // namespace detector_test

@@ -13,6 +13,8 @@
 using namespace agrisee;
 using namespace agrisee::study;
 
+namespace truss_test {
+
 namespace {
 
 /// Every edge belongs to exactly two triangles, once in each direction.
@@ -255,3 +257,5 @@ TEST_CASE("the paper's trusses") {
   for (int i = 0; i < 6; ++i) CHECK((truss.truth.fruits[std::size_t(i)].center - table[i]).norm() < 0.005);
   CHECK(*truss.truth.fruits[6].hidden);
 }
+
+}  // namespace truss_test

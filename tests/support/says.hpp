@@ -4,7 +4,7 @@
 
 #include "catch.hpp"
 
-namespace test {
+namespace agrisee::test {
 
 inline auto says(const std::string& text) {
 #if __has_include(<catch2/catch_all.hpp>)
@@ -14,4 +14,4 @@ inline auto says(const std::string& text) {
 #endif
 }
 
-}  // namespace test
+}  // namespace agrisee::test
