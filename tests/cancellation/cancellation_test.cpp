@@ -154,7 +154,7 @@ std::vector<double> undisturbed(const std::string& planner, std::uint64_t seed) 
 
 }  // namespace
 
-TEST_CASE("process of a quarter of a million points ends soon after it is cancelled, whenever that is", "[timed]") {
+TEST_CASE("process of a quarter of a million points ends soon after it is cancelled, whenever that is") {
   const bool viewpoint = GENERATE(true, false);  // without, normals have to agree with one another
   CloudOrigin origin;
   if (viewpoint) origin.viewpoint = Eigen::Vector3d(0.0, 0.0, 0.3);
@@ -174,7 +174,7 @@ TEST_CASE("process of a quarter of a million points ends soon after it is cancel
   CHECK(cancelled >= kTimes - 1);  // the last may come too late
 }
 
-TEST_CASE("a pipeline whose calls are cancelled over and over ends with the same bytes", "[timed]") {
+TEST_CASE("a pipeline whose calls are cancelled over and over ends with the same bytes") {
   const std::string planner = GENERATE("gain", "see", "fixed", "random");
   INFO(planner);
   const auto expected = undisturbed(planner, 3);
