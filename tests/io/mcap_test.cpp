@@ -7,13 +7,12 @@
 
 #include "catch.hpp"
 #include "io/formats/cdr.hpp"
+#include "io/io_support.hpp"
 #include "io/results/transform_tree.hpp"
 
 using namespace agrisee;
 
 namespace {
-
-const std::filesystem::path kMcap = std::filesystem::temp_directory_path() / "agrisee_mcap_test.mcap";
 
 /// A view with depths that tell its number.
 io::ViewRecord mcap_view(std::size_t i) {
@@ -27,7 +26,7 @@ io::ViewRecord mcap_view(std::size_t i) {
   return record;
 }
 
-void write_three_views() {
+void write_three_views(const std::filesystem::path& path) {
   Workcell cell;
   cell.name = "cell";
   cell.scan_volume.min = {-1, -2, -3};
@@ -37,14 +36,16 @@ void write_three_views() {
   result.cloud.points = {{1, 2, 3}, {4, 5, 6}};
   result.labels = {0, 1};
   io::write_mcap(
-      kMcap, cell, [](std::size_t i) { return i < 3 ? std::optional(mcap_view(i)) : std::nullopt; }, result);
+      path, cell, [](std::size_t i) { return i < 3 ? std::optional(mcap_view(i)) : std::nullopt; }, result);
 }
 
 }  // namespace
 
 TEST_CASE("a scan comes back from an MCAP file as it was") {
-  write_three_views();
-  const io::McapRecording recording(kMcap);
+  const test::TempFolder folder;
+  const auto path = folder / "scan.mcap";
+  write_three_views(path);
+  const io::McapRecording recording(path);
   REQUIRE(recording.world_T_optical().size() == 3);
   CHECK(recording.warnings().empty());
   CHECK(recording.workcell().scan_volume.max == Eigen::Vector3d(1, 2, 3.5));
@@ -58,14 +59,16 @@ TEST_CASE("a scan comes back from an MCAP file as it was") {
 }
 
 TEST_CASE("an MCAP file with any byte missing or wrong is an error or a recording, never a crash") {
-  write_three_views();
-  const io::Bytes whole = io::read_bytes(kMcap);
+  const test::TempFolder folder;
+  const auto path = folder / "scan.mcap";
+  write_three_views(path);
+  const io::Bytes whole = io::read_bytes(path);
   std::size_t refused = 0, tried = 0;
   const auto look = [&](const std::string& bytes) {
-    io::write_file(kMcap, bytes);
+    io::write_file(path, bytes);
     ++tried;
     try {
-      const io::McapRecording recording(kMcap);
+      const io::McapRecording recording(path);
       for (std::size_t i = 0; i < recording.world_T_optical().size(); ++i) recording.frame(i);
     } catch (const FileError&) {
       ++refused;
@@ -78,7 +81,6 @@ TEST_CASE("an MCAP file with any byte missing or wrong is an error or a recordin
     bytes[at] = static_cast<char>(bytes[at] ^ 0x81);
     look(bytes);
   }
-  std::filesystem::remove(kMcap);
 }
 
 TEST_CASE("poses between transforms are interpolated along the chain of frames") {
