@@ -16,15 +16,14 @@ inline const std::vector<Sphere> kThreeFruit = {
     {{-0.03, 0.53, 0.2}, 0.035}, {{0.045, 0.54, 0.21}, 0.033}, {{0.01, 0.60, 0.20}, 0.034}};
 
 /// Depth frame of spheres, with Gaussian noise along the ray.
-inline agrisee::sensor::DepthFrame render(const std::vector<Sphere>& spheres, const agrisee::sensor::Intrinsics& k,
-                                          const agrisee::Pose& world_T_optical, double noise = 0.0,
-                                          std::uint64_t seed = 1) {
-  agrisee::sensor::DepthFrame frame;
+inline sensor::DepthFrame render(const std::vector<Sphere>& spheres, const sensor::Intrinsics& k,
+                                 const Pose& world_T_optical, double noise = 0.0, std::uint64_t seed = 1) {
+  sensor::DepthFrame frame;
   frame.intrinsics = k;
   frame.depth.assign(k.size(), 0.0f);
   const Eigen::Vector3d eye = world_T_optical.translation();
   for (int v = 0; v < k.height; ++v) {
-    agrisee::Rng rng(seed, static_cast<std::uint64_t>(v));
+    Rng rng(seed, static_cast<std::uint64_t>(v));
     for (int u = 0; u < k.width; ++u) {
       const Eigen::Vector3d ray = k.ray(u, v);
       const Eigen::Vector3d d = world_T_optical.linear() * ray.normalized();
@@ -46,10 +45,10 @@ inline agrisee::sensor::DepthFrame render(const std::vector<Sphere>& spheres, co
 
 /// Points with normals on a sphere, `spacing` apart, where keep(direction) holds.
 template <typename Keep>
-void add_sphere(agrisee::Cloud& cloud, const Sphere& s, double spacing, Keep&& keep, double noise = 0.0,
+void add_sphere(Cloud& cloud, const Sphere& s, double spacing, Keep&& keep, double noise = 0.0,
                 std::uint64_t seed = 1) {
-  agrisee::Rng rng(seed);
-  const int n = static_cast<int>(4.0 * agrisee::kPi * s.radius * s.radius / (spacing * spacing));
+  Rng rng(seed);
+  const int n = static_cast<int>(4.0 * kPi * s.radius * s.radius / (spacing * spacing));
   for (int i = 0; i < n; ++i) {
     const double z = 1.0 - (2.0 * i + 1.0) / n, a = 2.399963229728653 * i, q = std::sqrt(1.0 - z * z);
     const Eigen::Vector3d d(q * std::cos(a), q * std::sin(a), z);
@@ -60,7 +59,7 @@ void add_sphere(agrisee::Cloud& cloud, const Sphere& s, double spacing, Keep&& k
 }
 
 /// A point in a direction from the center of a sphere, at some radii from it, its normal turned away by an angle (rad).
-inline void add_point(agrisee::Cloud& cloud, const Sphere& s, const Eigen::Vector3d& direction, double radii,
+inline void add_point(Cloud& cloud, const Sphere& s, const Eigen::Vector3d& direction, double radii,
                       double turned = 0.0) {
   const Eigen::Vector3d d = direction.normalized();
   cloud.points.push_back((s.center + s.radius * radii * d).cast<float>());

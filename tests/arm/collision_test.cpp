@@ -5,21 +5,19 @@
 
 #include <limits>
 
+#include "arm/postures.hpp"
 #include "catch.hpp"
 
 using namespace agrisee;
 using namespace agrisee::arm;
 using Eigen::Vector3d;
+using test::joints;
+using test::kStart;
 
 namespace {
 
-Joints joints(double a, double b, double c, double d, double e, double f) {
-  return (Joints() << a, b, c, d, e, f).finished();
-}
-
 const Joints kStretched = Joints::Zero();                   // along x, 0.15 m up
 const Joints kUp = joints(0, -kPi / 2, 0, -kPi / 2, 0, 0);  // a pole over the base
-const Joints kStart = joints(0.0, -1.57, 1.57, -1.57, -1.57, 0.0);
 
 KeepOut box(const Vector3d& center, const Vector3d& size) { return {"box", Box{center, size}}; }
 

@@ -5,18 +5,17 @@
 
 #include <limits>
 
+#include "arm/postures.hpp"
 #include "catch.hpp"
 
 using namespace agrisee;
 using namespace agrisee::arm;
 using Eigen::Vector3d;
-
-namespace reachability_test {
+using test::kStart;
 
 namespace {
 
 const Vector3d kTruss(0.015, 0.545, 0.21);
-const Joints kStart = (Joints() << 0.0, -1.57, 1.57, -1.57, -1.57, 0.0).finished();
 
 /// The cell of the scene format's example.
 Mount cell() {
@@ -184,5 +183,3 @@ TEST_CASE("reach: nothing out there, and bad input by name") {
   refused([nan](auto& p) { p.distance = nan; });
   refused([](auto& p) { p.distance_max = std::numeric_limits<double>::infinity(); });
 }
-
-}  // namespace reachability_test

@@ -6,18 +6,14 @@
 
 #include <limits>
 
+#include "arm/postures.hpp"
 #include "catch.hpp"
 
 using namespace agrisee;
 using namespace agrisee::arm;
-
-namespace ur_test {
+using test::joints;
 
 namespace {
-
-Joints joints(double a, double b, double c, double d, double e, double f) {
-  return (Joints() << a, b, c, d, e, f).finished();
-}
 
 Joints random_joints(Rng& rng, double range) {
   Joints q;
@@ -304,5 +300,3 @@ TEST_CASE("models are found by name") {
   CHECK(ur_model("ur10e").limits.velocity[0] == Approx(deg(120)));
   CHECK_THROWS_WITH(ur_model("ur7"), Catch::Matchers::Contains("known are ur3, ur3e, ur5e, ur10e"));
 }
-
-}  // namespace ur_test

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <agrisee/cloud/split.hpp>
 
-#include <numeric>
-
 #include "catch.hpp"
+#include "cloud/cloud_cases.hpp"
 #include "spheres.hpp"
 
 using namespace agrisee;
@@ -39,8 +38,7 @@ TEST_CASE("a sphere is fitted from a crescent of it") {
   Cloud cloud;
   test::add_sphere(
       cloud, truth, 0.0025, [](const Eigen::Vector3d& d) { return d.dot(front()) > 0.3 && d.x() > 0.2; }, 0.0005);
-  Indices all(cloud.size());
-  std::iota(all.begin(), all.end(), 0);
+  const Indices all = cases::all_of(cloud);
   const auto start = sphere_from_normals(cloud, all);
   REQUIRE(start);
   CHECK((start->center - truth.center).norm() < 0.002);
@@ -63,8 +61,7 @@ TEST_CASE("an ellipsoid is fitted where the data tell its shape") {
     cloud.points[i] = (center + axes * radii.cwiseProduct(d)).cast<float>();
     cloud.normals[i] = (axes * d.cwiseQuotient(radii)).normalized().cast<float>();
   }
-  Indices all(cloud.size());
-  std::iota(all.begin(), all.end(), 0);
+  const Indices all = cases::all_of(cloud);
   const auto fit = fit_ellipsoid(cloud, all, Ellipsoid(Sphere{center + Eigen::Vector3d(0.003, 0, 0.002), 0.034}));
   REQUIRE(fit);
   const auto [found, directions] = semi_axes(fit->body);
@@ -84,8 +81,7 @@ TEST_CASE("fits of nothing are none") {
     cloud.points.emplace_back(0.1f, 0.2f, 0.3f);
     cloud.normals.emplace_back(0.0f, 0.0f, 1.0f);
   }
-  Indices all(cloud.size());
-  std::iota(all.begin(), all.end(), 0);
+  const Indices all = cases::all_of(cloud);
   CHECK_FALSE(sphere_from_normals(cloud, all));
   cloud.normals.clear();
   CHECK_THROWS_AS(fit_ellipsoid(cloud, all, Ellipsoid(Sphere{{0, 0, 0}, 0.03})), InputError);

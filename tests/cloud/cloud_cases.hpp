@@ -7,6 +7,7 @@
 #include <agrisee/core/random.hpp>
 
 #include <map>
+#include <numeric>
 #include <string>
 
 #include "catch.hpp"
@@ -17,6 +18,14 @@ using namespace agrisee;
 
 template <typename S>
 using Points = std::vector<Vector3<S>>;
+
+/// The indices of all points of a cloud.
+template <typename C>
+Indices all_of(const C& cloud) {
+  Indices indices(agrisee::size(cloud));
+  std::iota(indices.begin(), indices.end(), Index{0});
+  return indices;
+}
 
 inline const std::vector<std::string>& kinds() {
   static const std::vector<std::string> all{"random", "gridded", "duplicated", "spheres", "equal", "line",

@@ -3,8 +3,10 @@
 #include <agrisee/core/pose.hpp>
 
 #include "catch.hpp"
+#include "cloud/cloud_cases.hpp"
 
 using namespace agrisee;
+using cases::all_of;
 
 namespace cut_bodies_test {
 
@@ -18,12 +20,6 @@ Aabb volume() {
   box.extend(Eigen::Vector3d(-0.2, -0.2, -0.4));
   box.extend(Eigen::Vector3d(0.2, 0.2, 0.0));
   return box;
-}
-
-Indices all_of(const Cloud& cloud) {
-  Indices out;
-  for (std::size_t i = 0; i < cloud.size(); ++i) out.push_back(static_cast<Index>(i));
-  return out;
 }
 
 void add(Cloud& cloud, const Eigen::Vector3d& point, const Eigen::Vector3d& normal) {

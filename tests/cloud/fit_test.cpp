@@ -3,12 +3,13 @@
 #include <agrisee/cloud/fit.hpp>
 
 #include <array>
-#include <numeric>
 
 #include "catch.hpp"
+#include "cloud/cloud_cases.hpp"
 
 using namespace agrisee;
 using namespace agrisee::detail;
+using cases::all_of;
 
 namespace fit_test {
 
@@ -68,12 +69,6 @@ CloudD half_off(double off) {
   add(cloud, turns(kSecond, false), kRadius + off);
   add(cloud, turns(kSecond, true), kRadius - off);
   return cloud;
-}
-
-Indices all(const CloudD& cloud) {
-  Indices out(cloud.size());
-  std::iota(out.begin(), out.end(), Index{0});
-  return out;
 }
 
 /// Every point counts as one measurement.
@@ -359,7 +354,7 @@ TEST_CASE("of points all around a ball the covariances are those of the textbook
   CloudD cloud;
   for (const bool mirrored : {false, true}) add(cloud, turns(kFirst, mirrored), kRadius);
   const double noise = 0.001;
-  const auto fit = fit_ellipsoid(cloud, all(cloud), ball(), exact(noise));
+  const auto fit = fit_ellipsoid(cloud, all_of(cloud), ball(), exact(noise));
   REQUIRE(fit);
   CHECK((fit->body.center - kCenter).norm() < 1e-12);
   CHECK(fit->body.mean_radius() == Approx(kRadius));
@@ -394,7 +389,7 @@ TEST_CASE("of points on one side the shape's prior is part of the center's covar
   parameters.independent = 100;
   for (const bool sized : {false, true}) {
     const std::optional<SizePrior> size = sized ? std::optional<SizePrior>({kRadius, 0.1}) : std::nullopt;
-    const auto fit = fit_ellipsoid(cloud, all(cloud), ball(), parameters, size);
+    const auto fit = fit_ellipsoid(cloud, all_of(cloud), ball(), parameters, size);
     REQUIRE(fit);
     CHECK(fit->size_prior.has_value() == sized);
     Matrix9 points = Matrix9::Zero(), prior = Matrix9::Zero();
@@ -431,7 +426,7 @@ TEST_CASE("points beyond the number of independent ones, and thinned ones, add w
     FitParameters parameters = exact(noise);
     parameters.independent = independent;
     parameters.max_points = max_points;
-    const auto fit = fit_ellipsoid(of, all(of), ball(), parameters);
+    const auto fit = fit_ellipsoid(of, all_of(of), ball(), parameters);
     REQUIRE(fit);
     CHECK(fit->inliers == inliers);
     return fit->center_covariance(0, 0) / (noise * noise);
@@ -451,7 +446,7 @@ TEST_CASE("the gate shrinks with each step, to a limit by the noise or by the si
       CAPTURE(noise, k);
       FitParameters parameters = exact(noise);
       parameters.iterations = static_cast<int>(k) + 1;
-      const auto fit = fit_ellipsoid(cloud, all(cloud), ball(), parameters);
+      const auto fit = fit_ellipsoid(cloud, all_of(cloud), ball(), parameters);
       REQUIRE(fit);
       const double t = off / gates[k], weight = t < 1.0 ? std::pow(1.0 - t * t, 2) : 0.0;
       CHECK(fit->center_covariance(0, 0) == Approx(3.0 * noise * noise / (48.0 + 48.0 * weight)).epsilon(1e-6));
@@ -474,7 +469,7 @@ TEST_CASE("a fit needs a tenth of the independent points and four, half of them 
     CloudD cloud;
     add(cloud, {directions.begin(), directions.begin() + static_cast<std::ptrdiff_t>(on)}, kRadius);
     add(cloud, {others.begin(), others.begin() + static_cast<std::ptrdiff_t>(off)}, 1.5 * kRadius);
-    const auto fit = fit_ellipsoid(cloud, all(cloud), ball(), parameters);
+    const auto fit = fit_ellipsoid(cloud, all_of(cloud), ball(), parameters);
     if (fit) CHECK(fit->inliers == on);
     return fit.has_value();
   };
@@ -494,19 +489,19 @@ TEST_CASE("points that hardly count make no body, nor do those of a plane") {
   FitParameters parameters = exact(0.001);
   parameters.independent = 360;  // 40 points, so weights of 12
   parameters.iterations = 2;     // the last gate is 4.2 mm: 48 weights of 0.27
-  CHECK(fit_ellipsoid(cloud, all(cloud), ball(), parameters));
+  CHECK(fit_ellipsoid(cloud, all_of(cloud), ball(), parameters));
   parameters.iterations = 3;  // 4 mm: of 0.22
-  CHECK_FALSE(fit_ellipsoid(cloud, all(cloud), ball(), parameters));
+  CHECK_FALSE(fit_ellipsoid(cloud, all_of(cloud), ball(), parameters));
 
   CloudD plane;
   for (int i = 0; i < 400; ++i) {
     plane.points.push_back(kCenter + Eigen::Vector3d(0.002 * (i % 20) - 0.019, 0.002 * (i / 20) - 0.019, kRadius));
     plane.normals.push_back(Eigen::Vector3d::UnitZ());
   }
-  CHECK_FALSE(fit_ellipsoid(plane, all(plane), ball()));
+  CHECK_FALSE(fit_ellipsoid(plane, all_of(plane), ball()));
   parameters = {};
   for (parameters.iterations = 1; parameters.iterations < 12; ++parameters.iterations)  // however early it gives up
-    if (const auto fit = fit_ellipsoid(plane, all(plane), ball(), parameters))
+    if (const auto fit = fit_ellipsoid(plane, all_of(plane), ball(), parameters))
       CHECK(semi_axes(fit->body).first.maxCoeff() < 5.0 * kRadius);
 }
 
@@ -516,7 +511,7 @@ TEST_CASE("noise is at most a share of the radius, and at least that of the sens
     FitParameters parameters = exact(usual);
     parameters.max_noise = most;
     parameters.sensor_noise = sensor;
-    const auto fit = fit_ellipsoid(cloud, all(cloud), ball(), parameters);
+    const auto fit = fit_ellipsoid(cloud, all_of(cloud), ball(), parameters);
     REQUIRE(fit);
     return std::sqrt(fit->center_covariance(2, 2) * 96.0 / 3.0);
   };

@@ -3,21 +3,11 @@
 #include <agrisee/cloud/volume.hpp>
 
 #include "catch.hpp"
+#include "cloud/cloud_cases.hpp"
 #include "spheres.hpp"
 
 using namespace agrisee;
-
-namespace volume_test {
-
-namespace {
-
-Indices all_of(const Cloud& cloud) {
-  Indices indices(cloud.size());
-  for (std::size_t i = 0; i < indices.size(); ++i) indices[i] = static_cast<Index>(i);
-  return indices;
-}
-
-}  // namespace
+using cases::all_of;
 
 TEST_CASE("volume and mass of an ellipsoid by hand") {
   Ellipsoid e;
@@ -83,5 +73,3 @@ TEST_CASE("a volume without points that agree with its body is not known at all,
   CHECK_THROWS_AS(relative_volume_error(cloud, all_of(cloud), Ellipsoid(Sphere{{0, 0, 0}, 0.035}), parameters),
                   ParameterError);
 }
-
-}  // namespace volume_test

@@ -4,16 +4,17 @@
 #pragma once
 
 #include <agrisee/core/pose.hpp>
+#include <agrisee/fuse/free_space.hpp>
 #include <agrisee/sensor/surface_image.hpp>
 
 namespace agrisee::test {
 
 /// The camera of the small views: it looks along y of world.
-inline agrisee::Pose small_pose() { return agrisee::look_along({1, 2, 3}, {0, 1, 0}); }
+inline Pose small_pose() { return look_along({1, 2, 3}, {0, 1, 0}); }
 
 /// A camera whose pixels are 1/4 m apart at z = 1 m. Pixel (3, 2) is on the axis.
-inline agrisee::sensor::Intrinsics small_camera(int width, int height) {
-  agrisee::sensor::Intrinsics k;
+inline sensor::Intrinsics small_camera(int width, int height) {
+  sensor::Intrinsics k;
   k.width = width;
   k.height = height;
   k.fx = k.fy = 4.0;
@@ -23,8 +24,8 @@ inline agrisee::sensor::Intrinsics small_camera(int width, int height) {
 }
 
 /// A view of a wall: every cell has the same depth (m). No noise, and every pixel returns.
-inline agrisee::sensor::SurfaceImage wall(float depth, int width = 8, int height = 6) {
-  agrisee::sensor::SurfaceImage view;
+inline sensor::SurfaceImage wall(float depth, int width = 8, int height = 6) {
+  sensor::SurfaceImage view;
   view.intrinsics = small_camera(width, height);
   view.world_T_optical = small_pose();
   view.depth.assign(view.intrinsics.size(), depth);
@@ -33,13 +34,20 @@ inline agrisee::sensor::SurfaceImage wall(float depth, int width = 8, int height
 }
 
 /// The depth (m) of the cell in column u and row v.
-inline float& depth_of(agrisee::sensor::SurfaceImage& view, int u, int v) {
+inline float& depth_of(sensor::SurfaceImage& view, int u, int v) {
   return view.depth[static_cast<std::size_t>(v * view.intrinsics.width + u)];
 }
 
 /// The point (m, world) at depth z (m) in the middle of the cell in column u and row v.
-inline Eigen::Vector3d at(const agrisee::sensor::SurfaceImage& view, int u, int v, double z) {
+inline Eigen::Vector3d at(const sensor::SurfaceImage& view, int u, int v, double z) {
   return view.world_T_optical * Eigen::Vector3d(view.intrinsics.ray(u, v) * z);
+}
+
+/// Parameters with a margin that is exact in binary.
+inline fuse::FreeSpaceParameters quarter() {
+  fuse::FreeSpaceParameters parameters;
+  parameters.margin = 0.25;
+  return parameters;
 }
 
 }  // namespace agrisee::test

@@ -7,15 +7,10 @@
 using namespace agrisee;
 using namespace agrisee::fuse;
 using sensor::SurfaceImage;
+using test::quarter;
 using test::wall;
 
 namespace {
-
-FreeSpaceParameters quarter() {
-  FreeSpaceParameters parameters;
-  parameters.margin = 0.25;
-  return parameters;
-}
 
 void add(SurfaceImage& view, int u, int v, double z, int count = 1) {
   for (int i = 0; i < count; ++i) {

@@ -11,18 +11,10 @@ using namespace agrisee::fuse;
 using Eigen::Vector3d;
 using sensor::SurfaceImage;
 using test::at;
+using test::quarter;
 using test::wall;
 
-namespace free_space_test {
-
 namespace {
-
-/// Parameters with a margin that is exact in binary.
-FreeSpaceParameters quarter() {
-  FreeSpaceParameters parameters;
-  parameters.margin = 0.25;
-  return parameters;
-}
 
 const Sphere kBall{{0.0, 1.0, 0.2}, 0.05};
 
@@ -293,5 +285,3 @@ TEST_CASE("a share of returns needs fifty points") {
   sum += {0, 20};
   CHECK(sum.share() == 0.5);
 }
-
-}  // namespace free_space_test

@@ -8,8 +8,7 @@
 
 namespace agrisee::test {
 
-using namespace agrisee;
-using namespace agrisee::fuse;
+using namespace fuse;
 using Eigen::Vector3d;
 using Eigen::Vector3f;
 

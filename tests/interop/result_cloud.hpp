@@ -12,20 +12,20 @@ namespace agrisee::test {
 
 /// A result's cloud of 12 fruit and what is none, as a file of its own that goes when this does.
 struct ResultCloud {
-  agrisee::Cloud cloud;
-  agrisee::Labels labels;
+  Cloud cloud;
+  Labels labels;
   std::filesystem::path file, copy;
 
   explicit ResultCloud(const std::string& name)
       : file(std::filesystem::temp_directory_path() / (name + ".ply")), copy(file) {
     copy.replace_extension("copy.ply");
-    agrisee::Rng rng(3);
+    Rng rng(3);
     for (int i = 0; i < 500; ++i) {
       cloud.points.emplace_back((0.4 * rng.direction()).cast<float>());
       cloud.normals.emplace_back(rng.direction().cast<float>());
       labels.push_back(i % 13);
     }
-    agrisee::io::write_ply(file, cloud, labels);
+    io::write_ply(file, cloud, labels);
   }
   ~ResultCloud() {
     std::error_code ignored;
@@ -35,7 +35,7 @@ struct ResultCloud {
   ResultCloud(const ResultCloud&) = delete;
   ResultCloud& operator=(const ResultCloud&) = delete;
 
-  agrisee::io::Rgb color(std::size_t i) const { return agrisee::io::fruit_color(labels[i]); }
+  io::Rgb color(std::size_t i) const { return io::fruit_color(labels[i]); }
 };
 
 }  // namespace agrisee::test

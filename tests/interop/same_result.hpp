@@ -10,8 +10,8 @@
 namespace agrisee::test {
 
 /// What an eye at the origin sees of two fruit, with normals, and amid them a pixel without return.
-inline agrisee::Cloud two_fruit() {
-  agrisee::Cloud cloud;
+inline Cloud two_fruit() {
+  Cloud cloud;
   for (const Sphere& s : {Sphere{{-0.05, 0.5, 0.2}, 0.035}, Sphere{{0.04, 0.52, 0.2}, 0.03}}) {
     add_sphere(
         cloud, s, 0.0028, [&](const Eigen::Vector3d& d) { return d.dot(s.center.normalized()) < -0.2; }, 2e-4);
@@ -21,14 +21,14 @@ inline agrisee::Cloud two_fruit() {
   return cloud;
 }
 
-inline agrisee::CloudOrigin from_origin() {
-  agrisee::CloudOrigin origin;
+inline CloudOrigin from_origin() {
+  CloudOrigin origin;
   origin.viewpoint = Eigen::Vector3d::Zero();
   return origin;
 }
 
 /// Two fruit, and both results the same.
-inline void check_same(const agrisee::ScanResult& a, const agrisee::ScanResult& b) {
+inline void check_same(const ScanResult& a, const ScanResult& b) {
   REQUIRE(a.fruits.size() == 2);
   REQUIRE(b.fruits.size() == 2);
   CHECK((a.raw.points == b.raw.points));

@@ -14,14 +14,6 @@ const Aabb kVolume = box({0.3, 0.4, 0.2}, 0.1);
 const Vector3d kRobot(0.0, 0.0, 0.7);
 const Vector3d kFrontal(0.6, 0.8, 0.0);
 
-ViewRequest band() {
-  ViewRequest r;
-  r.distance = 0.4;
-  r.distance_min = 0.31;
-  r.distance_max = 0.47;
-  return r;
-}
-
 /// An arm that needs a second for a unit of the change of direction. Its first three joints are the direction.
 std::optional<ReachableView> pan(const ViewRequest& r, const Joints& current) {
   ReachableView view = fly_to(r);

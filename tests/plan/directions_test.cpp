@@ -15,17 +15,13 @@ const Aabb kVolume = box({0.3, 0.4, 0.2}, 0.1);
 const Vector3d kRobot(0.0, 0.0, 0.7);
 const Vector3d kFrontal(0.6, 0.8, 0.0);
 
+/// The first view replaces its target and direction.
 ViewRequest band() {
-  ViewRequest r;
+  ViewRequest r = cases::band();
   r.target = {9, 9, 9};
   r.direction = Vector3d::UnitZ();
-  r.distance = 0.4;
-  r.distance_min = 0.31;
-  r.distance_max = 0.47;
   return r;
 }
-
-double angle(const Vector3d& a, const Vector3d& b) { return std::atan2(a.cross(b).norm(), a.dot(b)); }
 
 }  // namespace
 

@@ -14,8 +14,6 @@ namespace {
 const Vector3d kFruit(0.0, 0.5, 0.2), kRobot(0.0, 0.0, 0.0);
 const Aabb kVolume = box(kFruit, 0.12);
 
-bool nowhere(const ViewRequest&) { return false; }
-
 GainPlannerParameters parameters() {
   GainPlannerParameters p;
   p.candidates = 200;

@@ -44,6 +44,21 @@ inline ReachableView fly_to(const ViewRequest& r) {
 }
 inline std::optional<ReachableView> fly(const ViewRequest& r, const Joints&) { return fly_to(r); }
 
+/// Views from 0.31 to 0.47 m, best from 0.4 m.
+inline ViewRequest band() {
+  ViewRequest r;
+  r.distance = 0.4;
+  r.distance_min = 0.31;
+  r.distance_max = 0.47;
+  return r;
+}
+
+/// What a robot answers that reaches nothing.
+inline bool nowhere(const ViewRequest&) { return false; }
+
+/// The angle between two directions (rad).
+inline double angle(const Vector3d& a, const Vector3d& b) { return std::atan2(a.cross(b).norm(), a.dot(b)); }
+
 /// A robot that flies, but only to requests that pass a test, and remembers what it was asked for.
 struct Flight {
   std::function<bool(const ViewRequest&)> passes = [](const ViewRequest&) { return true; };

@@ -21,16 +21,6 @@ see::Parameters parameters() {
   return p;
 }
 
-ViewRequest band() {
-  ViewRequest r;
-  r.distance = 0.4;
-  r.distance_min = 0.31;
-  r.distance_max = 0.47;
-  return r;
-}
-
-double angle(const Vector3d& a, const Vector3d& b) { return std::atan2(a.cross(b).norm(), a.dot(b)); }
-
 /// A planner, and an explorer that is told the same and whose proposals are known.
 struct Twins {
   explicit Twins(const see::Parameters& p = parameters()) : planner(kVolume, kRobot, p, band(), 1), explorer(p) {}
@@ -80,8 +70,6 @@ void check_taken(const std::optional<ReachableView>& view, const see::ViewPropos
   CHECK((view->world_T_optical.linear().col(2) - p.direction).norm() < 1e-12);
   CHECK(view->gain == p.visible);
 }
-
-bool nowhere(const ViewRequest&) { return false; }
 
 }  // namespace
 

@@ -27,7 +27,6 @@
 
 namespace agrisee::test {
 
-using namespace agrisee;
 using rclcpp::Parameter;
 
 const std::vector<Sphere> kTwoFruit = {{{-0.03, 0.53, 0.2}, 0.035}, {{0.045, 0.54, 0.21}, 0.033}};
