@@ -20,7 +20,8 @@ namespace agrisee::plan {
 
 namespace {
 
-constexpr double kGrowth = 1.25;  // segment the cloud from scratch when it has grown by this factor
+constexpr double kObstacle = 0.003;  // points that may hide fruit are thinned to one in a voxel of this edge (m)
+constexpr double kGrowth = 1.25;     // segment the cloud from scratch when it has grown by this factor
 constexpr double kTrusted =
     0.003;  // earlier views are taken to have promised, and kept, this share of the fruit surface
 
@@ -104,7 +105,7 @@ void ExpectedSurface::update(const Progress& progress, const SplitParameters& sp
   PointCloud<float> rest;
   for (std::size_t i = 0; i < progress.cloud.size(); ++i)
     if (labels[i] == 0) rest.points.push_back(progress.cloud.points[i]);
-  const std::vector<Eigen::Vector3f> thinned = average_in_voxels(rest, 0.006).points;
+  const std::vector<Eigen::Vector3f> thinned = average_in_voxels(rest, kObstacle).points;
   obstacles_.clear();
   for (const int axis : {0, 1, 2})
     for (const Eigen::Vector3f& p : thinned) obstacles_.push_back(p[axis]);
@@ -207,6 +208,24 @@ void ExpectedSurface::sample_bodies(const Progress& progress, const fuse::FreeSp
   const auto cover = static_cast<float>(parameters_.cover_radius);
   const Grid<float> grid(progress.cloud, cover);
   const auto is_covered = [&](const Eigen::Vector3d& p) { return grid.count(p.cast<float>(), cover, 1) > 0; };
+  // Lobes stand out from the ellipsoid: what covers a sample there lies farther from the center, and faces away from
+  // it.
+  const auto is_below_lobe = [&](const Eigen::Vector3d& p, const Eigen::Vector3d& outward, double radius) {
+    constexpr float kFarthest = 0.25f, kFaces = 0.5f;  // share of the radius; cosine
+    const std::vector<Eigen::Vector3f>& normals = progress.cloud.normals;
+    if (normals.empty()) return false;
+    const Eigen::Vector3f u = outward.cast<float>();
+    const float half = 0.5f * kFarthest * static_cast<float>(radius);
+    const Eigen::Vector3f middle = p.cast<float>() + half * u;
+    bool found = false;
+    grid.visit(middle, half + cover, [&](Index index, float) {
+      const auto i = static_cast<std::size_t>(index);
+      const Eigen::Vector3f q = progress.cloud.points[i] - middle;
+      const float along = std::clamp(q.dot(u), -half, half);
+      found = found || ((q - along * u).squaredNorm() <= cover * cover && normals[i].dot(u) > kFaces);
+    });
+    return found;
+  };
   const std::vector<Eigen::Vector3d> directions = spread_directions(parameters_.samples);
   for (std::size_t b = 0; b < bodies_.size(); ++b) {
     const Ellipsoid& body = bodies_[b].fit.body;
@@ -218,7 +237,7 @@ void ExpectedSurface::sample_bodies(const Progress& progress, const fuse::FreeSp
     double covered = 0.0;
     for (const Eigen::Vector3d& d : directions) {
       const Eigen::Vector3d p = body.surface(d);
-      if (is_covered(p)) {
+      if (is_covered(p) || is_below_lobe(p, d, r)) {
         covered += share;
         continue;
       }

@@ -57,7 +57,7 @@ class ObstacleImage {
   }
 
  private:
-  static constexpr int kWidth = 96, kHeight = 72;
+  static constexpr int kWidth = 192, kHeight = 144;
 
   /// Index of the pixel at (u, v) of a point at depth z (m), -1 outside the image and behind the camera.
   static int pixel(float u, float v, float z) {

@@ -141,6 +141,30 @@ TEST_CASE("expected surface: half of a sphere is covered, which brings no gain, 
   CHECK(model.completeness(seen).observable == Approx(1.0));
 }
 
+TEST_CASE("expected surface: a lobe that stands out from the fitted ellipsoid covers what is below it") {
+  ExpectedSurfaceParameters p = bare(2000);
+  p.cover_radius = 0.003;
+  // The lobe is a cap where the fruit has no points.
+  const auto open_below = [&](double out, double facing) {
+    Scan scan;
+    add_fruit(
+        scan, kFruit, [](const Vector3d& d) { return d.z() < std::cos(deg(25)); }, 0.002);
+    test::add_sphere(scan.cloud, {kFruit, kRadius + out}, 0.002,
+                     [](const Vector3d& d) { return d.z() > std::cos(deg(20)); });
+    for (std::size_t i = 0; i < scan.cloud.size(); ++i)
+      if ((scan.cloud.points[i].cast<double>() - kFruit).norm() > kRadius + 0.5 * out)
+        scan.cloud.normals[i] *= static_cast<float>(facing);
+    const ExpectedSurface model = model_of(scan, p);
+    REQUIRE(model.bodies().size() == 1);
+    REQUIRE((model.bodies()[0].fit.body.center - kFruit).norm() < 2e-3);
+    return 1.0 - model.covered_area() / model.area();
+  };
+  const double cap = 0.5 * (1.0 - std::cos(deg(20)));  // 5 degrees of the gap are 3 mm
+  CHECK(open_below(0.007, 1.0) < 0.2 * cap);
+  CHECK(open_below(0.007, -1.0) > 0.7 * cap);  // the inside of something
+  CHECK(open_below(0.015, 1.0) > 0.7 * cap);   // too far out
+}
+
 TEST_CASE("expected surface: completeness is told for each fruit, and unknown voxels are none of it") {
   ExpectedSurfaceParameters p = bare();
   p.cover_radius = 0.004;

@@ -4,14 +4,15 @@
 /// near them in which more fruit may be hidden.
 ///
 /// The merged cloud is segmented into fruit, each modeled by an ellipsoid (cloud/split.hpp). Samples are spread over
-/// each ellipsoid; those with no point nearby are unseen surface, and each stands for an area. Where sight lines pass
-/// through a sample it is moved inwards, because the surface must lie deeper, or dropped. In addition, voxels near
-/// the ellipsoids that no sight line has reached stand for fruit that may be hidden there. A view shows a sample when
-/// the sample lies in the image and within the sensor's range, faces the sensor, and no ellipsoid or other point of the
-/// cloud hides it. The area of a sample shrinks with each view that should have shown it but did not, because the
-/// prediction seems to be wrong there. A body with a fruit probability p below one half counts with the weight 2 p
-/// instead of not at all, so that doubtful bodies are looked at. The share of the expected surface that the last views
-/// really showed is the reliability of further expectations. World frame, metres; gains in m2 of fruit surface.
+/// each ellipsoid; those with no point nearby, nor on a lobe above them, are unseen surface, and each stands for an
+/// area. Where sight lines pass through a sample it is moved inwards, because the surface must lie deeper, or dropped.
+/// In addition, voxels near the ellipsoids that no sight line has reached stand for fruit that may be hidden there. A
+/// view shows a sample when the sample lies in the image and within the sensor's range, faces the sensor, and no
+/// ellipsoid or other point of the cloud hides it. The area of a sample shrinks with each view that should have shown
+/// it but did not, because the prediction seems to be wrong there. A body with a fruit probability p below one half
+/// counts with the weight 2 p instead of not at all, so that doubtful bodies are looked at. The share of the expected
+/// surface that the last views really showed is the reliability of further expectations. World frame, metres; gains in
+/// m2 of fruit surface.
 #pragma once
 
 #include <agrisee/cloud/found_body.hpp>
