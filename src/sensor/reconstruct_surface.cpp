@@ -283,7 +283,8 @@ SurfaceImage reconstruct_surface(const DepthFrame& frame, const Pose& world_T_op
   detail::add_border(frame, pixel_noise, inside);
   Blocks blocks = detail::make_blocks(frame, inside.depth, b, parameters.spacing, pixel_noise, threads);
   // The noise that is left between blocks decides how far to smooth.
-  const double block_noise = std::max(detail::noise_of(blocks), 0.02 * parameters.target_sigma);
+  constexpr double kLeastNoise = 8e-6;  // m; of a perfect sensor, so that nothing is divided by zero
+  const double block_noise = std::max(detail::noise_of(blocks), kLeastNoise);
   const double pitch = inside.typical / blocks.cells.fx;
   const PatchFitter fitter(blocks, pitch, block_noise, parameters);
   const std::vector<Patch> patches = fit_patches(fitter, blocks.blocks.size(), threads);

@@ -165,26 +165,6 @@ TEST_CASE("a body larger than fruit are expected to be is less likely one") {
   CHECK(odds(1.1) < odds(1.0) - 2.0);
 }
 
-TEST_CASE("in several views noise speaks for a body, the more so the smaller it is") {
-  Verdict v = verdict_of(cap(kPi / 2));
-  v.normal_spread = 0.0;
-  const auto gain = [&](double radius, std::optional<double> seen_on) {
-    EllipsoidFit fit;
-    fit.body = Ellipsoid(Sphere{Eigen::Vector3d::Zero(), radius});
-    v.seen_on = seen_on;
-    const auto odds = [&](double noise) {
-      BodyParameters parameters;
-      parameters.normal_noise = noise;
-      const double p = fruit_probability(v, fit, parameters);
-      return std::log(p / (1.0 - p));
-    };
-    return odds(0.1) - odds(0.0);
-  };
-  CHECK(gain(0.010, {}) > 0.2);
-  CHECK(gain(0.030, {}) == Approx(gain(0.010, {}) / 3.0));
-  CHECK(gain(0.010, 1.0) == Approx(0.0).margin(1e-9));
-}
-
 TEST_CASE("the spread of normals that the sensor accounts for does not speak against a fruit") {
   Verdict v = verdict_of(cap(kPi / 2));
   v.normal_spread = 0.3;

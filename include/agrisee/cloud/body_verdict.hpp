@@ -176,15 +176,14 @@ Verdict judge_quickly(const PointCloud<S>& cloud, const Indices& near, const std
 /// of orchards (Azure Kinect, shade and sun, 0.6 to 1.5 m) and 250 in real frames. How the points of small bodies count
 /// was found in 36 more scenes. Simulated and real frames agree in the weights, but not in the constant: the one here
 /// is between those of the real frames; frames in the sun would need a larger one. What roundness below 0.5 counts in
-/// several views was found in 96 scans of plants: stumps and trunks have 0.35 to 0.5, fruit almost always more. A noisy
-/// sensor makes small fruit look less round, and adds clutter: in several views `normal_noise` makes up for it.
+/// several views was found in 96 scans of plants: stumps and trunks have 0.35 to 0.5, fruit almost always more.
 /// @param prior log-odds from elsewhere, which are added (MaskEvidence::log_odds)
 inline double fruit_probability(const Verdict& v, const EllipsoidFit& fit, const BodyParameters& parameters,
                                 double prior = 0.0) {
   if (v.support == 0 || !(v.coverage > 0.0)) return 0.0;
   constexpr double kMostPoints = 1500.0, kMostMisfit = 0.08, kRoundEnough = 0.8, kLarge = 0.5;  // more changes nothing
   constexpr double kSingleView = -0.4, kSeenOn = 2.8, kUsual = 0.42;
-  constexpr double kNoisy = 0.028, kBeyond = 30.0;  // kNoisy in m
+  constexpr double kBeyond = 30.0;
   const double radius = fit.body.mean_radius();
   // The same share of a smaller surface has fewer points. Where several views agree on a body they count as on one of
   // 0.42 times the largest expected radius; in a single view scraps of leaves are small, too.
@@ -198,8 +197,7 @@ inline double fruit_probability(const Verdict& v, const EllipsoidFit& fit, const
                           1.55 * std::min(v.roundness, kRoundEnough) - 3.69 * through - 5.65 * v.inside / v.coverage +
                           1.7 * std::min(radius / parameters.radius_max, kLarge);
   // Several views see that a stump is a cylinder, and one does not.
-  const double view = v.seen_on ? kSingleView + kSeenOn * std::log(*v.seen_on)
-                                : kNoisy / radius * parameters.normal_noise - parameters.ridge * v.flatness();
+  const double view = v.seen_on ? kSingleView + kSeenOn * std::log(*v.seen_on) : -parameters.ridge * v.flatness();
   const double beyond = std::max(0.0, fit.body.mean_semi_axis() / parameters.radius_max - 1.0);
   return 1.0 / (1.0 + std::exp(-(evidence + view - kBeyond * beyond + prior)));
 }

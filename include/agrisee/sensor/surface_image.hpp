@@ -18,7 +18,7 @@ namespace agrisee::sensor {
 struct SurfaceParameters {
   double spacing = 0.0022;         ///< desired distance between cells on the object (m)
   int max_block = 8;               ///< largest edge of the block of pixels that makes a cell (pixels)
-  double target_sigma = 0.0004;    ///< a window grows until the cell's standard deviation should be this small (m)
+  double target_sigma = 0.002;     ///< a window grows until the cell's standard deviation should be this small (m)
   int max_window = 4;              ///< largest half width of a window (cells)
   double smallest_radius = 0.012;  ///< smallest radius of curvature that smoothing has to preserve (m)
   double max_incidence = deg(84);  ///< cells seen at a larger angle of incidence are dropped (rad)
