@@ -199,7 +199,7 @@ TEST_CASE("gain planner: the scan ends when the best view promises too small a s
   const auto [most, area] = next(0.1);
   CHECK(next(0.999 * most / area).first == most);
   CHECK(next(1.001 * most / area).first == 0.0);
-  CHECK(GainPlannerParameters().min_gain == 0.0008);
+  CHECK(GainPlannerParameters().min_gain == 0.0012);
 }
 
 TEST_CASE("gain planner: without fruit, the smallest gain is a share of a square millimetre") {
