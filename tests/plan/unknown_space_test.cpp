@@ -50,13 +50,13 @@ bool shown_at(double x, double y, double z, const sensor::DepthCamera& sensor = 
   return gain > 0.0;
 }
 
-/// Whether points of the cloud hide a voxel at (1/256, 1/256, 1/2) of the optical frame: the middle of a pixel. The
+/// Whether points of the cloud hide a voxel at (1/512, 1/512, 1/2) of the optical frame: the middle of a pixel. The
 /// points are in units of the voxel's ray's directions: (pixels to the right, pixels down, depth in m).
-bool hidden_by(const std::vector<Vector3d>& obstacles, double column = 48.5, double row = 36.5) {
-  const Pose pose = sees_origin_at((column - 48.0) / 128, (row - 36.0) / 128, 0.5);
+bool hidden_by(const std::vector<Vector3d>& obstacles, double column = 96.5, double row = 72.5) {
+  const Pose pose = sees_origin_at((column - 96.0) / 256, (row - 72.0) / 256, 0.5);
   std::vector<Vector3d> points{kFar};
   for (const Vector3d& o : obstacles)
-    points.push_back(pose * Vector3d((column - 48.0 + o.x()) / 64 * o.z(), (row - 36.0 + o.y()) / 64 * o.z(), o.z()));
+    points.push_back(pose * Vector3d((column - 96.0 + o.x()) / 128 * o.z(), (row - 72.0 + o.y()) / 128 * o.z(), o.z()));
   return model_of(scan_of(points), box(Vector3d::Zero(), kVoxel / 2)).shown(pose).empty();
 }
 
@@ -109,12 +109,12 @@ TEST_CASE("unknown space: a point more than 12 mm in front hides what is within 
   CHECK_FALSE(hidden_by({{0, 0, 0.505}}));
   CHECK_FALSE(hidden_by({{0, 0, 0.75}}));
   CHECK_FALSE(hidden_by({{0, 0, -0.25}}));
-  // A voxel at three quarters of pixel 48: pixels 48 and 49 are about it; at a quarter: 47 and 48.
+  // A voxel at three quarters of pixel 96: pixels 96 and 97 are about it; at a quarter: 95 and 96.
   for (const auto& [offset, hides] : {std::pair(-0.8, false), {-0.7, true}, {1.2, true}, {1.3, false}}) {
-    CHECK(hidden_by({{offset, 0, 0.25}}, 48.75, 36.5) == hides);
-    CHECK(hidden_by({{0, offset, 0.25}}, 48.5, 36.75) == hides);
-    CHECK(hidden_by({{-offset, 0, 0.25}}, 48.25, 36.5) == hides);
-    CHECK(hidden_by({{0, -offset, 0.25}}, 48.5, 36.25) == hides);
+    CHECK(hidden_by({{offset, 0, 0.25}}, 96.75, 72.5) == hides);
+    CHECK(hidden_by({{0, offset, 0.25}}, 96.5, 72.75) == hides);
+    CHECK(hidden_by({{-offset, 0, 0.25}}, 96.25, 72.5) == hides);
+    CHECK(hidden_by({{0, -offset, 0.25}}, 96.5, 72.25) == hides);
   }
   CHECK(hidden_by({{0, 0, 0.25}, {0, 0, 0.45}}));  // the nearest counts
   CHECK(hidden_by({{0, 0, 0.75}, {0, 0, 0.25}}));
@@ -124,17 +124,17 @@ TEST_CASE("unknown space: points hide what is in the first and in the last pixel
   CHECK_FALSE(hidden_by({}, 0.4, 0.4));
   CHECK(hidden_by({{0, 0, 0.25}}, 0.4, 0.4));
   CHECK_FALSE(hidden_by({{1, 0, 0.25}}, 0.4, 0.4));
-  CHECK(hidden_by({{0, 0, 0.25}}, 95.6, 71.6));
-  CHECK_FALSE(hidden_by({{1, 0, 0.25}}, 95.6, 35.6));  // the pixel to the right would be the first of the next row
-  CHECK_FALSE(hidden_by({{-96, 1, 0.25}}, 95.6, 35.6));
+  CHECK(hidden_by({{0, 0, 0.25}}, 191.6, 143.6));
+  CHECK_FALSE(hidden_by({{1, 0, 0.25}}, 191.6, 71.6));  // the pixel to the right would be the first of the next row
+  CHECK_FALSE(hidden_by({{-192, 1, 0.25}}, 191.6, 71.6));
 }
 
-TEST_CASE("unknown space: points of a cell of 6 mm count as one in their middle") {
-  const Pose pose = look_along({-1.0 / 256, -0.5, 1.0 / 256}, Vector3d::UnitY());  // at 0.25 m a pixel is 4 mm
+TEST_CASE("unknown space: points of a cell of 3 mm count as one in their middle") {
+  const Pose pose = look_along({-1.0 / 512, -0.5, 1.0 / 512}, Vector3d::UnitY());  // at 0.25 m a pixel is 2 mm
   const auto hides = [&](const std::vector<Vector3d>& points) {
     return model_of(scan_of(points), box(Vector3d::Zero(), kVoxel / 2)).shown(pose).empty();
   };
-  const Vector3d in(-0.0025, -0.25, 0.002), out(-0.0059, -0.25, 0.002), farther_out(-0.0085, -0.25, 0.002);
+  const Vector3d in(-0.0012, -0.25, 0.001), out(-0.0029, -0.25, 0.001), farther_out(-0.0042, -0.25, 0.001);
   CHECK(hides({in, kFar}));
   CHECK_FALSE(hides({out, kFar}));
   CHECK_FALSE(hides({in, out, kFar}));
