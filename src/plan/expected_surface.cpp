@@ -208,8 +208,7 @@ void ExpectedSurface::sample_bodies(const Progress& progress, const fuse::FreeSp
   const auto cover = static_cast<float>(parameters_.cover_radius);
   const Grid<float> grid(progress.cloud, cover);
   const auto is_covered = [&](const Eigen::Vector3d& p) { return grid.count(p.cast<float>(), cover, 1) > 0; };
-  // Lobes stand out from the ellipsoid: what covers a sample there lies farther from the center, and faces away from
-  // it.
+  // Lobes stand out from the ellipsoid: what covers a sample there lies farther out, and faces outward.
   const auto is_below_lobe = [&](const Eigen::Vector3d& p, const Eigen::Vector3d& outward, double radius) {
     constexpr float kFarthest = 0.25f, kFaces = 0.5f;  // share of the radius; cosine
     const std::vector<Eigen::Vector3f>& normals = progress.cloud.normals;

@@ -65,7 +65,8 @@ struct SurfaceImage {
 };
 
 /// Standard deviation of the angle of the normals (rad) in fused surfaces due to the sensor alone: the median noise of
-/// the images over 20 mm, about the width of the patches that normals are fitted to. 0 without images.
+/// the images over 20 mm. The patches that normals are fitted to are 11 mm wide, and up to 20 mm at much noise. 0
+/// without images.
 inline double normal_noise(const std::vector<SurfaceImage>& images) {
   constexpr double kPatch = 0.020;
   std::vector<double> noise;
