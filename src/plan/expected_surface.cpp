@@ -80,6 +80,27 @@ std::optional<Eigen::Vector3d> carved(const Eigen::Vector3d& surface, const Eige
   return std::nullopt;
 }
 
+/// Whether a lobe covers a point of a body's ellipsoid (m): surface that stands out from it, up to a quarter of the
+/// radius, and faces outward. A cloud without normals has none.
+/// @param outward unit, from the body's center
+/// @param cover how far from the line through the point the surface may be (m)
+bool is_below_lobe(const Cloud& cloud, const Grid<float>& grid, const Eigen::Vector3d& point,
+                   const Eigen::Vector3d& outward, double radius, float cover) {
+  constexpr float kFarthest = 0.25f, kFaces = 0.5f;  // share of the radius; cosine
+  if (cloud.normals.empty()) return false;
+  const Eigen::Vector3f u = outward.cast<float>();
+  const float half = 0.5f * kFarthest * static_cast<float>(radius);
+  const Eigen::Vector3f middle = point.cast<float>() + half * u;
+  bool found = false;
+  grid.visit(middle, half + cover, [&](Index index, float) {
+    const auto i = static_cast<std::size_t>(index);
+    const Eigen::Vector3f q = cloud.points[i] - middle;
+    const float along = std::clamp(q.dot(u), -half, half);
+    found = found || ((q - along * u).squaredNorm() <= cover * cover && cloud.normals[i].dot(u) > kFaces);
+  });
+  return found;
+}
+
 }  // namespace
 
 ExpectedSurface::ExpectedSurface(const sensor::DepthCamera& sensor, const Aabb& volume,
@@ -208,23 +229,6 @@ void ExpectedSurface::sample_bodies(const Progress& progress, const fuse::FreeSp
   const auto cover = static_cast<float>(parameters_.cover_radius);
   const Grid<float> grid(progress.cloud, cover);
   const auto is_covered = [&](const Eigen::Vector3d& p) { return grid.count(p.cast<float>(), cover, 1) > 0; };
-  // Lobes stand out from the ellipsoid: what covers a sample there lies farther out, and faces outward.
-  const auto is_below_lobe = [&](const Eigen::Vector3d& p, const Eigen::Vector3d& outward, double radius) {
-    constexpr float kFarthest = 0.25f, kFaces = 0.5f;  // share of the radius; cosine
-    const std::vector<Eigen::Vector3f>& normals = progress.cloud.normals;
-    if (normals.empty()) return false;
-    const Eigen::Vector3f u = outward.cast<float>();
-    const float half = 0.5f * kFarthest * static_cast<float>(radius);
-    const Eigen::Vector3f middle = p.cast<float>() + half * u;
-    bool found = false;
-    grid.visit(middle, half + cover, [&](Index index, float) {
-      const auto i = static_cast<std::size_t>(index);
-      const Eigen::Vector3f q = progress.cloud.points[i] - middle;
-      const float along = std::clamp(q.dot(u), -half, half);
-      found = found || ((q - along * u).squaredNorm() <= cover * cover && normals[i].dot(u) > kFaces);
-    });
-    return found;
-  };
   const std::vector<Eigen::Vector3d> directions = spread_directions(parameters_.samples);
   for (std::size_t b = 0; b < bodies_.size(); ++b) {
     const Ellipsoid& body = bodies_[b].fit.body;
@@ -236,7 +240,7 @@ void ExpectedSurface::sample_bodies(const Progress& progress, const fuse::FreeSp
     double covered = 0.0;
     for (const Eigen::Vector3d& d : directions) {
       const Eigen::Vector3d p = body.surface(d);
-      if (is_covered(p) || is_below_lobe(p, d, r)) {
+      if (is_covered(p) || is_below_lobe(progress.cloud, grid, p, d, r, cover)) {
         covered += share;
         continue;
       }
