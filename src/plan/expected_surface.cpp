@@ -22,6 +22,7 @@ namespace {
 
 constexpr double kObstacle = 0.003;  // points that may hide fruit are thinned to one in a voxel of this edge (m)
 constexpr double kGrowth = 1.25;     // segment the cloud from scratch when it has grown by this factor
+constexpr double kSmaller = 0.97;    // a fruit hides and contains what an ellipsoid smaller by this factor does
 constexpr double kTrusted =
     0.003;  // earlier views are taken to have promised, and kept, this share of the fruit surface
 
@@ -210,8 +211,8 @@ void ExpectedSurface::collect_samples(const Progress& progress, const fuse::Free
   for (std::size_t b = 0; b < bodies_.size(); ++b) {
     const Ellipsoid& body = bodies_[b].fit.body;
     if (believed(bodies_[b]))
-      occluders_.push_back(
-          {body.center.cast<float>(), static_cast<float>(0.97 * body.mean_radius()), static_cast<int>(b)});
+      occluders_.push_back({body.center.cast<float>(), (body.A / kSmaller).cast<float>(),
+                            static_cast<float>(kSmaller * semi_axes(body).first[0]), static_cast<int>(b)});
   }
   area_ = covered_ = 0.0;
   area_of_.clear();
@@ -282,7 +283,7 @@ void ExpectedSurface::add_sample(const Eigen::Vector3d& point, const Eigen::Vect
 bool ExpectedSurface::inside_other(const Eigen::Vector3d& point, int own) const {
   for (std::size_t b = 0; b < bodies_.size(); ++b)
     if (static_cast<int>(b) != own && believed(bodies_[b]) &&
-        (point - bodies_[b].fit.body.center).norm() < 0.98 * bodies_[b].fit.body.mean_radius())
+        (bodies_[b].fit.body.A * (point - bodies_[b].fit.body.center)).squaredNorm() < kSmaller * kSmaller)
       return true;
   return false;
 }
@@ -317,9 +318,11 @@ bool ExpectedSurface::hidden(const Eigen::Vector3f& camera, const Eigen::Vector3
     if (o.body == own) continue;
     const Eigen::Vector3f c = o.center - camera;
     const float r_sq = o.radius * o.radius, along = c.dot(u);
-    const float off_sq = c.squaredNorm() - along * along;
-    if (off_sq >= r_sq || along < 0.0f) continue;
-    if (along - std::sqrt(r_sq - off_sq) < distance - 1e-3f) return true;
+    if (along < 0.0f || c.squaredNorm() - along * along >= r_sq) continue;
+    // Where the ray enters the unit sphere that the ellipsoid becomes.
+    const Eigen::Vector3f q = o.to_unit * c, w = o.to_unit * u;
+    const float a = w.squaredNorm(), b = q.dot(w), off = b * b - a * (q.squaredNorm() - 1.0f);
+    if (off > 0.0f && b - std::sqrt(off) < a * (distance - 1e-3f)) return true;
   }
   return false;
 }

@@ -71,9 +71,10 @@ class ExpectedSurface {
     int body;                       // index of its fruit; -1 for a voxel
   };
   struct Occluder {
-    Eigen::Vector3f center;  // m, world
-    float radius;            // m
-    int body;                // index of its fruit
+    Eigen::Vector3f center;   // m, world
+    Eigen::Matrix3f to_unit;  // takes the ellipsoid about its center to the unit sphere (1/m)
+    float radius;             // of a sphere around the ellipsoid (m)
+    int body;                 // index of its fruit
   };
 
   /// A sample that a view was expected to show.
@@ -128,7 +129,7 @@ class ExpectedSurface {
   std::size_t tracked_views_ = 0;  // views of the cloud in which `bodies_` were found
   std::vector<Sample> samples_;
   std::vector<float> areas_;         // one per sample (m2)
-  std::vector<Occluder> occluders_;  // spheres a little smaller than the fruit
+  std::vector<Occluder> occluders_;  // ellipsoids a little smaller than the fruit
   std::vector<float> obstacles_;     // points that belong to no fruit, thinned: all x, then all y, then all z (m)
   double area_ = 0.0, covered_ = 0.0;
   double promised_ = 0.0, kept_ = 0.0;  // what the last views were expected to show, and what they showed of it (m2)
