@@ -265,7 +265,7 @@ TEST_CASE("sums over two points by hand") {
                                           {kCenter + (kRadius - 0.002) * z, z},
                                           {kCenter + (kRadius + 0.009) * z, z},  // beyond the gate
                                           {kCenter + kRadius * z, -z}};          // its normal disagrees
-  const FitSums sums = fit_sums(samples, ball(), kRadius, 0.004, 0.5, 0.0015);
+  const FitSums sums = fit_sums<double>(samples, ball(), kRadius, 0.004, 0.5, 0.0015);
   const double near = std::pow(1.0 - 1.0 / 16.0, 2), far = std::pow(1.0 - 1.0 / 4.0, 2);
   CHECK(sums.weights == Approx(near + far));
   CHECK(sums.inliers == 1);

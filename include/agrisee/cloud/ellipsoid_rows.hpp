@@ -35,15 +35,20 @@ struct RowTerms {
   Real along;                       ///< the gradient times the point's normal (1/m)
   Real residual;                    ///< distance of the point (m)
   std::array<Real, 9> derivatives;  ///< as in EllipsoidRow
+
+  /// A derivative, or the residual as number 9.
+  const Real& operator[](std::size_t i) const { return i < 9 ? derivatives[i] : residual; }
 };
 
 /// The terms of points (x, y, z), relative to the body's center (m), with normals (nx, ny, nz).
+/// @tparam Real,S what the terms are of: a number, or an Eigen array of numbers, and the type of the numbers
 /// @param size the unknowns are scaled by this length (m)
-template <typename Real>
+template <typename Real, typename S = double>
 RowTerms<Real> row_terms(const Ellipsoid& body, Real x, Real y, Real z, const Real& nx, const Real& ny, const Real& nz,
                          double size) {
   using std::sqrt;
-  const Eigen::Matrix3d& A = body.A;
+  const Eigen::Matrix<S, 3, 3> A = body.A.template cast<S>();
+  const S one = 1, length = static_cast<S>(size);
   const auto row_of_A = [&A](int i, const Real& u, const Real& v, const Real& w) -> Real {
     return A(i, 0) * u + A(i, 1) * v + A(i, 2) * w;
   };
@@ -55,8 +60,8 @@ RowTerms<Real> row_terms(const Ellipsoid& body, Real x, Real y, Real z, const Re
   const Real sx = row_of_A(0, ax, ay, az), sy = row_of_A(1, ax, ay, az), sz = row_of_A(2, ax, ay, az);
   out.steep = sqrt(sx * sx + sy * sy + sz * sz);
   out.along = sx * nx + sy * ny + sz * nz;
-  out.residual = (out.g - 1.0) / out.steep;
-  const Real scale = 1.0 / (out.steep * size), inward = -size / out.steep;
+  out.residual = (out.g - one) / out.steep;
+  const Real scale = one / (out.steep * length), inward = -length / out.steep;
   out.derivatives = {Real(sx * inward),
                      Real(sy * inward),
                      Real(sz * inward),
@@ -72,10 +77,17 @@ RowTerms<Real> row_terms(const Ellipsoid& body, Real x, Real y, Real z, const Re
 /// Tukey's biweight of a point with these terms; 0 if it is at the center, beyond the gate, or its normal disagrees.
 /// @param gate from this residual (m) on the weight is 0
 /// @param cos_max cosine of the largest angle between the point's normal and the body's
-inline double row_weight(double g, double steep, double along, double residual, double gate, double cos_max) {
-  const double t = residual / gate;
-  if (!(g > 1e-9) || along < cos_max * steep || !(std::abs(t) < 1.0)) return 0.0;
+inline double row_weight(const RowTerms<double>& terms, double gate, double cos_max) {
+  const double t = terms.residual / gate;
+  if (!(terms.g > 1e-9) || terms.along < cos_max * terms.steep || !(std::abs(t) < 1.0)) return 0.0;
   return (1.0 - t * t) * (1.0 - t * t);
+}
+
+/// The same of several points, none of which is at the center.
+template <typename S, int N>
+Eigen::Array<S, N, 1> row_weight(const RowTerms<Eigen::Array<S, N, 1>>& terms, double gate, double cos_max) {
+  const Eigen::Array<S, N, 1> t = terms.residual / static_cast<S>(gate), near = S(1) - t * t;
+  return (near > S(0) && terms.along >= static_cast<S>(cos_max) * terms.steep).select(near * near, S(0));
 }
 
 /// The row of a point.
@@ -87,7 +99,7 @@ inline EllipsoidRow ellipsoid_row(const Ellipsoid& body, const Eigen::Vector3d& 
   const RowTerms<double> terms = row_terms<double>(body, d.x(), d.y(), d.z(), normal.x(), normal.y(), normal.z(), size);
   EllipsoidRow row;
   if (terms.g > 1e-9) row.residual = terms.residual;
-  row.weight = row_weight(terms.g, terms.steep, terms.along, terms.residual, gate, cos_max);
+  row.weight = row_weight(terms, gate, cos_max);
   if (row.weight > 0.0) row.derivatives = Eigen::Map<const Vector9>(terms.derivatives.data());
   return row;
 }

@@ -18,6 +18,7 @@
 #include <Eigen/Eigenvalues>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <optional>
 
@@ -111,41 +112,50 @@ struct FitSums {
   std::size_t inliers = 0;  ///< samples close to the body
 };
 
+/// The sums, of several samples at once, so that the compiler can use vector instructions.
+/// @tparam S number type of the terms; for points of single precision single precision is enough
 /// @param gate as of ellipsoid_row (m)
 /// @param inlier samples with smaller residuals (m) are inliers
 /// @throws Cancelled
-inline FitSums fit_sums(const std::vector<FitSample>& samples, const Ellipsoid& body, double size, double gate,
-                        double cos_max, double inlier) {
-  // The tenth row and column of the products belong to the residual.
-  Eigen::Matrix<double, 10, 10> products = Eigen::Matrix<double, 10, 10>::Zero();
-  double weights = 0.0, squares = 0.0;
-  std::size_t inliers = 0;
-  constexpr int kLanes = 16;
-  using Lanes = Eigen::Array<double, kLanes, 1>;
+template <typename S>
+FitSums fit_sums(const std::vector<FitSample>& samples, const Ellipsoid& body, double size, double gate, double cos_max,
+                 double inlier) {
+  constexpr std::size_t kLanes = 8, kTerms = 10;  // the tenth term of a row is the residual
+  constexpr double kAtCenter = 1e-9;              // m; samples at the center have no direction
+  constexpr S kBeyond = 1000;                     // m; stands for samples that do not count
+  using Lanes = Eigen::Array<S, int{kLanes}, 1>;
+  std::array<Lanes, kTerms*(kTerms + 1) / 2> products;  // the upper triangle, row by row
+  products.fill(Lanes::Zero());
+  Lanes weights = Lanes::Zero(), squares = Lanes::Zero(), inliers = Lanes::Zero();
   for (std::size_t from = 0; from < samples.size(); from += kLanes) {
     if ((from & 0xFFF) == 0) throw_if_cancelled();
-    const std::size_t count = std::min<std::size_t>(kLanes, samples.size() - from);
-    Eigen::Array<double, kLanes, 6> block;
-    for (std::size_t i = 0; i < kLanes; ++i) {  // the last sample fills a block that is not full
-      const FitSample& s = samples[from + std::min(i, count - 1)];
-      block.row(static_cast<Eigen::Index>(i)) << (s.point - body.center).transpose().array(),
-          s.normal.transpose().array();
+    Eigen::Array<S, int{kLanes}, 6> block = Eigen::Array<S, int{kLanes}, 6>::Constant(kBeyond);
+    for (std::size_t i = from; i < std::min(from + kLanes, samples.size()); ++i) {
+      const Eigen::Vector3d p = samples[i].point - body.center;
+      if (p.squaredNorm() > kAtCenter * kAtCenter)
+        block.row(static_cast<Eigen::Index>(i - from)) << p.transpose().array().template cast<S>(),
+            samples[i].normal.transpose().array().template cast<S>();
     }
-    const RowTerms<Lanes> terms = row_terms<Lanes>(body, block.col(0), block.col(1), block.col(2), block.col(3),
-                                                   block.col(4), block.col(5), size);
-    for (std::size_t k = 0; k < count; ++k) {
-      const auto i = static_cast<Eigen::Index>(k);
-      const double weight = row_weight(terms.g[i], terms.steep[i], terms.along[i], terms.residual[i], gate, cos_max);
-      if (!(weight > 0.0)) continue;
-      Eigen::Matrix<double, 10, 1> j;
-      for (std::size_t a = 0; a < 9; ++a) j[static_cast<Eigen::Index>(a)] = terms.derivatives[a][i];
-      j[9] = terms.residual[i];
-      products.noalias() += (weight * j).lazyProduct(j.transpose());
-      weights += weight;
-      if (std::abs(j[9]) < inlier) ++inliers, squares += j[9] * j[9];
+    const RowTerms<Lanes> terms = row_terms<Lanes, S>(body, block.col(0), block.col(1), block.col(2), block.col(3),
+                                                      block.col(4), block.col(5), size);
+    const Lanes weight = row_weight(terms, gate, cos_max);
+    for (std::size_t a = 0, k = 0; a < kTerms; ++a) {
+      const Lanes weighted = weight * terms[a];
+      for (std::size_t b = a; b < kTerms; ++b, ++k) products[k] += weighted * terms[b];
     }
+    const auto is_inlier = (weight > S(0) && terms.residual.abs() < static_cast<S>(inlier)).eval();
+    weights += weight;
+    inliers += is_inlier.template cast<S>();
+    squares += is_inlier.select(terms.residual.square(), S(0));
   }
-  return {products.topLeftCorner<9, 9>(), -products.topRightCorner<9, 1>(), weights, squares, inliers};
+  Eigen::Matrix<double, int{kTerms}, int{kTerms}> sums;
+  for (std::size_t a = 0, k = 0; a < kTerms; ++a)
+    for (std::size_t b = a; b < kTerms; ++b, ++k) {
+      const auto i = static_cast<Eigen::Index>(a), j = static_cast<Eigen::Index>(b);
+      sums(i, j) = sums(j, i) = products[k].template cast<double>().sum();
+    }
+  return {sums.topLeftCorner<9, 9>(), -sums.topRightCorner<9, 1>(), weights.template cast<double>().sum(),
+          squares.template cast<double>().sum(), static_cast<std::size_t>(inliers.sum())};
 }
 
 /// Multiply the normal equations by the samples' information and add the priors on the shape and, if there is one, on
@@ -216,7 +226,7 @@ std::optional<EllipsoidFit> fit_ellipsoid(const PointCloud<S>& cloud, const Indi
   double gate = std::max(6.0 * noise, 0.12 * size);
   detail::Matrix9 information = detail::Matrix9::Zero();  // of the last step
   for (int iteration = 0; iteration < parameters.iterations; ++iteration) {
-    detail::FitSums sums = detail::fit_sums(samples, fit.body, size, gate, cos_max, inlier);
+    detail::FitSums sums = detail::fit_sums<S>(samples, fit.body, size, gate, cos_max, inlier);
     if (share * sums.weights < 0.3 * static_cast<double>(least)) return std::nullopt;
     const double certainty = std::min(share, parameters.independent / sums.weights) / (noise * noise);
     detail::add_prior(sums, fit.body, size, certainty, parameters.shape_prior, size_prior);
