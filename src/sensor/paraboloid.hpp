@@ -31,25 +31,35 @@ inline std::vector<Tap> window_taps(int w) {
   return taps;
 }
 
+/// Numbers of several cells, so that the compiler can use vector instructions.
+constexpr int kLanes = 8;
+using Lanes = Eigen::Array<float, kLanes, 1>;
+
 /// Weighted sums for the height z as a paraboloid over (u, v), with the coefficients of 1, u, v, uu, uv, vv. The 21
 /// different products of these are 15 different monomials.
-struct ParaboloidSums {
-  double weight = 0.0;         ///< sum of the weights
-  double squares = 0.0;        ///< weighted sum of squared residuals (m2)
-  std::array<double, 15> m{};  ///< 1, u, v, uu, uv, vv, uuu, uuv, uvv, vvv, uuuu, uuuv, uuvv, uvvv, vvvv
-  Eigen::Matrix<double, 6, 1> rhs = Eigen::Matrix<double, 6, 1>::Zero();  ///< right-hand side
-
-  /// Add a cell of weight w at (u, v) with height z (m) and residual (m).
-  void add(double w, double u, double v, double z, double residual) {
-    const double uu = u * u, uv = u * v, vv = v * v, wuu = w * uu, wuv = w * uv, wvv = w * vv, wz = w * z;
-    weight += w;
-    squares += w * residual * residual;
-    const double products[15] = {w,       w * u,   w * v,    wuu,      wuv,      wvv,      wuu * u, wuu * v,
-                                 wvv * u, wvv * v, wuu * uu, wuu * uv, wuu * vv, wuv * vv, wvv * vv};
-    for (std::size_t k = 0; k < 15; ++k) m[k] += products[k];
-    const double heights[6] = {wz, wz * u, wz * v, wz * uu, wz * uv, wz * vv};
-    for (int k = 0; k < 6; ++k) rhs[k] += heights[k];
+class ParaboloidSums {
+ public:
+  ParaboloidSums() {
+    squares_.setZero();
+    m_.fill(squares_);
+    rhs_.fill(squares_);
   }
+
+  /// Add cells of weight w at (u, v) with height z (m) and residual (m).
+  void add(const Lanes& w, const Lanes& u, const Lanes& v, const Lanes& z, const Lanes& residual) {
+    const Lanes wu = w * u, wv = w * v, wuu = wu * u, wuv = wu * v, wvv = wv * v, uu = u * u, uv = u * v, vv = v * v;
+    squares_ += w * residual * residual;
+    m_[0] += w, m_[1] += wu, m_[2] += wv, m_[3] += wuu, m_[4] += wuv, m_[5] += wvv;
+    m_[6] += wuu * u, m_[7] += wuu * v, m_[8] += wvv * u, m_[9] += wvv * v;
+    m_[10] += wuu * uu, m_[11] += wuu * uv, m_[12] += wuu * vv, m_[13] += wuv * vv, m_[14] += wvv * vv;
+    rhs_[0] += w * z, rhs_[1] += wu * z, rhs_[2] += wv * z;
+    rhs_[3] += wuu * z, rhs_[4] += wuv * z, rhs_[5] += wvv * z;
+  }
+
+  /// Sum of the weights.
+  double weight() const { return sum(m_[0]); }
+  /// Weighted sum of squared residuals (m2).
+  double squares() const { return sum(squares_); }
 
   /// Solve for the coefficients.
   /// @param x receives the coefficients
@@ -61,16 +71,26 @@ struct ParaboloidSums {
                                                     {2, 4, 5, 7, 8, 9},    {3, 6, 7, 10, 11, 12},
                                                     {4, 7, 8, 11, 12, 13}, {5, 8, 9, 12, 13, 14}};
     Eigen::Matrix<double, 6, 6> a;
-    for (int i = 0; i < 6; ++i)
-      for (int j = 0; j < 6; ++j) a(i, j) = m[kMonomial[i][j]];
-    a.diagonal().array() += 1e-9 * weight;
+    Eigen::Matrix<double, 6, 1> b;
+    for (int i = 0; i < 6; ++i) {
+      b[i] = sum(rhs_[static_cast<std::size_t>(i)]);
+      for (int j = 0; j < 6; ++j) a(i, j) = sum(m_[kMonomial[i][j]]);
+    }
+    a.diagonal().array() += 1e-9 * weight();
     a.diagonal().tail<3>().array() += stiffness;
     const Eigen::LLT<Eigen::Matrix<double, 6, 6>> solver(a);
     if (solver.info() != Eigen::Success) return false;
-    x = solver.solve(rhs);
+    x = solver.solve(b);
     if (variance) *variance = solver.solve(Eigen::Matrix<double, 6, 1>::Unit(0))[0];
     return x.allFinite();
   }
+
+ private:
+  static double sum(const Lanes& lanes) { return double(lanes.sum()); }
+
+  std::array<Lanes, 15> m_;   // 1, u, v, uu, uv, vv, uuu, uuv, uvv, vvv, uuuu, uuuv, uuvv, uvvv, vvvv
+  std::array<Lanes, 6> rhs_;  // right-hand side
+  Lanes squares_;
 };
 
 }  // namespace agrisee::sensor::detail

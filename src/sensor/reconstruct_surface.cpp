@@ -15,6 +15,8 @@ namespace {
 
 using detail::Block;
 using detail::Blocks;
+using detail::kLanes;
+using detail::Lanes;
 using detail::ParaboloidSums;
 using detail::Tap;
 
@@ -34,11 +36,34 @@ struct Patch {
   }
 };
 
+/// Blocks about a cell: their rays and depths.
+struct Window {
+  std::vector<float> x, y;  ///< of the rays where their z is 1
+  std::vector<float> z;     ///< measured depths (m)
+  std::vector<float> near;  ///< weights for their distances from the cell; 0 for what fills the last lanes
+  int cells = 0;            ///< number of cells of the window that lie in the image
+
+  std::size_t size() const { return z.size(); }
+  void clear() {
+    for (auto* numbers : {&x, &y, &z, &near}) numbers->clear();
+    cells = 0;
+  }
+  void add(const Eigen::Vector2f& ray, float depth, float weight) {
+    x.push_back(ray.x());
+    y.push_back(ray.y());
+    z.push_back(depth);
+    near.push_back(weight);
+  }
+};
+
 /// Fits the paraboloids.
 class PatchFitter {
  public:
-  /// Differences of depth between neighboring blocks along u and along v; kept from cell to cell to save allocations.
-  using Differences = std::array<std::vector<float>, 2>;
+  /// What is kept from cell to cell to save allocations.
+  struct Scratch {
+    std::array<std::vector<float>, 2> differences;  ///< of depth between neighboring blocks along u and along v (m)
+    Window window;
+  };
 
   /// @param pitch distance between blocks at the typical depth (m)
   /// @param noise standard deviation of the blocks' depths (m)
@@ -54,33 +79,32 @@ class PatchFitter {
     rays_.reserve(blocks.blocks.size());
     for (const Block& b : blocks.blocks) {
       const Eigen::Vector3d ray = blocks.cells.ray(double(b.u), double(b.v));
-      rays_.emplace_back(ray.x(), ray.y());
+      rays_.emplace_back(ray.head<2>().cast<float>());
     }
   }
 
   /// Fit the paraboloid around cell c; `patch` is left as it is if there is none.
-  void fit(std::size_t c, Differences& along, Patch& patch) const {
+  void fit(std::size_t c, Scratch& scratch, Patch& patch) const {
     if (!(blocks_.blocks[c].z > 0.0f)) return;
     const auto across = static_cast<std::size_t>(blocks_.cells.width);
     const int cu = static_cast<int>(c % across), cv = static_cast<int>(c / across);
-    Patch found = first_guess(c, first_slope(cu, cv, along));
+    Patch found = first_guess(c, first_slope(cu, cv, scratch.differences));
     // Before the curvature is known it may explain this much, times the squared distance.
     double slack = bend_ * (1.0 + (found.x[1] * found.x[1] + found.x[2] * found.x[2]) / (pitch_ * pitch_));
-    double scale = noise_, variance = 0.0;
-    ParaboloidSums sums;
-    int window_cells = 0;
+    double scale = noise_, variance = 0.0, weight = 0.0;
+    collect(cu, cv, scratch.window);
     constexpr int kIterations = 3;
     for (int iteration = 0; iteration < kIterations; ++iteration, slack = 0.0) {
-      sums = {};
-      window_cells = add_window(cu, cv, found, scale, slack, sums);
-      if (sums.weight < 2.5) return;
+      const ParaboloidSums sums = add_window(scratch.window, found, scale, slack);
+      weight = sums.weight();
+      if (weight < 2.5) return;
       // Few cells do not tell the curvature from noise.
-      const double stiffness = sums.weight > 7.0 ? 0.0 : std::pow(scale / (2.0 * bend_), 2);
+      const double stiffness = weight > 7.0 ? 0.0 : std::pow(scale / (2.0 * bend_), 2);
       if (!sums.solve(found.x, stiffness, iteration + 1 == kIterations ? &variance : nullptr)) return;
-      if (iteration > 0) scale = std::max(noise_, 0.5 * std::sqrt(sums.squares / sums.weight));
+      if (iteration > 0) scale = std::max(noise_, 0.5 * std::sqrt(sums.squares() / weight));
     }
     // Cells without neighbors on their own surface are flying pixels.
-    if (sums.weight < 0.2 * 0.63 * double(window_cells)) return;
+    if (weight < 0.2 * 0.63 * double(scratch.window.cells)) return;
     if (std::abs(found.x[0]) > 4.0 * noise_ + 0.5 * pitch_) return;
     found.sigma = std::max(scale * std::sqrt(std::max(variance, 0.0)), 1e-5);
     patch = found;
@@ -96,7 +120,7 @@ class PatchFitter {
 
   /// First guess of the slopes (m a cell): medians of the differences between neighboring blocks about a cell, without
   /// those that are too large for the steepest surface that is kept.
-  Eigen::Vector2d first_slope(int cu, int cv, Differences& along) const {
+  Eigen::Vector2d first_slope(int cu, int cv, std::array<std::vector<float>, 2>& along) const {
     const double step = steepest_ * pitch_ + 4.0 * noise_;
     const int reach = std::min(window_, 1 + static_cast<int>(noise_ / 0.001));
     const int u_end = std::min(cu + reach, blocks_.cells.width - 1);
@@ -119,7 +143,7 @@ class PatchFitter {
   /// The plane through block c with these slopes along u and v (m a cell), as the first guess of a patch.
   Patch first_guess(std::size_t c, const Eigen::Vector2d& slope) const {
     Patch out;
-    const Eigen::Vector3d ray = rays_[c].homogeneous();
+    const Eigen::Vector3d ray = rays_[c].cast<double>().homogeneous();
     out.origin = ray * double(blocks_.blocks[c].z);
     const Eigen::Vector3d normal = out.axes.col(2) = normal_of(out.origin, ray, tilt_ * slope);
     const Eigen::Vector3d down = ray - ray.dot(normal) * normal;
@@ -139,62 +163,63 @@ class PatchFitter {
     return along_v.cross(along_u).normalized();
   }
 
-  /// Where a ray meets a paraboloid, and what was measured there.
-  struct Seen {
-    double a, b;      ///< place in the plane
-    double height;    ///< measured (m)
-    double residual;  ///< measured height over the paraboloid's (m)
-  };
-
-  /// The error of a depth lies along its ray. It is taken as an error of height where the ray meets the paraboloid, so
-  /// that noise does not move the place.
-  /// @param ray,origin of the cell and of the plane, in the plane's axes, the first two in units of the pitch
-  /// @param z measured depth (m)
-  static Seen on_ray(const Patch& patch, const Eigen::Vector3d& ray, const Eigen::Vector3d& origin, double z) {
-    const double measured = ray[2] * z - origin[2];
-    // On the ray the place is (a, b) + height * (da, db).
-    const double per_height = 1.0 / ray[2], da = ray[0] * per_height, db = ray[1] * per_height;
-    const double a = da * origin[2] - origin[0], b = db * origin[2] - origin[1];
-    const Eigen::Vector2d slope = patch.slope(a, b);
-    const double at_plane = patch.height(a, b), rise = 1.0 - da * slope[0] - db * slope[1];
-    const double bend = da * (patch.x[3] * da + patch.x[4] * db) + patch.x[5] * db * db;
-    const double root = rise * rise - 4.0 * bend * at_plane;
-    if (rise > 0.0 && root > 0.0) {
-      const double steepness = std::sqrt(root), met = 2.0 * at_plane / (rise + steepness);
-      const double residual = (measured - met) * steepness;
-      return {a + met * da, b + met * db, met + residual, residual};
-    }
-    // The ray misses the paraboloid.
-    const double ma = a + measured * da, mb = b + measured * db;
-    return {ma, mb, measured, measured - patch.height(ma, mb)};
-  }
-
-  /// Add the blocks of the window about a cell, weighted by their nearness and by their residuals from the fit so far.
-  /// @param patch the fit so far
-  /// @param scale standard deviation of the residuals (m)
-  /// @param slack how far (m) the surface may bend away at the distance of one cell
-  /// @return number of cells of the window that lie in the image
-  int add_window(int cu, int cv, const Patch& patch, double scale, double slack, ParaboloidSums& sums) const {
-    Eigen::Matrix3d to_plane = patch.axes.transpose();
-    to_plane.topRows<2>() /= pitch_;
-    const Eigen::Vector3d origin = to_plane * patch.origin;
-    const double gate = 4.0 * scale + 0.2 * pitch_;
-    int window_cells = 0;
+  /// Collect the blocks of the window about a cell.
+  void collect(int cu, int cv, Window& window) const {
+    window.clear();
     for (const Tap& tap : taps_) {
       const int u = cu + tap.du, v = cv + tap.dv;
       if (u < 0 || v < 0 || u >= blocks_.cells.width || v >= blocks_.cells.height) continue;
-      ++window_cells;
+      ++window.cells;
       const std::size_t i = blocks_.cells.index(u, v);
-      const double z = double(blocks_.blocks[i].z);
-      if (!(z > 0.0)) continue;
-      const Eigen::Vector3d ray = to_plane.col(0) * rays_[i].x() + to_plane.col(1) * rays_[i].y() + to_plane.col(2);
-      const Seen seen = on_ray(patch, ray, origin, z);
-      const double wide = gate + slack * (seen.a * seen.a + seen.b * seen.b);
-      if (!(std::abs(seen.residual) < wide)) continue;
-      const double t = seen.residual / wide;
-      sums.add((1.0 - t * t) * (1.0 - t * t) * tap.near, seen.a, seen.b, seen.height, seen.residual);
+      if (blocks_.blocks[i].z > 0.0f) window.add(rays_[i], blocks_.blocks[i].z, static_cast<float>(tap.near));
     }
-    return window_cells;
+    const std::size_t middle = blocks_.cells.index(cu, cv);
+    while (window.size() % kLanes != 0) window.add(rays_[middle], blocks_.blocks[middle].z, 0.0f);
+  }
+
+  /// Add the blocks of a window, weighted by their nearness and by their residuals from the fit so far. The error of a
+  /// depth lies along its ray. It is taken as an error of height where the ray meets the paraboloid, so that noise does
+  /// not move the place.
+  /// @param patch the fit so far
+  /// @param scale standard deviation of the residuals (m)
+  /// @param slack how far (m) the surface may bend away at the distance of one cell
+  ParaboloidSums add_window(const Window& window, const Patch& patch, double scale, double slack) const {
+    Eigen::Matrix3d to_plane = patch.axes.transpose();
+    to_plane.topRows<2>() /= pitch_;
+    const Eigen::Matrix3f t = to_plane.cast<float>();
+    const Eigen::Vector3f origin = (to_plane * patch.origin).cast<float>();
+    const Eigen::Matrix<float, 6, 1> x = patch.x.cast<float>();
+    const auto gate = static_cast<float>(4.0 * scale + 0.2 * pitch_), bends = static_cast<float>(slack);
+    const auto height = [&x](const auto& a, const auto& b) -> std::decay_t<decltype(a)> {
+      return x[0] + a * (x[1] + x[3] * a + x[4] * b) + b * (x[2] + x[5] * b);
+    };
+    ParaboloidSums sums;
+    for (std::size_t k = 0; k < window.size(); k += kLanes) {
+      const Eigen::Map<const Lanes> rx(&window.x[k]), ry(&window.y[k]), z(&window.z[k]), near(&window.near[k]);
+      // Rays in the plane's axes; on a ray the place is (a, b) + height * (da, db).
+      const Lanes per_height = 1.0f / (t(2, 0) * rx + t(2, 1) * ry + t(2, 2));
+      const Lanes da = (t(0, 0) * rx + t(0, 1) * ry + t(0, 2)) * per_height;
+      const Lanes db = (t(1, 0) * rx + t(1, 1) * ry + t(1, 2)) * per_height;
+      const Lanes measured = z / per_height - origin[2];
+      const Lanes a = da * origin[2] - origin[0], b = db * origin[2] - origin[1];
+      const Lanes at_plane = height(a, b);
+      const Lanes rise = 1.0f - da * (x[1] + 2.0f * x[3] * a + x[4] * b) - db * (x[2] + x[4] * a + 2.0f * x[5] * b);
+      const Lanes bend = da * (x[3] * da + x[4] * db) + x[5] * db * db, root = rise * rise - 4.0f * bend * at_plane;
+      const Lanes steepness = root.max(0.0f).sqrt();
+      Lanes met = 2.0f * at_plane / (rise + steepness), residual = (measured - met) * steepness;
+      Lanes weight = near;
+      for (int i = 0; i < kLanes; ++i) {
+        if (rise[i] > 0.0f && root[i] > 0.0f) continue;  // else the ray misses the paraboloid, or is parallel to it
+        met[i] = height(a[i] + measured[i] * da[i], b[i] + measured[i] * db[i]);
+        residual[i] = measured[i] - met[i];
+        if (!std::isfinite(residual[i])) met[i] = residual[i] = weight[i] = 0.0f;
+      }
+      const Lanes at_a = a + met * da, at_b = b + met * db;
+      const Lanes off = residual / (gate + bends * (at_a * at_a + at_b * at_b));
+      const Lanes trust = (1.0f - off * off).max(0.0f);
+      sums.add(trust * trust * weight, at_a, at_b, met + residual, residual);
+    }
+    return sums;
   }
 
   const Blocks& blocks_;
@@ -203,14 +228,14 @@ class PatchFitter {
   double steepest_, bend_;
   double tilt_;  // of a patch's plane, as a share of the slope: noise hides where the slope is
   std::vector<Tap> taps_;
-  std::vector<Eigen::Vector2d> rays_;  // of the blocks: x and y where z is 1
+  std::vector<Eigen::Vector2f> rays_;  // of the blocks: x and y where z is 1
 };
 
 std::vector<Patch> fit_patches(const PatchFitter& fitter, std::size_t n, int threads) {
   std::vector<Patch> patches(n);
   parallel_chunks(n, threads, 256, [&](std::size_t begin, std::size_t end) {
-    PatchFitter::Differences along;
-    for (std::size_t c = begin; c < end; ++c) fitter.fit(c, along, patches[c]);
+    PatchFitter::Scratch scratch;
+    for (std::size_t c = begin; c < end; ++c) fitter.fit(c, scratch, patches[c]);
   });
   return patches;
 }
