@@ -2,6 +2,7 @@
 #include <agrisee/cloud/closed_surface.hpp>
 #include <agrisee/cloud/labels.hpp>
 #include <agrisee/cloud/poses.hpp>
+#include <agrisee/cloud/spacing.hpp>
 #include <agrisee/cloud/split.hpp>
 #include <agrisee/cloud/volume.hpp>
 #include <agrisee/geometry/direction_bins.hpp>
@@ -21,12 +22,19 @@
 namespace agrisee {
 namespace {
 
-/// Share (0..1) of a body's surface that its points cover.
+/// Share (0..1) of a body's surface that its points cover. On a small body they are farther apart than the bins of
+/// directions, so a bin also counts if its middle lies between them.
 double completeness_of(const Cloud& cloud, const Indices& points, const Eigen::Vector3d& center) {
+  constexpr double kBetween = 0.65;  // of their spacing: how far the middle between even points is from the nearest
+  const double reach = kBetween * estimate_spacing(select(cloud, points));
   std::bitset<DirectionBins::kCount> covered;
-  for (Index i : points)
-    covered.set(static_cast<std::size_t>(
-        DirectionBins::bin(cloud.points[static_cast<std::size_t>(i)].cast<double>() - center)));
+  for (const Index i : points) {
+    const Eigen::Vector3d p = cloud.points[static_cast<std::size_t>(i)].cast<double>() - center;
+    covered.set(static_cast<std::size_t>(DirectionBins::bin(p)));
+    const double least = p.norm() * std::cos(std::min(reach / p.norm(), kPi / 4));
+    for (std::size_t b = 0; b < DirectionBins::kCount; ++b)
+      if (!covered[b] && p.dot(DirectionBins::directions()[b]) > least) covered.set(b);
+  }
   double share = 0.0;
   for (std::size_t b = 0; b < DirectionBins::kCount; ++b)
     if (covered[b]) share += DirectionBins::shares()[b];

@@ -57,6 +57,18 @@ std::size_t located(const Cloud& cloud, const Parameters& parameters) {
 
 }  // namespace
 
+TEST_CASE("completeness is the share that was seen, however small the body and however few its points") {
+  for (const double radius : {0.009, 0.035}) {
+    const Sphere sphere{{0.1, 0.5, 0.2}, radius};
+    Cloud cloud;
+    test::add_sphere(cloud, sphere, 0.0024, [](const Eigen::Vector3d& d) { return d.y() < 0.4; });  // 70 %
+    Labels labels;
+    const auto fruits = locate(cloud, one_body(cloud, cloud.size()), Eigen::Vector3d::Zero(), {}, labels);
+    REQUIRE(fruits.size() == 1);
+    CHECK(fruits[0].body->completeness == Approx(0.7).margin(0.06));
+  }
+}
+
 TEST_CASE("a body whose closed surface has the size or shape of no fruit is none") {
   Parameters usual;
   CHECK(located(pear(), usual) == 1);
