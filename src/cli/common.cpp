@@ -80,7 +80,8 @@ study::NoiseModel noise_of(const std::string& text) {
     return study::parse_noise(text);
   } catch (const ParameterError& e) {
     const std::vector<std::string> known{"none", "gaussian", "l515", "azure", "d405", "l515-white", "rough"};
-    throw UsageError(e.what() + io::did_you_mean(text.substr(0, text.find(':')), known));
+    const std::string word = text.substr(0, text.find(':'));
+    throw UsageError(e.what() + (word == "gaussian" ? "" : io::did_you_mean(word, known)));
   }
 }
 

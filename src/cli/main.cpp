@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <csignal>
 #include <iostream>
+#include <new>
 
 #include "commands.hpp"
 #include "version.hpp"
@@ -59,6 +60,10 @@ int main(int argc, char** argv) {
   } catch (const cli::UsageError& e) {
     std::cerr << "agrisee: " << e.what() << "\n";
     return cli::kUsage;
+  } catch (const std::bad_alloc&) {
+    std::cerr
+        << "agrisee: the memory does not suffice: is something in millimetres, and so a thousand times too large?\n";
+    return cli::kBadInput;
   } catch (const std::exception& e) {
     std::cerr << "agrisee: " << e.what() << "\n";
     return cli::kBadInput;

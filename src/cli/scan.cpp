@@ -50,6 +50,7 @@ io::ScanTask task_of(const ScanOptions& options) {
   task.version = AGRISEE_VERSION;
   task.seed = options.seed;
   task.threads = threads_of(options.threads);
+  if (!options.light.empty() && options.noise == "none") throw UsageError("--light needs --noise l515, azure or d405");
   task.noise = to_string(noise_of(options.light.empty() ? options.noise : options.noise + ":" + options.light));
   task.color = options.color || !options.detector.empty();
   task.detector = options.detector;
@@ -194,6 +195,8 @@ int run_task(const fs::path& folder, const io::ScanTask& task, const io::SceneFi
     std::cerr << "\nagrisee: the scan failed midway: " << e.what() << "\n";
     if (taken > 0)
       std::cerr << "The views taken so far are in " << (folder / "views").string() << "; " << resume << "\n";
+    else
+      fs::remove(folder / "scan.json");  // there is nothing to resume
     return kScanFailed;
   }
   print_summary(result, folder.string(), options);

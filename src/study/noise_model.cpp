@@ -86,7 +86,8 @@ void set_d405(NoiseParameters& p, bool sun) {
 }  // namespace
 
 void NoiseModel::check() const {
-  check_parameter(std::isfinite(sigma) && sigma >= 0.0, "noise sigma", "0 or more", sigma);
+  constexpr double kMost = 0.2;  // m
+  check_parameter(sigma >= 0.0 && sigma <= kMost, "noise sigma", "from 0 to 0.2 m (0.002 for 2 mm)", sigma);
   if (light == Light::sun && !knows_light(kind))
     throw ParameterError("noise: only l515, azure and d405 have figures for sunlight");
 }
@@ -137,8 +138,10 @@ NoiseModel parse_noise(const std::string& text) {
     in.imbue(std::locale::classic());
     NoiseModel model{Kind::gaussian, -1.0, Light::shade};
     in >> std::noskipws >> model.sigma;
-    if (in && in.peek() == std::istringstream::traits_type::eof() && model.sigma >= 0.0 && std::isfinite(model.sigma))
+    if (in && in.peek() == std::istringstream::traits_type::eof() && model.sigma >= 0.0 && std::isfinite(model.sigma)) {
+      model.check();
       return model;
+    }
   }
   throw ParameterError(std::string("noise must be ") + kNoiseNames + ", got '" + text +
                        "'; l515, azure and d405 may end in :sun");

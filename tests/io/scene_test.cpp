@@ -334,6 +334,9 @@ TEST_CASE("degrees and millimetres in a scene are refused, and the likely cause 
                 "robot.tool: the camera is 30 m from the flange: is it in millimetres?");
   folder.refuse(replaced(kScene, kVolume, "scan_volume: {min: [-100, 400, 0], max: [100, 600, 300]}\n"),
                 "scan_volume: is 300 m long: is it in millimetres?");
+  folder.refuse(replaced(kScene, "mesh: fruit.stl", "mesh: fruit.stl, scale: 1000"),
+                ":6: objects[0].mesh: a fruit 50 m across: is the mesh in millimetres? Then give scale: 0.001");
+  folder.refuse(replaced(kScene, "mesh: fruit.stl", "mesh: fruit.stl, scale: 0.001"), "does its scale fit the mesh?");
   folder.refuse(kScene + "sensor: {range: [250, 9000]}\n", "sensor.range: begins at 250 m: is it in millimetres?");
 }
 

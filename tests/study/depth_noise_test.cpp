@@ -73,7 +73,8 @@ TEST_CASE("noise is named in text and back") {
   for (const char* text : {"none", "l515", "l515:sun", "azure", "d405:sun", "l515-white", "rough", "gaussian:0.01",
                            "gaussian:0", "gaussian:0.1234567890123"})
     REQUIRE(to_string(parse_noise(text)) == text);
-  REQUIRE(parse_noise(to_string({NoiseModel::Kind::gaussian, 1.0 / 3.0, Light::shade})).sigma == 1.0 / 3.0);
+  REQUIRE(parse_noise(to_string({NoiseModel::Kind::gaussian, 1.0 / 7.0, Light::shade})).sigma == 1.0 / 7.0);
+  REQUIRE_THROWS_WITH(parse_noise("gaussian:2"), test::says("0.002 for 2 mm"));
   for (const char* text : {"", "gaussian", "gaussian:", "gaussian:-0.01", "gaussian:x", "gaussian:0.01m", "gaussian: 1",
                            "gaussian:nan", "gaussian:inf", "gaussian:1e999", "L515", "l515 ", "rough:1",
                            "none:", "rough:sun", "none:shade", "l515-white:sun", "l515:dusk", "l515:"}) {

@@ -99,7 +99,7 @@ struct NoiseParameters {
 NoiseParameters noise_parameters(const NoiseModel& model);
 
 /// The names of the models, for help texts.
-constexpr const char* kNoiseNames = "none, gaussian:SIGMA (metres, 0 or more), l515, azure, d405, l515-white or rough";
+constexpr const char* kNoiseNames = "none, gaussian:SIGMA (metres: gaussian:0.001), l515, azure, d405, l515-white or rough";
 
 /// Reads a model from text: one of kNoiseNames; `l515`, `azure` and `d405` may be followed by `:shade` or `:sun`.
 /// @throws ParameterError, quoting the text, if it is none of these

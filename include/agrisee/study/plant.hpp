@@ -54,8 +54,8 @@ struct PlantParameters {
     f("total", p.total,
       Range::between({static_cast<double>(p.trusses), "trusses"}, {12.0 * p.trusses, "12 for each truss"}));
     f("seed", p.seed);
-    f("radius_tip", p.radius_tip, Range::between(0.008, 0.06));
-    f("radius_shoulder", p.radius_shoulder, Range::between({p.radius_tip, "radius_tip"}, 0.06));
+    f("radius_tip", p.radius_tip, Range::between(0.008, 0.06).in_metres());
+    f("radius_shoulder", p.radius_shoulder, Range::between({p.radius_tip, "radius_tip"}, 0.06).in_metres());
     f("foliage", p.foliage, Range::between(0.0, 0.6));
     f("leaves_behind", p.leaves_behind, Range::between(0, 8));
     f("trunk", p.trunk);

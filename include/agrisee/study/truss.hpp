@@ -40,8 +40,8 @@ struct TrussParameters {
     f("total", p.total, Range::between(1, 12));
     f("hidden", p.hidden, Range::between(0, {static_cast<double>(p.total / 2), "half of total"}));
     f("seed", p.seed);
-    f("radius_min", p.radius_min, Range::at_least(0.005));
-    f("radius_max", p.radius_max, Range::between({p.radius_min, "radius_min"}, 0.06));
+    f("radius_min", p.radius_min, Range::between(0.005, 0.06).in_metres());
+    f("radius_max", p.radius_max, Range::between({p.radius_min, "radius_min"}, 0.06).in_metres());
     f("elongation", p.elongation, Range::between(0.5, 2.0));
     f("leaflets", p.leaflets, Range::between(0, 6));
     f("center", p.center);

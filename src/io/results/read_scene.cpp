@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <agrisee/core/rigid_pose.hpp>
+#include <agrisee/geometry/aabb.hpp>
 #include <agrisee/io/files.hpp>
 #include <agrisee/io/mesh_file.hpp>
 #include <agrisee/io/scene.hpp>
@@ -176,6 +177,16 @@ Rgb read_color(const YamlValue& value) {
   return out;
 }
 
+/// Rejects a mesh that is no fruit's, since its units are wrong. @param value its path
+void check_size(const Mesh& mesh, const YamlValue& value) {
+  constexpr double kLeast = 0.001, kMost = 2.0;  // m, across
+  const Aabb box = bounding_box(mesh.vertices);
+  const double across = box.empty() ? 0.0 : box.size().maxCoeff();
+  if (across > kMost)
+    value.fail("a fruit " + metres(across) + " across: is the mesh in millimetres? Then give scale: 0.001");
+  if (across < kLeast) value.fail("a fruit " + metres(across) + " across: does its scale fit the mesh?");
+}
+
 study::Object read_object(const YamlValue& value, MeshCache& meshes, std::set<int>& ids) {
   value.check_keys({"id", "class", "material", "ripeness", "color", "mesh", "xyz", "rpy", "scale"});
   study::Object object;
@@ -200,6 +211,7 @@ study::Object read_object(const YamlValue& value, MeshCache& meshes, std::set<in
   const double scale = value.has("scale") ? positive(value.at("scale")) : 1.0;
   const Mesh& mesh = meshes.get(value.at("mesh"));
   object.mesh = moved ? transformed(mesh, pose, scale) : mesh;
+  if (object.cls == study::ObjectClass::fruit) check_size(object.mesh, value.at("mesh"));
   return object;
 }
 
