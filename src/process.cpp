@@ -182,15 +182,22 @@ void check_origin(const Cloud& cloud, const CloudOrigin& origin) {
 
 void check_units(const Cloud& cloud, const Parameters& parameters) {
   constexpr double kLarge = 10.0;  // m; clouds of scanned trusses are smaller, and in millimetres they are larger
-  const Aabb box = bounding_box(cloud.points);
-  if (box.empty() || !(box.size().norm() > kLarge)) return;
-  const Cloud finite = select(cloud, finite_indices(cloud));
-  const double spacing = estimate_spacing(finite), largest = 2.0 * parameters.split.bodies.radius_max;
+  constexpr double kFar = 1000.0;  // m; there single precision has steps of 0.06 mm
   constexpr std::size_t kFew = 100;
-  if (finite.size() < kFew || !(spacing > largest)) return;
-  throw InputError("the cloud is " + metres(box.size().norm()) + " across and its points are " + metres(spacing) +
-                   " apart, farther than the largest expected fruit (" + metres(largest) +
-                   "): is it in millimetres? Coordinates have to be in metres");
+  const Aabb box = bounding_box(cloud.points);
+  if (box.empty()) return;
+  if (box.size().norm() > kLarge) {
+    const Cloud finite = select(cloud, finite_indices(cloud));
+    const double spacing = estimate_spacing(finite), largest = 2.0 * parameters.split.bodies.radius_max;
+    if (finite.size() >= kFew && spacing > largest)
+      throw InputError("the cloud is " + metres(box.size().norm()) + " across and its points are " + metres(spacing) +
+                       " apart, farther than the largest expected fruit (" + metres(largest) +
+                       "): is it in millimetres? Coordinates have to be in metres");
+  }
+  if (const double far = box.min.cwiseAbs().cwiseMax(box.max.cwiseAbs()).maxCoeff(); far > kFar)
+    throw InputError("the cloud lies " + metres(far) +
+                     " from the origin, too far for coordinates in single precision: subtract an offset from all "
+                     "points, and from the sensors' positions");
 }
 
 ScanResult process(Cloud&& cloud, const Parameters& parameters, const CloudOrigin& origin,

@@ -50,11 +50,12 @@ void check_origin(const Cloud& cloud, const CloudOrigin& origin);
 /// @throws InputError as check_origin, or when a point's view has no sensor position
 std::size_t normals_facing_away(const Cloud& cloud, const CloudOrigin& origin);
 
-/// Check that a cloud can be in metres. One that is more than 10 m across, with points farther apart than the largest
-/// expected fruit, cannot. `process` calls it.
+/// Check that a cloud can be in metres, and near the origin. One that is more than 10 m across, with points farther
+/// apart than the largest expected fruit, cannot be in metres; more than 1 km away single precision is too coarse.
+/// `process` calls it.
 /// @param cloud points (m), any frame
 /// @param parameters only the expected radii are used
-/// @throws InputError that names the size and spacing of the cloud and the likely cause
+/// @throws InputError that names the size and spacing of the cloud, or its distance, and what to do
 void check_units(const Cloud& cloud, const Parameters& parameters = {});
 
 /// Find the fruit in a cloud: clean, segment and locate.

@@ -56,6 +56,7 @@ TEST_CASE("absent keys keep their values, a preset sets them") {
 
 TEST_CASE("mistakes are named with file, line and key") {
   CHECK(error_of("sor:\n  mean_q: 3\n").find(".yaml:2: unknown key 'sor.mean_q'") != std::string::npos);
+  CHECK(error_of("max_views: 5\nmax_views: 9\n").find(".yaml:2: 'max_views' is given twice") != std::string::npos);
   CHECK(error_of("max_views: lots\n").find(".yaml:1: 'max_views'") != std::string::npos);
   CHECK(error_of("sor: 3\n").find("'sor' must be a map") != std::string::npos);
   CHECK(error_of("icp: {kernel: soft}\n").find("kernel") != std::string::npos);

@@ -111,6 +111,12 @@ TEST_CASE("a cloud in millimetres is refused, large clouds in metres are not") {
   CHECK_NOTHROW(check_units(scaled));  // too few to tell
 }
 
+TEST_CASE("a cloud too far from the origin for single precision is refused") {
+  Cloud cloud = seen();
+  for (auto& p : cloud.points) p.x() += 5e5f;
+  CHECK_THROWS_WITH(process(cloud), test::says("from the origin, too far for coordinates in single precision"));
+}
+
 TEST_CASE("one viewpoint for points of several views is refused") {
   Cloud cloud = seen();
   const CloudOrigin eye = from_eye(false);

@@ -98,8 +98,11 @@ struct YamlReader {
     }
     std::set<std::string> keys;
     T::fields(value, YamlReader{path, map, prefix, keys});
+    std::set<std::string> seen;
     for (const auto& entry : map) {
       const std::string name = entry.first.IsScalar() ? entry.first.as<std::string>() : "?";
+      if (!seen.insert(name).second)
+        throw FileError(place(path, entry.first) + ": '" + prefix + name + "' is given twice");
       if (!keys.count(name))
         throw FileError(place(path, entry.first) + ": unknown key '" + prefix + name + "'" +
                         did_you_mean(name, {keys.begin(), keys.end()}));
