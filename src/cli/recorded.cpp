@@ -163,6 +163,16 @@ int run_export(const ExportOptions& options) {
   return kSuccess;
 }
 
+/// @throws InputError if most views contradict one another: then no map of them can be trusted
+void check_contradictions(const std::string& path, const std::vector<View>& views) {
+  const auto contradicts = [](const View& v) { return v.discard_reason == DiscardReason::contradicts_others; };
+  const auto count = std::count_if(views.begin(), views.end(), contradicts);
+  if (2 * count > static_cast<std::ptrdiff_t>(views.size()))
+    throw InputError(path + ": " + std::to_string(count) + " of " + std::to_string(views.size()) +
+                     " views contradict the others. Are the poses those of their images, in metres, from the optical "
+                     "frame to world, and are the intrinsics right?");
+}
+
 }  // namespace
 
 Processed process_recording(const std::string& path, const CommonOptions& options, const Parameters& parameters,
@@ -187,6 +197,7 @@ Processed process_recording(const std::string& path, const CommonOptions& option
   }
   if (!options.quiet) end_progress();
   out.result = pipeline.result();
+  check_contradictions(path, out.result.views);
   const std::vector<std::string> notes = shortened(source.warnings);
   out.result.warnings.insert(out.result.warnings.begin(), notes.begin(), notes.end());
   if (doubt) out.result.warnings.push_back(*doubt);

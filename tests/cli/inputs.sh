@@ -60,8 +60,12 @@ def restated(name, change):
     open(f"exact/{name}.yaml", "w").write(re.sub(r"pose: (\[\[.*\]\])", pose, text))
 restated("inverted", inverted)
 restated("body", lambda m: times(m, [[0, -1, 0, 0], [0, 0, -1, 0], [1, 0, 0, 0], [0, 0, 0, 1]]))
+poses = re.findall(r"pose: \[\[.*\]\]", text)
+shifted = iter(poses[1:] + poses[:1])
+open("exact/shifted.yaml", "w").write(re.sub(r"pose: \[\[.*\]\]", lambda m: next(shifted), text))
 restated("mm", lambda m: [row[:3] + [1000 * row[3]] for row in m[:3]] + m[3:])
 PY
+    expect 2 'shifted.yaml: [0-9]+ of [0-9]+ views contradict the others' process exact/shifted.yaml -o d
     expect 2 'inverted.yaml: it seems that the poses are inverted \(optical_T_world\)\..*world_T_optical' process exact/inverted.yaml -o d
     expect 2 'body.yaml: it seems that the poses are those of a frame with x forward' process exact/body.yaml -o d
     [ ! -e d ] || fail "refused poses wrote something"
