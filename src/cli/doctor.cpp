@@ -190,7 +190,7 @@ void look_at_reach(const Workcell& cell, int threads, Findings& out) {
   for (const plan::ReachableView& view : views)
     nearest = std::min(nearest, degrees_between(view.world_T_optical.linear().col(2), front));
   const Eigen::Vector3d to = cell.scan_volume.center() - cell.world_T_base.translation();
-  const double away = to.head<2>().norm();
+  const double away = to.norm();
   const std::string where = "the middle of scan_volume is " + rounded(away, 2) + " m from the base";
   std::string text = "reach: the arm takes " + std::to_string(views.size()) + " of " +
                      std::to_string(tried.candidates) + " views of the volume from all around";

@@ -162,11 +162,21 @@ void print(const study::Metrics& m) {
   std::cout << out.str();
 }
 
+/// Says on standard error that a result was made with a scene of another name.
+void warn_of_other_scene(const fs::path& result, const std::string& scene) {
+  if (!fs::exists(result / "run.json") || !fs::exists(result / "scan.json")) return;
+  const std::string own = io::read_run(result / "run.json").info.scene;
+  if (own != scene)
+    std::cerr << "agrisee: " << result.string() << " is the result of the scene '" << own << "', compared with '"
+              << scene << "'\n";
+}
+
 int run_evaluate(const EvaluateOptions& options) {
   const std::string scene = scene_file(options.scene);
   const io::SceneFile file = io::read_scene(scene);
   const ScanResult result = read_result(options.result);
   const int threads = threads_of(options.threads);
+  warn_of_other_scene(options.result, file.workcell.name);
   const auto known = io::read_ground_truth(fs::path(scene).parent_path() / "ground_truth.json");
   const study::Truth truth = study::make_truth(file.scene, known, file.workcell.sensor);
   const study::Observability observability = study::observable(truth.traced, truth.samples, file.workcell, {}, threads);

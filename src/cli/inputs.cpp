@@ -70,7 +70,8 @@ const char* text_of(Kind kind) {
     case Kind::cloud:
       return "a point cloud, which `agrisee process` takes";
     case Kind::scan:
-      return "the result of a scan, which `agrisee evaluate` and `agrisee export-views` take; its cloud is cloud.ply";
+      return "the result of a scan, which `agrisee export-views` and, after the scene, `agrisee evaluate` take; its "
+             "cloud is cloud.ply";
     case Kind::processed:
       return "a result of `agrisee process`, which holds a cloud (cloud.ply) but no frames";
     case Kind::unknown:

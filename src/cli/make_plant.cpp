@@ -83,7 +83,8 @@ void add_make_plant(CLI::App& app, Run& run) {
       ->capture_default_str();
   command
       ->add_option("--radius", options->radius,
-                   "half width of the first,last fruit of a truss (m, from 0.06 to 0.008; default: usual for the kind)")
+                   "half width of the LARGEST,SMALLEST fruit, the first and the last of a truss (m, from 0.06 to "
+                   "0.008; default: usual for the kind)")
       ->delimiter(',')
       ->expected(2);
   command->add_option("--foliage", plant.foliage, "share of the fruit surface, seen from the front, that leaves hide")

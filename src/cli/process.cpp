@@ -295,7 +295,7 @@ void add_process(CLI::App& app, Run& run) {
       ->delimiter(',')
       ->expected(3);
   command->add_flag("--turn-normals", options->turn_normals,
-                    "trust --viewpoint: turn all normals of the file that face away from it, and do not refuse it");
+                    "accept --viewpoint even where normals disagree, and turn those round");
   command
       ->add_option("--views", options->views,
                    "views.csv with the sensor pose of each view, for points with a property 'view'")
