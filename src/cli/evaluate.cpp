@@ -209,8 +209,10 @@ void add_evaluate(CLI::App& app, Run& run) {
       ->check(CLI::Range(0, 1024));
   command->add_flag("--json", options->json, "print the metrics as JSON");
   command->footer(
-      "In the table, seen is the true share of a fruit's surface near any point (in JSON: scanned), which scan can\n"
-      "only estimate; recall counts only points that belong to a fruit. docs/formats.md explains all metrics.\n"
+      "In the table, as is the number of the fruit in the result (0: missed), IoU the overlap of their surfaces, seen\n"
+      "the true share of a fruit's surface near any point (in JSON: scanned), which scan can only estimate, and recall\n"
+      "the share near points of a fruit: of the whole surface, or of the part that the arm can see (recall_obs).\n"
+      "docs/formats.md explains all metrics.\n"
       "Example:\n  agrisee evaluate truss/scene.yaml result --json");
   command->callback([options, &run] { run = [options] { return run_evaluate(*options); }; });
 }
