@@ -81,6 +81,12 @@ std::optional<Eigen::Vector3d> carved(const Eigen::Vector3d& surface, const Eige
   return std::nullopt;
 }
 
+/// @throws ParameterError for a field out of its range
+const ExpectedSurfaceParameters& checked(const ExpectedSurfaceParameters& parameters) {
+  parameters.check();
+  return parameters;
+}
+
 /// Whether a lobe covers a point of a body's ellipsoid (m): surface that stands out from it, up to a quarter of the
 /// radius, and faces outward. A cloud without normals has none.
 /// @param outward unit, from the body's center
@@ -106,20 +112,12 @@ bool is_below_lobe(const Cloud& cloud, const Grid<float>& grid, const Eigen::Vec
 
 ExpectedSurface::ExpectedSurface(const sensor::DepthCamera& sensor, const Aabb& volume,
                                  const ExpectedSurfaceParameters& parameters)
-    : sensor_(sensor), volume_(volume), parameters_(parameters) {
-  parameters.check();
-  const Eigen::Vector3d size = volume.size();
-  // Enlarge the voxels of a large volume, so that there are at most two million.
-  edge_ = parameters.voxel;
-  while ((size / edge_).array().ceil().max(1.0).prod() > 2e6) edge_ *= 1.3;
-  for (int a = 0; a < 3; ++a) dims_[a] = std::max(1, static_cast<int>(std::ceil(size[a] / edge_)));
-  known_.assign(std::size_t(dims_[0]) * std::size_t(dims_[1]) * std::size_t(dims_[2]), 0);
-}
+    : sensor_(sensor), volume_(volume), parameters_(checked(parameters)), known_(volume, parameters.voxel) {}
 
 void ExpectedSurface::update(const Progress& progress, const SplitParameters& split_parameters,
                              const fuse::FreeSpaceParameters& free_space) {
   const std::vector<Promise> promised = promises(progress);
-  for (; images_read_ < progress.images.size(); ++images_read_) mark_known(progress.images[images_read_], free_space);
+  for (; images_read_ < progress.images.size(); ++images_read_) known_.add(progress.images[images_read_], free_space);
   const Labels labels = find_fruit(progress, split_parameters, free_space);
   collect_samples(progress, free_space);
   if (shows_anything(progress))
@@ -156,28 +154,13 @@ void ExpectedSurface::weigh(const std::vector<Promise>& promised, const Cloud& c
   kept_ *= kForget;
   for (const Promise& p : promised) {
     promised_ += measured * double(p.area);
-    if (p.voxel ? is_known(p.point) : grid.count(p.point, cover, 1) > 0) kept_ += double(p.area);
+    if (p.voxel ? known_.has(p.point.cast<double>()) : grid.count(p.point, cover, 1) > 0) kept_ += double(p.area);
   }
 }
 
 double ExpectedSurface::reliability() const {
   const double before = kTrusted * area_;
   return promised_ > 0.0 ? std::min(1.0, (kept_ + before) / (promised_ + before)) : 1.0;
-}
-
-bool ExpectedSurface::is_known(const Eigen::Vector3f& point) const {
-  const Eigen::Vector3i v = ((point.cast<double>() - volume_.min) / edge_).array().floor().cast<int>();
-  if ((v.array() < 0).any() || (v.array() >= dims_.array()).any()) return false;
-  return known_[(std::size_t(v.z()) * std::size_t(dims_[1]) + std::size_t(v.y())) * std::size_t(dims_[0]) +
-                std::size_t(v.x())] != 0;
-}
-
-void ExpectedSurface::mark_known(const sensor::SurfaceImage& image, const fuse::FreeSpaceParameters& free_space) {
-  std::size_t i = 0;
-  for (int z = 0; z < dims_[2]; ++z)
-    for (int y = 0; y < dims_[1]; ++y)
-      for (int x = 0; x < dims_[0]; ++x, ++i)
-        if (!known_[i] && fuse::sight(image, voxel_center(x, y, z), free_space) != Sight::unknown) known_[i] = 1;
 }
 
 Labels ExpectedSurface::find_fruit(const Progress& progress, const SplitParameters& split_parameters,
@@ -260,19 +243,14 @@ void ExpectedSurface::sample_bodies(const Progress& progress, const fuse::FreeSp
 }
 
 void ExpectedSurface::sample_unknown_space(const Aabb& cloud) {
-  std::size_t i = 0;
-  for (int z = 0; z < dims_[2]; ++z)
-    for (int y = 0; y < dims_[1]; ++y)
-      for (int x = 0; x < dims_[0]; ++x, ++i) {
-        if (known_[i]) continue;
-        const Eigen::Vector3d p = voxel_center(x, y, z);
-        double nearest = std::numeric_limits<double>::infinity();
-        for (const FoundBody& b : bodies_)
-          if (believed(b)) nearest = std::min(nearest, (p - b.fit.body.center).norm() - b.fit.body.mean_radius());
-        if (bodies_.empty() && cloud.distance(p) < parameters_.neighborhood) nearest = edge_;
-        if (nearest < 0.0 || nearest > parameters_.neighborhood) continue;
-        add_sample(p, Eigen::Vector3d::Zero(), parameters_.unknown_weight * edge_ * edge_, -1);
-      }
+  const double area = parameters_.unknown_weight * known_.edge() * known_.edge();
+  known_.for_each_unknown([&](const Eigen::Vector3d& p) {
+    double nearest = std::numeric_limits<double>::infinity();
+    for (const FoundBody& b : bodies_)
+      if (believed(b)) nearest = std::min(nearest, (p - b.fit.body.center).norm() - b.fit.body.mean_radius());
+    if (bodies_.empty() && cloud.distance(p) < parameters_.neighborhood) nearest = 0.0;
+    if (nearest >= 0.0 && nearest <= parameters_.neighborhood) add_sample(p, Eigen::Vector3d::Zero(), area, -1);
+  });
 }
 
 void ExpectedSurface::add_sample(const Eigen::Vector3d& point, const Eigen::Vector3d& normal, double area, int body) {
@@ -286,10 +264,6 @@ bool ExpectedSurface::inside_other(const Eigen::Vector3d& point, int own) const 
         (bodies_[b].fit.body.A * (point - bodies_[b].fit.body.center)).squaredNorm() < kSmaller * kSmaller)
       return true;
   return false;
-}
-
-Eigen::Vector3d ExpectedSurface::voxel_center(int x, int y, int z) const {
-  return volume_.min + edge_ * Eigen::Vector3d(x + 0.5, y + 0.5, z + 0.5);
 }
 
 template <typename F>

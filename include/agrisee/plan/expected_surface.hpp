@@ -19,6 +19,7 @@
 #include <agrisee/cloud/parameters.hpp>
 #include <agrisee/fuse/parameters.hpp>
 #include <agrisee/geometry/aabb.hpp>
+#include <agrisee/plan/known_space.hpp>
 #include <agrisee/plan/parameters.hpp>
 #include <agrisee/plan/planner.hpp>
 #include <agrisee/sensor/depth_camera.hpp>
@@ -89,10 +90,6 @@ class ExpectedSurface {
   /// Compare what was expected of a view with the cloud and the space that are known since.
   /// @param measured share (0..1) of the surface before it that the view measured
   void weigh(const std::vector<Promise>& promised, const Cloud& cloud, double measured);
-  /// Whether a sight line has reached the voxel of a point (m, world).
-  bool is_known(const Eigen::Vector3f& point) const;
-  /// Mark the voxels that a view's sight lines have reached.
-  void mark_known(const sensor::SurfaceImage& image, const fuse::FreeSpaceParameters& free_space);
   /// Find the fruit in the merged cloud and set `bodies_`; returns one label per point, 0 = no fruit.
   Labels find_fruit(const Progress& progress, const SplitParameters& split_parameters,
                     const fuse::FreeSpaceParameters& free_space);
@@ -107,8 +104,6 @@ class ExpectedSurface {
   bool inside_other(const Eigen::Vector3d& point, int own) const;
   /// Whether a body counts as a fruit, and not only as a possible one.
   bool believed(const FoundBody& body) const { return body.confidence >= min_confidence_; }
-  /// Center (m, world) of a voxel.
-  Eigen::Vector3d voxel_center(int x, int y, int z) const;
 
   /// Calls f(i) for every sample that a view shows, in ascending order.
   template <typename F>
@@ -119,10 +114,8 @@ class ExpectedSurface {
   sensor::DepthCamera sensor_;
   Aabb volume_;
   ExpectedSurfaceParameters parameters_;
-  double edge_ = 0.0;                               // of a voxel (m)
-  Eigen::Vector3i dims_ = Eigen::Vector3i::Ones();  // voxels along x, y, z
-  std::vector<char> known_;                         // per voxel: some sight line has reached it
-  std::size_t images_read_ = 0;                     // views whose sight lines are marked in `known_`
+  KnownSpace known_;             // what sight lines have reached
+  std::size_t images_read_ = 0;  // views whose sight lines are marked in `known_`
   std::vector<FoundBody> bodies_;
   double min_confidence_ = 0.0;    // a body is believed from this probability on
   std::size_t segmented_at_ = 0;   // size of the cloud when it was last segmented from scratch
