@@ -69,6 +69,7 @@ Pipeline::Pipeline(const Workcell& workcell, const Parameters& parameters, Pipel
   own_arm_ = !reach_;
   if (workcell.tool0_T_tool) workcell_.tool0_T_tool = made_rigid(*workcell.tool0_T_tool, "tool0_T_tool", &warnings_);
   workcell_.sensor.check();
+  if (auto doubt = sensor::doubt_of(workcell_.sensor.intrinsics)) warnings_.push_back(std::move(*doubt));
   if (own_arm_) check_joints("start", workcell_, workcell_.start);
   if (!reach_ && !approach_) approach_ = pick::approach_of(workcell_, parameters_.picking);
   if (!reach_) reach_ = plan::reach_of(workcell_);

@@ -158,6 +158,7 @@ Cloud points_of(const sensor::DepthFrame& frame) {
 /// Process a single depth image; the frame of the result is the camera's optical frame.
 Processed process_frame(const ProcessOptions& options, const Parameters& parameters) {
   sensor::DepthFrame frame = frame_of(options);
+  const auto doubt = sensor::doubt_of(frame.intrinsics);
   const Cloud all = points_of(frame);
   CloudOrigin origin;
   origin.viewpoint = Eigen::Vector3d::Zero();
@@ -172,6 +173,7 @@ Processed process_frame(const ProcessOptions& options, const Parameters& paramet
   } catch (const InputError& e) {
     throw FileError(options.depth + ": " + e.what());
   }
+  if (doubt) out.result.warnings.push_back(*doubt);
   return out;
 }
 

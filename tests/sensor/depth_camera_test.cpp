@@ -33,3 +33,13 @@ TEST_CASE("the models are usable cameras") {
   }
   CHECK(sensor::l515().intrinsics.fx == sensor::intrinsics_from_fov(1024, 768, deg(70), deg(55)).fx);
 }
+
+TEST_CASE("a principal point far from the middle is doubted") {
+  sensor::Intrinsics k{1024, 768, 731.0, 737.0, 511.0, 383.0};
+  CHECK_FALSE(sensor::doubt_of(k));
+  k.cx = 700.0;
+  CHECK_FALSE(sensor::doubt_of(k));
+  std::swap(k.fx, k.cx), std::swap(k.fy, k.cy);
+  REQUIRE(sensor::doubt_of(k));
+  CHECK(sensor::doubt_of(k)->find("(731, 737), is far from the middle of the image, 1024 x 768") != std::string::npos);
+}

@@ -6,9 +6,11 @@
 #include <agrisee/core/error.hpp>
 #include <agrisee/core/types.hpp>
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <optional>
+#include <string>
 
 namespace agrisee::sensor {
 
@@ -42,6 +44,18 @@ struct Intrinsics {
     return index(static_cast<int>(u), static_cast<int>(v));
   }
 };
+
+/// What speaks against intrinsics: a principal point far from the middle, as in a cropped image, or when focal lengths
+/// and principal point are swapped. Empty for a usual camera.
+inline std::optional<std::string> doubt_of(const Intrinsics& k) {
+  constexpr double kFar = 0.35;  // share of the width or height
+  const double off =
+      std::max(std::abs(k.cx - 0.5 * (k.width - 1)) / k.width, std::abs(k.cy - 0.5 * (k.height - 1)) / k.height);
+  if (!(off > kFar)) return std::nullopt;
+  const auto whole = [](double pixels) { return std::to_string(std::lround(pixels)); };
+  return "the principal point, (" + whole(k.cx) + ", " + whole(k.cy) + "), is far from the middle of the image, " +
+         std::to_string(k.width) + " x " + std::to_string(k.height) + ": are fx, fy and cx, cy swapped?";
+}
 
 /// Intrinsics of an image whose principal point is in its middle.
 /// @param width of the image (pixels)
