@@ -76,7 +76,8 @@ class ParaboloidSums {
       b[i] = sum(rhs_[static_cast<std::size_t>(i)]);
       for (int j = 0; j < 6; ++j) a(i, j) = sum(m_[kMonomial[i][j]]);
     }
-    a.diagonal().array() += 1e-9 * weight();
+    constexpr double kRounding = 1e-6;  // of sums in single precision, as a share, with room
+    a.diagonal() += kRounding * (a.diagonal() + Eigen::Matrix<double, 6, 1>::Constant(weight()));
     a.diagonal().tail<3>().array() += stiffness;
     const Eigen::LLT<Eigen::Matrix<double, 6, 6>> solver(a);
     if (solver.info() != Eigen::Success) return false;

@@ -98,8 +98,8 @@ class PatchFitter {
       const ParaboloidSums sums = add_window(scratch.window, found, scale, slack);
       weight = sums.weight();
       if (weight < 2.5) return;
-      // Few cells do not tell the curvature from noise.
-      const double stiffness = weight > 7.0 ? 0.0 : std::pow(scale / (2.0 * bend_), 2);
+      // Few cells do not tell the curvature from noise; nor do more that lie in two rows.
+      const double stiffness = weight > 7.0 ? 1e-3 * weight : std::pow(scale / (2.0 * bend_), 2);
       if (!sums.solve(found.x, stiffness, iteration + 1 == kIterations ? &variance : nullptr)) return;
       if (iteration > 0) scale = std::max(noise_, 0.5 * std::sqrt(sums.squares() / weight));
     }
@@ -206,18 +206,21 @@ class PatchFitter {
       const Lanes rise = 1.0f - da * (x[1] + 2.0f * x[3] * a + x[4] * b) - db * (x[2] + x[4] * a + 2.0f * x[5] * b);
       const Lanes bend = da * (x[3] * da + x[4] * db) + x[5] * db * db, root = rise * rise - 4.0f * bend * at_plane;
       const Lanes steepness = root.max(0.0f).sqrt();
-      Lanes met = 2.0f * at_plane / (rise + steepness), residual = (measured - met) * steepness;
-      Lanes weight = near;
+      Lanes along = 2.0f * at_plane / (rise + steepness), residual = (measured - along) * steepness;
+      Lanes seen = along + residual, weight = near;
       for (int i = 0; i < kLanes; ++i) {
-        if (rise[i] > 0.0f && root[i] > 0.0f) continue;  // else the ray misses the paraboloid, or is parallel to it
-        met[i] = height(a[i] + measured[i] * da[i], b[i] + measured[i] * db[i]);
-        residual[i] = measured[i] - met[i];
-        if (!std::isfinite(residual[i])) met[i] = residual[i] = weight[i] = 0.0f;
+        if (rise[i] > 0.0f && root[i] > 0.0f) continue;  // else the ray misses the paraboloid
+        along[i] = seen[i] = measured[i];
+        residual[i] = measured[i] - height(a[i] + measured[i] * da[i], b[i] + measured[i] * db[i]);
       }
-      const Lanes at_a = a + met * da, at_b = b + met * db;
+      Lanes at_a = a + along * da, at_b = b + along * db;
+      if (!(at_a + at_b + seen + residual).allFinite())  // a ray along the plane
+        for (int i = 0; i < kLanes; ++i)
+          if (!std::isfinite(at_a[i] + at_b[i] + seen[i] + residual[i]))
+            at_a[i] = at_b[i] = seen[i] = residual[i] = weight[i] = 0.0f;
       const Lanes off = residual / (gate + bends * (at_a * at_a + at_b * at_b));
       const Lanes trust = (1.0f - off * off).max(0.0f);
-      sums.add(trust * trust * weight, at_a, at_b, met + residual, residual);
+      sums.add(trust * trust * weight, at_a, at_b, seen, residual);
     }
     return sums;
   }

@@ -122,17 +122,17 @@ FitSums fit_sums(const std::vector<FitSample>& samples, const Ellipsoid& body, d
                  double inlier) {
   constexpr std::size_t kLanes = 8, kTerms = 10;  // the tenth term of a row is the residual
   constexpr double kAtCenter = 1e-9;              // m; samples at the center have no direction
-  constexpr S kBeyond = 1000;                     // m; stands for samples that do not count
+  constexpr double kFarthest = 1000.0;            // m; stands for samples that do not count
   using Lanes = Eigen::Array<S, int{kLanes}, 1>;
   std::array<Lanes, kTerms*(kTerms + 1) / 2> products;  // the upper triangle, row by row
   products.fill(Lanes::Zero());
   Lanes weights = Lanes::Zero(), squares = Lanes::Zero(), inliers = Lanes::Zero();
   for (std::size_t from = 0; from < samples.size(); from += kLanes) {
     if ((from & 0xFFF) == 0) throw_if_cancelled();
-    Eigen::Array<S, int{kLanes}, 6> block = Eigen::Array<S, int{kLanes}, 6>::Constant(kBeyond);
+    Eigen::Array<S, int{kLanes}, 6> block = Eigen::Array<S, int{kLanes}, 6>::Constant(static_cast<S>(kFarthest));
     for (std::size_t i = from; i < std::min(from + kLanes, samples.size()); ++i) {
       const Eigen::Vector3d p = samples[i].point - body.center;
-      if (p.squaredNorm() > kAtCenter * kAtCenter)
+      if (p.squaredNorm() > kAtCenter * kAtCenter && p.squaredNorm() < kFarthest * kFarthest)
         block.row(static_cast<Eigen::Index>(i - from)) << p.transpose().array().template cast<S>(),
             samples[i].normal.transpose().array().template cast<S>();
     }
