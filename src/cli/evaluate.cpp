@@ -165,10 +165,13 @@ void print(const study::Metrics& m) {
 /// Says on standard error that a result was made with a scene of another name.
 void warn_of_other_scene(const fs::path& result, const std::string& scene) {
   if (!fs::exists(result / "run.json") || !fs::exists(result / "scan.json")) return;
-  const std::string own = io::read_run(result / "run.json").info.scene;
-  if (own != scene)
-    std::cerr << "agrisee: " << result.string() << " is the result of the scene '" << own << "', compared with '"
-              << scene << "'\n";
+  try {
+    const std::string own = io::read_run(result / "run.json").info.scene;
+    if (own != scene)
+      std::cerr << "agrisee: " << result.string() << " is the result of the scene '" << own << "', compared with '"
+                << scene << "'\n";
+  } catch (const FileError&) {  // run.json is not needed for anything else
+  }
 }
 
 int run_evaluate(const EvaluateOptions& options) {
@@ -210,7 +213,8 @@ void add_evaluate(CLI::App& app, Run& run) {
   command->add_flag("--json", options->json, "print the metrics as JSON");
   command->footer(
       "In the table, as is the number of the fruit in the result (0: missed), IoU the overlap of their surfaces, seen\n"
-      "the true share of a fruit's surface near any point (in JSON: scanned), which scan can only estimate, and recall\n"
+      "the true share of a fruit's surface near any point (in JSON: scanned), which scan can only estimate, and "
+      "recall\n"
       "the share near points of a fruit: of the whole surface, or of the part that the arm can see (recall_obs).\n"
       "docs/formats.md explains all metrics.\n"
       "Example:\n  agrisee evaluate truss/scene.yaml result --json");

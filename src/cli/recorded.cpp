@@ -165,12 +165,15 @@ int run_export(const ExportOptions& options) {
 
 /// @throws InputError if most views contradict one another: then no map of them can be trusted
 void check_contradictions(const std::string& path, const std::vector<View>& views) {
-  const auto contradicts = [](const View& v) { return v.discard_reason == DiscardReason::contradicts_others; };
-  const auto count = std::count_if(views.begin(), views.end(), contradicts);
-  if (2 * count > static_cast<std::ptrdiff_t>(views.size()))
-    throw InputError(path + ": " + std::to_string(count) + " of " + std::to_string(views.size()) +
+  std::size_t contradict = 0, others = 0;
+  for (const View& v : views) {
+    contradict += v.discard_reason == DiscardReason::contradicts_others;
+    others += v.discard_reason == DiscardReason::none;
+  }
+  if (contradict > others)
+    throw InputError(path + ": " + std::to_string(contradict) + " of " + std::to_string(views.size()) +
                      " views contradict the others. Are the poses those of their images, in metres, from the optical "
-                     "frame to world, and are the intrinsics right?");
+                     "frame to world? Are the intrinsics right? Did the plant move between views?");
 }
 
 }  // namespace

@@ -192,11 +192,12 @@ int run_task(const fs::path& folder, const io::ScanTask& task, const io::SceneFi
     write_files(folder.string(), result, file.workcell, run_info(task, file.workcell), options,
                 recorder.history(result));
   } catch (const std::exception& e) {
+    std::error_code ignored;
     std::cerr << "\nagrisee: the scan failed midway: " << e.what() << "\n";
     if (taken > 0)
       std::cerr << "The views taken so far are in " << (folder / "views").string() << "; " << resume << "\n";
-    else
-      fs::remove(folder / "scan.json");  // there is nothing to resume
+    else if (options.resume.empty() && !fs::exists(io::view_record_path(folder, 0)))
+      fs::remove(folder / "scan.json", ignored);  // there is nothing to resume
     return kScanFailed;
   }
   print_summary(result, folder.string(), options);

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <agrisee/core/error.hpp>
 #include <agrisee/fuse/free_space.hpp>
 #include <agrisee/plan/known_space.hpp>
 
@@ -8,6 +9,8 @@
 namespace agrisee::plan {
 
 KnownSpace::KnownSpace(const Aabb& volume, double edge) : min_(volume.min), edge_(edge) {
+  check_parameter(edge > 0.0 && std::isfinite(edge), "edge", "positive", edge);
+  check_input(volume.min.allFinite() && volume.max.allFinite(), "known space: the volume is not finite");
   constexpr double kMost = 2e6;
   const Eigen::Vector3d size = volume.size();
   while ((size / edge_).array().ceil().max(1.0).prod() > kMost) edge_ *= 1.3;
@@ -24,8 +27,9 @@ void KnownSpace::add(const sensor::SurfaceImage& image, const fuse::FreeSpacePar
 }
 
 bool KnownSpace::has(const Eigen::Vector3d& point) const {
-  const Eigen::Vector3i v = ((point - min_) / edge_).array().floor().cast<int>();
-  if ((v.array() < 0).any() || (v.array() >= dims_.array()).any()) return false;
+  const Eigen::Array3d at = ((point - min_) / edge_).array();
+  if (!((at >= 0.0).all() && (at < dims_.cast<double>().array()).all())) return false;
+  const Eigen::Vector3i v = at.cast<int>();
   return known_[(std::size_t(v.z()) * std::size_t(dims_[1]) + std::size_t(v.y())) * std::size_t(dims_[0]) +
                 std::size_t(v.x())] != 0;
 }

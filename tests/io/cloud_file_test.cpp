@@ -69,8 +69,9 @@ TEST_CASE("arrays of numpy are clouds") {
   CHECK(organized.height == 2);
   CHECK(io::read_cloud(folder.file("a.npy", npy("(0, 3)", {}))).cloud.empty());
   require_file_error(folder.file("a.npy", npy("(3, 2)", {1, 2, 3, 4, 5, 6})), "(points, 3)", load);
-  require_file_error(folder.file("a.npy", npy("(3, 20)", std::vector<float>(60))), "save its transpose", load);
-  require_file_error(folder.file("a.csv", "view,x,y,z,qx,qy,qz,qw\n0,1,2,3,0,0,0,1\n"), "lists the views", load);
+  require_file_error(folder.file("a.npy", npy("(3, 20)", std::vector<float>(60))), "x, y and z are its last axis",
+                     load);
+  require_file_error(folder.file("a.csv", "view,x,y,z,points_new\n0,1,2,3,4\n"), "lists the views", load);
   require_file_error(folder.file("a.npy", npy("(6,)", {1, 2, 3, 4, 5, 6})), "shape (6,)", load);
   require_file_error(folder.file("a.npy", npy("(3, 3)", {1, 2, 3, 4, 5, 6})), "needs 9 numbers, there are 6", load);
   require_file_error(folder.file("a.npy", "damaged"), "not an NPY file", load);

@@ -36,6 +36,8 @@ TEST_CASE("known space: a view makes known what lies before its surface") {
 TEST_CASE("known space: the voxels of a large volume are larger") {
   CHECK(KnownSpace(box({0.0, 0.5, 0.2}, 0.1), 0.02).edge() == 0.02);
   const double edge = KnownSpace(box(Vector3d::Zero(), 5.0), 0.02).edge();
+  CHECK_THROWS_AS(KnownSpace(box(Vector3d::Zero(), 1.0), 0.0), ParameterError);
+  CHECK_THROWS_AS(KnownSpace(Aabb{}, 0.1), InputError);
   CHECK(std::pow(std::ceil(10.0 / edge), 3) <= 2e6);
   CHECK(std::pow(std::ceil(10.0 / (edge / 1.3)), 3) > 2e6);
 }

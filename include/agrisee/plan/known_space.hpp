@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// @file
-/// Which part of the scan volume sight lines have reached, as voxels. Metres, world. Cost: linear in the voxels that
-/// are still unknown, for each view. Defined in `agrisee::agrisee`.
+/// Which part of the scan volume sight lines have reached, as voxels. Metres, world. Cost of a view: linear in the
+/// voxels. Defined in `agrisee::agrisee`.
 #pragma once
 
 #include <agrisee/fuse/parameters.hpp>
@@ -19,6 +19,7 @@ class KnownSpace {
   /// Nothing is known.
   /// @param volume to be divided
   /// @param edge of a voxel (m); larger in a volume that would have more than two million
+  /// @throws ParameterError for an edge that is not positive; InputError for a volume that is not finite
   KnownSpace(const Aabb& volume, double edge);
 
   /// Mark the voxels that a view's sight lines have reached.

@@ -54,7 +54,8 @@ inline std::optional<std::string> doubt_of(const Intrinsics& k) {
   if (!(off > kFar)) return std::nullopt;
   const auto whole = [](double pixels) { return std::to_string(std::lround(pixels)); };
   return "the principal point, (" + whole(k.cx) + ", " + whole(k.cy) + "), is far from the middle of the image, " +
-         std::to_string(k.width) + " x " + std::to_string(k.height) + ": are fx, fy and cx, cy swapped?";
+         std::to_string(k.width) + " x " + std::to_string(k.height) +
+         ": is the image cropped, or are fx, fy and cx, cy swapped?";
 }
 
 /// Intrinsics of an image whose principal point is in its middle.

@@ -33,7 +33,7 @@ struct NoiseModel {
   double sigma = 0.0;          ///< standard deviation (m); only `gaussian` reads it
   Light light = Light::shade;  ///< `sun` only with `l515`, `azure` and `d405`
 
-  /// @throws ParameterError if `sigma` is negative or not finite, or if another model has `sun`
+  /// @throws ParameterError if `sigma` is not from 0 to 0.2 m, or if another model has `sun`
   void check() const;
 };
 
@@ -99,7 +99,8 @@ struct NoiseParameters {
 NoiseParameters noise_parameters(const NoiseModel& model);
 
 /// The names of the models, for help texts.
-constexpr const char* kNoiseNames = "none, gaussian:SIGMA (metres: gaussian:0.001), l515, azure, d405, l515-white or rough";
+constexpr const char* kNoiseNames =
+    "none, gaussian:SIGMA (metres: gaussian:0.001), l515, azure, d405, l515-white or rough";
 
 /// Reads a model from text: one of kNoiseNames; `l515`, `azure` and `d405` may be followed by `:shade` or `:sun`.
 /// @throws ParameterError, quoting the text, if it is none of these

@@ -33,8 +33,9 @@ CloudFile read_npy_cloud(const std::filesystem::path& path, NonFinite non_finite
   const bool organized = shape.size() == 3;
   if ((shape.size() != 2 && !organized) || shape.back() < 3)
     fail(path, "has the shape " + array.shape_text() + "; a cloud has the shape (points, 3)");
-  if (shape[0] == 3 && shape.size() == 2 && shape[1] > 16)
-    fail(path, "has the shape " + array.shape_text() + ", but points are its rows: save its transpose, .T");
+  if (shape[0] == 3 && shape.back() > 16)
+    fail(path, "has the shape " + array.shape_text() +
+                   ", but x, y and z are its last axis: save it with numpy.moveaxis(a, 0, -1)");
   if (array.fortran && organized) fail(path, "is stored column by column; save it with numpy.ascontiguousarray");
   const std::size_t points = organized ? shape[0] * shape[1] : shape[0], size = size_of(array.type);
   CloudColumns cloud(path, points, {"x", "y", "z"});

@@ -107,10 +107,7 @@ CloudFile read_table_cloud(const std::filesystem::path& path, NonFinite non_fini
   std::string_view first_row;
   if (!read_head(lines, head, first_row))
     fail(path, "is no table of points: it has neither a line that names the columns x, y and z nor a line of numbers");
-  const auto named = [&](const char* name) {
-    return std::find(head.names.begin(), head.names.end(), name) != head.names.end();
-  };
-  if (named("view") && (named("qw") || named("points_new")))
+  if (std::find(head.names.begin(), head.names.end(), "points_new") != head.names.end())
     fail(path, "lists the views of a scan, and no points: give it with --views, beside a cloud");
   std::size_t points = 0;
   for_each_row(lines, first_row, [&](std::string_view, std::size_t) { ++points; });

@@ -75,7 +75,7 @@ void draw_fruit(Canvas& canvas, Panel& panel, const std::vector<Fruit>& fruits, 
   const float border = 1.2f;
   for (const Fruit& fruit : fruits) {
     if (!fruit.position().allFinite()) continue;
-    draw_frame(panel, fruit.pose(), 0.03, 2.2f);
+    draw_frame(panel, fruit.pose(), fruit.body ? 0.85 * fruit.body->radii.maxCoeff() : 0.03, 2.2f);
     const Eigen::Vector3f at = panel.project(fruit.position());
     const Rectangle panel_edges = rectangle(panel.viewport());
     if (!(at.z() > 0.05f) || !((at.head<2>().array() >= panel_edges.min.array()).all() &&
