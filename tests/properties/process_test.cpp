@@ -164,8 +164,8 @@ TEST_CASE("process: hostile clouds hold no fruit and end") {
       INFO(kind);
       Cloud cloud;
       cloud.points = laws::hostile_cloud<float>(kind);
-      if (known && kind == std::string("far")) {  // no sensor sees as far as that
-        CHECK_THROWS_AS(process(cloud, {}, from(kEye)), InputError);
+      if (kind == std::string("far")) {  // single precision is too coarse, and no sensor sees as far as that
+        CHECK_THROWS_AS(process(cloud, {}, known ? from(kEye) : CloudOrigin{}), InputError);
         continue;
       }
       CloudOrigin origin = known ? from(kEye) : CloudOrigin{};
