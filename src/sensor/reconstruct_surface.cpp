@@ -20,6 +20,13 @@ using detail::Lanes;
 using detail::ParaboloidSums;
 using detail::Tap;
 
+/// Height (m) of a paraboloid over the place (a, b), or over several.
+/// @param x coefficients of 1, a, b, a a, a b, b b (m)
+template <typename Coefficients, typename Real>
+Real height_of(const Coefficients& x, const Real& a, const Real& b) {
+  return x[0] + a * (x[1] + x[3] * a + x[4] * b) + b * (x[2] + x[5] * b);
+}
+
 /// The paraboloid fitted around a block: its height over a plane at the place (a, b), in units of the distance between
 /// blocks. The plane is nearly tangent to the surface if there is little noise, and faces the sensor if there is much.
 struct Patch {
@@ -29,7 +36,7 @@ struct Patch {
   double sigma = 0.0;  ///< standard deviation of the depth (m); 0: there is no patch
 
   /// Height (m) at a place.
-  double height(double a, double b) const { return x[0] + a * (x[1] + x[3] * a + x[4] * b) + b * (x[2] + x[5] * b); }
+  double height(double a, double b) const { return height_of(x, a, b); }
   /// Derivatives of the height by the place (m).
   Eigen::Vector2d slope(double a, double b) const {
     return {x[1] + 2.0 * x[3] * a + x[4] * b, x[2] + x[4] * a + 2.0 * x[5] * b};
@@ -59,9 +66,12 @@ struct Window {
 /// Fits the paraboloids.
 class PatchFitter {
  public:
+  /// Differences of depth between neighboring blocks along u and along v (m).
+  using Differences = std::array<std::vector<float>, 2>;
+
   /// What is kept from cell to cell to save allocations.
   struct Scratch {
-    std::array<std::vector<float>, 2> differences;  ///< of depth between neighboring blocks along u and along v (m)
+    Differences differences;
     Window window;
   };
 
@@ -120,7 +130,7 @@ class PatchFitter {
 
   /// First guess of the slopes (m a cell): medians of the differences between neighboring blocks about a cell, without
   /// those that are too large for the steepest surface that is kept.
-  Eigen::Vector2d first_slope(int cu, int cv, std::array<std::vector<float>, 2>& along) const {
+  Eigen::Vector2d first_slope(int cu, int cv, Differences& along) const {
     const double step = steepest_ * pitch_ + 4.0 * noise_;
     const int reach = std::min(window_, 1 + static_cast<int>(noise_ / 0.001));
     const int u_end = std::min(cu + reach, blocks_.cells.width - 1);
@@ -190,9 +200,6 @@ class PatchFitter {
     const Eigen::Vector3f origin = (to_plane * patch.origin).cast<float>();
     const Eigen::Matrix<float, 6, 1> x = patch.x.cast<float>();
     const auto gate = static_cast<float>(4.0 * scale + 0.2 * pitch_), bends = static_cast<float>(slack);
-    const auto height = [&x](const auto& a, const auto& b) -> std::decay_t<decltype(a)> {
-      return x[0] + a * (x[1] + x[3] * a + x[4] * b) + b * (x[2] + x[5] * b);
-    };
     ParaboloidSums sums;
     for (std::size_t k = 0; k < window.size(); k += kLanes) {
       const Eigen::Map<const Lanes> rx(&window.x[k]), ry(&window.y[k]), z(&window.z[k]), near(&window.near[k]);
@@ -202,7 +209,7 @@ class PatchFitter {
       const Lanes db = (t(1, 0) * rx + t(1, 1) * ry + t(1, 2)) * per_height;
       const Lanes measured = z / per_height - origin[2];
       const Lanes a = da * origin[2] - origin[0], b = db * origin[2] - origin[1];
-      const Lanes at_plane = height(a, b);
+      const Lanes at_plane = height_of(x, a, b);
       const Lanes rise = 1.0f - da * (x[1] + 2.0f * x[3] * a + x[4] * b) - db * (x[2] + x[4] * a + 2.0f * x[5] * b);
       const Lanes bend = da * (x[3] * da + x[4] * db) + x[5] * db * db, root = rise * rise - 4.0f * bend * at_plane;
       const Lanes steepness = root.max(0.0f).sqrt();
@@ -211,7 +218,7 @@ class PatchFitter {
       for (int i = 0; i < kLanes; ++i) {
         if (rise[i] > 0.0f && root[i] > 0.0f) continue;  // else the ray misses the paraboloid
         along[i] = seen[i] = measured[i];
-        residual[i] = measured[i] - height(a[i] + measured[i] * da[i], b[i] + measured[i] * db[i]);
+        residual[i] = measured[i] - height_of(x, a[i] + measured[i] * da[i], b[i] + measured[i] * db[i]);
       }
       Lanes at_a = a + along * da, at_b = b + along * db;
       if (!(at_a + at_b + seen + residual).allFinite())  // a ray along the plane
