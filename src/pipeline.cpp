@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <agrisee/arm/ur.hpp>
 #include <agrisee/core/cancellation.hpp>
 #include <agrisee/core/rigid_pose.hpp>
 #include <agrisee/core/stopwatch.hpp>
@@ -111,8 +112,7 @@ const View& Pipeline::observe(std::shared_ptr<const sensor::DepthFrame> frame, c
 }
 
 std::optional<plan::ReachableView> Pipeline::next_view(const Joints& current) {
-  check_input(current.allFinite(), "next_view: the joints are not finite");
-  if (own_arm_) check_joints("next_view", workcell_, current, 1.0);  // a real arm may stand a little outside
+  check_current("next_view", current);
   if (static_cast<int>(views_.size()) >= parameters_.max_views) {
     stop_reason_ = StopReason::max_views;
     return std::nullopt;
@@ -126,8 +126,35 @@ std::optional<plan::ReachableView> Pipeline::next_view(const Joints& current) {
   return next;
 }
 
+/// @throws InputError for joint angles that the arm cannot have now
+void Pipeline::check_current(const char* name, const Joints& joints) const {
+  check_input(joints.allFinite(), (std::string(name) + ": the joints are not finite").c_str());
+  if (own_arm_) check_joints(name, workcell_, joints, 1.0);  // a real arm may stand a little outside
+}
+
+/// A sentence if our model of the arm puts the sensor elsewhere than the reported poses do.
+std::optional<std::string> Pipeline::doubt_of_joints() const {
+  constexpr double kFar = 0.05;  // m; more than arms and hand-eye transforms are off
+  if (!own_arm_) return std::nullopt;
+  std::size_t far = 0;
+  double farthest = 0.0;
+  for (const View& v : views_) {
+    if (!v.joints) continue;
+    const Pose by_joints = workcell_.world_T_base * arm::forward(*v.joints, workcell_.arm) * workcell_.tool0_T_optical;
+    const double off = (by_joints.translation() - v.world_T_optical.translation()).norm();
+    far += off > kFar;
+    farthest = std::max(farthest, off);
+  }
+  if (far == 0) return std::nullopt;
+  return "by the joints of " + std::to_string(far) + " of " + std::to_string(views_.size()) +
+         " views the sensor was up to " + metres(farthest) +
+         " away from the reported pose: are the joints those of the moment, in radians? Are the arm, its base and the "
+         "hand-eye transform right?";
+}
+
 std::vector<std::string> Pipeline::warnings() const {
   std::vector<std::string> all = warnings_;
+  if (auto doubt = doubt_of_joints()) all.push_back(std::move(*doubt));
   if (rounded_poses_ == 0) return all;
   const std::string off = number_text(worst_rounding_, 2);
   all.push_back("world_T_optical of " + std::to_string(rounded_poses_) + " of " + std::to_string(views_.size()) +
@@ -187,6 +214,7 @@ View Pipeline::begin_view(const sensor::DepthFrame& frame, const Pose& reported,
       made_rigid(reported, "observe: world_T_optical of view " + std::to_string(views_.size()));
   check(frame);
   sensor::check_depth_unit(frame);
+  if (joints) check_current("observe", *joints);
   if (frame.detected) fuse::instances_of(frame);  // detections that cannot be are refused before anything changes
   View view;
   view.world_T_optical = world_T_optical;

@@ -56,11 +56,12 @@ class Pipeline {
   /// A frame with colors, or that a detector has looked at, is kept for the result: move it in, or share it, to avoid
   /// a copy. The planner uses the detections too. A frame without returns inside the scan volume counts as a view that
   /// showed nothing. A view is marked as discarded if its frame repeats the last one bit for bit (the camera is stuck),
-  /// or if it contradicts the other views (fuse/fused_views.hpp), because its pose must then be wrong.
+  /// or if it contradicts the other views (fuse/fused_views.hpp), because its pose must then be wrong. If the built-in
+  /// arm model puts the sensor more than 50 mm away from the pose, `warnings` say so.
   /// @return the view as recorded; the reference is valid until the next observe()
   /// @throws InputError for a frame whose size disagrees with its intrinsics or whose depths cannot be in metres
-  ///   (sensor::check_depth_unit), or a pose that is not rigid within kRigidTolerance; Cancelled. The scan so far is
-  ///   kept.
+  ///   (sensor::check_depth_unit), a pose that is not rigid within kRigidTolerance, or joints as next_view();
+  ///   Cancelled. The scan so far is kept.
   const View& observe(sensor::DepthFrame frame, const Pose& world_T_optical,
                       const std::optional<Joints>& joints = std::nullopt);
 
@@ -97,7 +98,7 @@ class Pipeline {
   const Cloud& merged() const { return cloud_; }
   /// All points merged so far with their views, including those removed later.
   Cloud raw() const { return map_->all(); }
-  /// Sentences about input that was corrected and should be checked: poses with rounded rotation matrices.
+  /// Sentences about input that should be checked: poses with rounded rotation matrices, joints far from the poses.
   std::vector<std::string> warnings() const;
   /// The evidence from the masks of all views so far; empty if no detector has looked.
   const MaskEvidence& masks() const { return masks_; }
@@ -115,6 +116,8 @@ class Pipeline {
  private:
   View begin_view(const sensor::DepthFrame& frame, const Pose& reported, const std::optional<Joints>& joints) const;
   void record(View view, const Pose& reported, const fuse::Change& change, bool repeated);
+  void check_current(const char* name, const Joints& joints) const;
+  std::optional<std::string> doubt_of_joints() const;
   void remember(std::shared_ptr<const sensor::DepthFrame> frame, const Pose& world_T_optical);
   bool repeats_last_frame(const sensor::DepthFrame& frame) const;
   plan::Progress progress(const fuse::Change& change) const;

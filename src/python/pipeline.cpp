@@ -168,10 +168,10 @@ void bind_calls(py::class_<Scan>& scan) {
 depth: H x W, float32 or uint16: z along the optical axis, in metres after multiplication by depth_scale (0.001 for
   millimetres). Zero, negative, NaN and infinite values mean no return.
 pose: 4 x 4, world_T_optical, at which the image was really taken.
-joints: six numbers (rad) at that moment, if an arm is known.
+joints: six numbers (rad) at that moment, if an arm is known; warnings tell if they put the sensor elsewhere.
 distortion: k1, k2, p1, p2, k3 of the lens (or 4 of them, or 8 with k4, k5, k6), to be removed; empty for a pinhole.
 
-Raises InputError for a wrong shape, unit or pose; the scan so far is kept.)")
+Raises InputError for a wrong shape, unit, pose or posture; the scan so far is kept.)")
       .def("observe_points", &observe_points, py::arg("points"), py::arg("pose"), py::arg("joints") = py::none(),
            "Like observe, for N x 3 points (m, optical frame) in any order.")
       .def(

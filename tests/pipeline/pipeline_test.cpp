@@ -350,6 +350,30 @@ TEST_CASE("millimetres and degrees are refused, and the likely cause is named") 
   CHECK_THROWS_WITH(Pipeline(large), test::says("is it in millimetres?"));
 }
 
+TEST_CASE("joints that cannot be are refused, and those of another posture than the pose's are told") {
+  const Workcell w = cell();
+  Pipeline pipeline(w);
+  const auto next = pipeline.next_view(w.start);
+  REQUIRE(next);
+  const sensor::DepthFrame frame = test::render(test::kThreeFruit, w.sensor.intrinsics, next->world_T_optical);
+  CHECK_THROWS_WITH(pipeline.observe(frame, next->world_T_optical, Joints(*next->joints / deg(1))),
+                    test::says("observe: joint"));
+  CHECK_THROWS_WITH(pipeline.observe(frame, next->world_T_optical, Joints(Joints::Constant(std::nan("")))),
+                    test::says("observe: the joints are not finite"));
+  CHECK(pipeline.views().empty());
+  pipeline.observe(frame, next->world_T_optical, next->joints);
+  pipeline.observe(frame, next->world_T_optical);  // of joints that are not known there is nothing to say
+  CHECK(pipeline.warnings().empty());
+  pipeline.observe(frame, next->world_T_optical, Joints(Joints::Zero()));
+  REQUIRE(pipeline.result().warnings.size() == 1);
+  CHECK_THAT(pipeline.result().warnings[0], test::says("by the joints of 1 of 3 views the sensor was up to"));
+  PipelineOptions own;
+  own.reach = [](const plan::ViewRequest&, const Joints&) { return std::optional<plan::ReachableView>(); };
+  Pipeline other(w, {}, std::move(own));  // only this robot knows what its joints mean
+  other.observe(frame, next->world_T_optical, Joints(Joints::Constant(90.0)));
+  CHECK(other.warnings().empty());
+}
+
 TEST_CASE("an external robot's own reach replaces ours") {
   const Workcell w = cell();
   int asked = 0;

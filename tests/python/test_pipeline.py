@@ -163,6 +163,7 @@ def test_bad_frames_are_refused_and_the_scan_goes_on(scene, camera):
         ((depth, 2 * view.pose), agrisee.InputError, "last row"),
         ((depth, np.diag([2.0, 2, 2, 1])), agrisee.InputError, "world_T_optical"),
         ((depth, view.pose, [0, 1]), agrisee.InputError, "joints must be 6 numbers"),
+        ((depth, view.pose, np.degrees(view.joints)), agrisee.InputError, "are the angles in degrees?"),
         ((depth, view.pose, None, -1.0), agrisee.ParameterError, "depth_scale must be positive"),
     ]:
         with pytest.raises(error) as caught:
@@ -171,6 +172,9 @@ def test_bad_frames_are_refused_and_the_scan_goes_on(scene, camera):
     assert pipeline.views == []
     assert pipeline.observe(depth[::-1][::-1], view.pose, view.joints).points_in > 100
     assert pipeline.observe_points(camera_points(depth, camera), view.pose).points_in > 100
+    assert not any("by the joints" in warning for warning in pipeline.warnings)
+    pipeline.observe(depth, view.pose, np.zeros(6))
+    assert any("by the joints of 1 of 3 views" in warning for warning in pipeline.warnings)
 
 
 def camera_points(depth, camera):
