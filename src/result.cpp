@@ -26,7 +26,9 @@ std::string nothing_seen(const std::vector<View>& views) {
     if (v.volume_distance > 0.0) distances.push_back(v.volume_distance);
   }
   if (distances.empty()) return nothing;
-  if (depths.empty()) return nothing + ": the depth images hold no return at all";
+  if (depths.empty())
+    return nothing +
+           ": the views show no return at all; if points were given, are they in the optical frame, with z forward?";
   const double depth = median(depths), distance = median(distances);
   constexpr double kFarthest = 20.0, kFactor = 8.0;  // m; depths of a wrong unit are off by a factor of ten or more
   std::string cause = "is the camera turned to it? Poses have to be world_T_optical, with z forward and y down";

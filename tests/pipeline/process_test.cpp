@@ -190,7 +190,9 @@ TEST_CASE("where no view saw the scan volume, the depths and distances say why")
                                  "volume; are the poses in millimetres? They have to be in metres");
   for (const double depth : {5.2, 0.052}) CHECK_THAT(told(depth, 0.5), test::says("in another unit than metres"));
   CHECK_THAT(told(0.52, 0.5), test::says("is the camera turned to it?"));
-  CHECK(told(0.0, 0.5) == nothing + ": the depth images hold no return at all");
+  CHECK(told(0.0, 0.5) == nothing +
+                              ": the views show no return at all; if points were given, are they in the optical "
+                              "frame, with z forward?");
   CHECK(told(0.0, 0.0) == nothing);  // views that were read from a file
 }
 
