@@ -58,8 +58,12 @@ std::string discarded_views(const std::vector<View>& views) {
     if (n == 1) parts.push_back("view " + numbers + " " + one);
     if (n > 1) parts.push_back("views " + numbers + " " + many);
   };
+  // So many hardly go wrong one by one.
+  const bool many = 4 * count(DiscardReason::contradicts_others).first > views.size();
   add(DiscardReason::contradicts_others, "contradicts the others (is its pose wrong?)",
-      "contradict the others (are their poses wrong?)");
+      many ? "contradict the others (is each pose that of its image, in metres, from the optical frame to world? Are "
+             "the images upright? Are hand-eye transform and intrinsics right? Did the plant move between views?)"
+           : "contradict the others (are their poses wrong?)");
   add(DiscardReason::repeated_frame, "repeats the frame before (does the camera hang?)",
       "repeat the frame before (does the camera hang?)");
   add(DiscardReason::none, "for an unknown reason", "for an unknown reason");

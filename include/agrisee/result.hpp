@@ -215,12 +215,12 @@ struct ScanResult {
   std::vector<FoundTruss> trusses;                           ///< from the top down by their highest fruit
   std::optional<Completeness> completeness;                  ///< the planner's estimate; empty if it makes none
   Timing seconds;                                            ///< computing time
-  std::vector<std::string> warnings;  ///< sentences about input that was corrected and should be checked
+  std::vector<std::string> warnings;  ///< sentences about input that should be checked; see also discarded_views()
   BodyCounts bodies;                  ///< how many proposed bodies were taken as fruit or rejected
 };
 
-/// How many of some views were discarded and why, in one sentence without a full stop; empty if none was. Views are
-/// numbered from 0, as in views.csv. Defined in `agrisee::agrisee`.
+/// How many of some views were discarded, and what is likely wrong, in one sentence without a full stop; empty if none
+/// was. Views are numbered from 0, as in views.csv. Defined in `agrisee::agrisee`.
 std::string discarded_views(const std::vector<View>& views);
 
 /// Why a result has no fruit, as far as it is known, in one sentence without a full stop: whether anything was seen,

@@ -147,7 +147,7 @@ py::object completeness_of(Scan& scan) {
 
 std::string repr(Scan& scan) {
   return scan.read([](const Pipeline& p) {
-    std::string out = "<Pipeline of " + p.workcell().name + ": " + std::to_string(p.views().size()) + " views, " +
+    std::string out = "<Pipeline of " + p.workcell().name + ": " + views_text(p.views()) + ", " +
                       std::to_string(p.merged().size()) + " points";
     if (p.stop_reason() != StopReason::not_stopped) out += std::string(", ended by ") + to_string(p.stop_reason());
     return out + ">";
@@ -199,8 +199,8 @@ void bind_state(py::class_<Scan>& scan) {
                              "dict of shares of the fruit's surface, seen and observable, as the planner estimates; "
                              "or None")
       .def_property_readonly(
-          "warnings", [](Scan& s) { return s.read([](Pipeline& p) { return p.warnings(); }); },
-          "sentences about input that was corrected and should be checked")
+          "warnings", [](Scan& s) { return s.read([](Pipeline& p) { return warnings_of(p.warnings(), p.views()); }); },
+          "sentences about views discarded so far, and input that should be checked")
       .def("__repr__", &repr);
 }
 

@@ -6,6 +6,7 @@
 #include <agrisee/io/scan_page.hpp>
 #include <agrisee/version.hpp>
 
+#include <algorithm>
 #include <cstdio>
 #include <pybind11/stl.h>
 #include <pybind11/stl/filesystem.h>
@@ -85,8 +86,9 @@ std::string repr(const View& v) {
 std::string repr(const ScanResult& r) {
   std::string out =
       "<ScanResult: " + std::to_string(r.fruits.size()) + " fruit, " + std::to_string(r.cloud.size()) + " points";
-  if (!r.views.empty()) out += ", " + std::to_string(r.views.size()) + " views, ended by " + to_string(r.stop_reason);
-  if (!r.warnings.empty()) out += ", " + std::to_string(r.warnings.size()) + " warnings";
+  if (!r.views.empty()) out += ", " + views_text(r.views) + ", ended by " + to_string(r.stop_reason);
+  if (const auto warnings = warnings_of(r.warnings, r.views); !warnings.empty())
+    out += ", " + std::to_string(warnings.size()) + (warnings.size() == 1 ? " warning" : " warnings");
   return out + formatted(", %.2f s>", r.seconds.total);
 }
 
@@ -269,7 +271,9 @@ void bind_result(py::module_& m) {
       .def_property_readonly(
           "bodies", [](const ScanResult& r) { return dict_of_fields(r.bodies); },
           "dict: how many proposed bodies were taken as fruit, or rejected for each reason")
-      .def_readonly("warnings", &ScanResult::warnings, "sentences about input that was corrected and should be checked")
+      .def_property_readonly(
+          "warnings", [](const ScanResult& r) { return warnings_of(r.warnings, r.views); },
+          "sentences about discarded views, and input that should be checked")
       .def_property_readonly(
           "why_no_fruit", [](const ScanResult& r) { return why_no_fruit(r); },
           "why there is no fruit, as far as it is known; empty if there are fruit")
@@ -291,6 +295,18 @@ void bind_result(py::module_& m) {
 }
 
 }  // namespace
+
+std::string views_text(const std::vector<View>& views) {
+  const auto discarded = std::count_if(views.begin(), views.end(), [](const View& v) { return v.discarded; });
+  return std::to_string(views.size()) + " views" +
+         (discarded > 0 ? " (" + std::to_string(discarded) + " discarded)" : "");
+}
+
+std::vector<std::string> warnings_of(std::vector<std::string> warnings, const std::vector<View>& views) {
+  if (std::string discarded = discarded_views(views); !discarded.empty())
+    warnings.insert(warnings.begin(), std::move(discarded));
+  return warnings;
+}
 
 Pose pose_of(const py::handle& argument, const char* name) {
   using Numbers = py::array_t<double, py::array::c_style | py::array::forcecast>;

@@ -9,6 +9,8 @@
 #include <memory>
 #include <pybind11/eigen.h>
 #include <pybind11/pybind11.h>
+#include <string>
+#include <vector>
 
 namespace agrisee::python {
 
@@ -22,6 +24,12 @@ inline SharedResult shared(ScanResult&& result) { return std::make_shared<ScanRe
 
 /// A pose as a homogeneous 4 x 4 matrix.
 inline Eigen::Matrix4d matrix_of(const Pose& pose) { return pose.matrix(); }
+
+/// "12 views (4 discarded)"
+std::string views_text(const std::vector<View>& views);
+
+/// Warnings, and before them a sentence about the views that were discarded, if any was.
+std::vector<std::string> warnings_of(std::vector<std::string> warnings, const std::vector<View>& views);
 
 /// A pose from an argument that has to be a homogeneous 4 x 4 matrix; whether it is rigid is tested where it is used.
 /// @param name of the argument, for messages

@@ -6,6 +6,7 @@
 
 #include "catch.hpp"
 #include "spheres.hpp"
+#include "support/says.hpp"
 
 using namespace agrisee;
 
@@ -81,6 +82,20 @@ TEST_CASE("a view whose reported pose is 50 mm off is discarded, in whatever dir
     for (const int v : result.raw.views) CHECK((v != 3 && v != 6));
     check_found(result);
   }
+}
+
+TEST_CASE("where many views contradict the others, what all of them share is doubted") {
+  const auto told = [](std::size_t wrong) {
+    std::vector<View> views(12);
+    for (std::size_t v = 0; v < wrong; ++v) {
+      views[v].discarded = true;
+      views[v].discard_reason = DiscardReason::contradicts_others;
+    }
+    return discarded_views(views);
+  };
+  CHECK_THAT(told(3), test::says("views 0, 1, 2 contradict the others (are their poses wrong?)"));
+  CHECK_THAT(told(4), test::says("4 of 12 views were discarded: views 0, 1, 2, 3 contradict the others (is each pose "
+                                 "that of its image"));
 }
 
 TEST_CASE("of views that contradict one another the more are believed, even when the first is wrong") {

@@ -177,6 +177,21 @@ def test_bad_frames_are_refused_and_the_scan_goes_on(scene, camera):
     assert any("by the joints of 1 of 3 views" in warning for warning in pipeline.warnings)
 
 
+def test_discarded_views_are_told(scene, scanned, camera):
+    poses = [view.pose for view in scanned.views]
+    pipeline = agrisee.Pipeline(scene)
+    for late, pose in zip(poses[:1] + poses, poses):
+        pipeline.observe(camera.capture(pose), late)
+    result = pipeline.result()
+    discarded = sum(view.discarded for view in result.views)
+    assert discarded > len(poses) / 4
+    assert result.warnings[0].startswith(f"{discarded} of {len(poses)} views were discarded: views ")
+    assert "is each pose that of its image" in result.warnings[0] and pipeline.warnings == result.warnings
+    for shown in (result, pipeline):
+        assert f" {len(poses)} views ({discarded} discarded), " in repr(shown)
+    assert scanned.warnings == [] and "discarded" not in repr(scanned)
+
+
 def camera_points(depth, camera):
     k = camera.workcell.intrinsics
     v, u = np.nonzero(depth)
