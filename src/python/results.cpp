@@ -211,8 +211,18 @@ py::object completeness_of(const ScanResult& r) {
   return std::move(out);
 }
 
+/// @throws FileError if a folder holds a result
+void check_free(const std::filesystem::path& folder) {
+  for (const char* name : {"run.json", "scan.json", "views.csv", "cloud.ply", "cloud_raw.ply", "fruits.json",
+                           "fruits.csv", "truss.png", "report.html"})
+    if (std::error_code error; std::filesystem::exists(folder / name, error))
+      throw FileError(folder.string() + ": already holds a result (" + name + "); use force=True to overwrite it");
+}
+
 /// Write a result folder with a report. Without a workcell the report shows the cloud alone.
-void write_files(const ScanResult& result, const std::filesystem::path& folder, const py::object& workcell) {
+void write_files(const ScanResult& result, const std::filesystem::path& folder, const py::object& workcell,
+                 bool force) {
+  if (!force) check_free(folder);
   Workcell cell;
   if (workcell.is_none()) {
     cell.name = "cloud";
@@ -226,6 +236,8 @@ void write_files(const ScanResult& result, const std::filesystem::path& folder, 
   info.time = io::utc_now();
   run_interruptibly([&] {
     io::write_result(folder, result, info);
+    std::error_code error;
+    std::filesystem::remove(folder / "truss.png", error);  // the picture of an older result
     io::write_scan_page(folder / "report.html", result, cell, info);
   });
 }
@@ -285,10 +297,10 @@ void bind_result(py::module_& m) {
             return rows;
           },
           "One dict per fruit, with the columns of fruits.csv: pandas.DataFrame(result.to_dicts()).")
-      .def("write", &write_files, py::arg("folder"), py::arg("workcell") = py::none(),
+      .def("write", &write_files, py::arg("folder"), py::arg("workcell") = py::none(), py::arg("force") = false,
            "Write a result folder (docs/formats.md): clouds, fruits.json, fruits.csv, views.csv, run.json, and "
            "report.html, which shows the arm if a workcell is given. A result does not know its parameters and seed, "
-           "so run.json lacks them.")
+           "so run.json lacks them. Raises FileError if the folder holds a result, unless force is given.")
       .def("__repr__", [](const ScanResult& r) { return repr(r); });
   result.def(py::pickle([](const ScanResult& r) { return py::bytes(to_bytes(r)); },
                         [](const py::bytes& bytes) { return shared(from_bytes<ScanResult>(bytes)); }));

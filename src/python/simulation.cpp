@@ -43,7 +43,9 @@ SharedResult scan(const fs::path& scene, const std::string& noise, std::uint64_t
   }));
 }
 
-fs::path make_truss(const fs::path& folder, int total, int hidden, std::uint64_t seed) {
+fs::path make_truss(const fs::path& folder, int total, int hidden, std::uint64_t seed, bool force) {
+  if (std::error_code error; !force && fs::exists(folder / "scene.yaml", error))
+    throw FileError(folder.string() + ": already holds a scene; use force=True to overwrite it");
   study::TrussParameters parameters;
   parameters.total = total;
   parameters.hidden = hidden;
@@ -107,7 +109,9 @@ progress: progress(number of views taken, last View), called after each view; an
 
 Returns a ScanResult.)");
   m.def("make_truss", &make_truss, py::arg("folder"), py::arg("total") = 7, py::arg("hidden") = 1, py::arg("seed") = 1,
-        "Write a procedural truss with ground truth into a folder; returns the path of its scene.yaml.");
+        py::arg("force") = false,
+        "Write a procedural truss with ground truth into a folder; returns the path of its scene.yaml. Raises "
+        "FileError if the folder holds a scene, unless force is given.");
   py::class_<Camera>(m, "SimulatedCamera", "A simulated depth camera in a scene.")
       .def(py::init<const fs::path&, const std::string&, std::uint64_t, int>(), py::arg("scene"),
            py::arg("noise") = "none", py::arg("seed") = 0, py::arg("threads") = 0,

@@ -54,11 +54,26 @@ def test_write(scene, scanned, tmp_path):
     assert "<html" in (tmp_path / "result" / "report.html").read_text()[:1000]
     with open(tmp_path / "result" / "run.json", encoding="utf-8") as file:
         assert json.load(file)["version"] == agrisee.__version__
+    with pytest.raises(agrisee.FileError, match=r"result: already holds a result \(run.json\); use force=True to overwrite it"):
+        agrisee.process([]).write(tmp_path / "result")
+    (tmp_path / "result" / "truss.png").write_bytes(b"of an older result")
+    agrisee.process([]).write(tmp_path / "result", force=True)
+    assert json.loads((tmp_path / "result" / "fruits.json").read_text()) == []
+    assert not (tmp_path / "result" / "truss.png").exists()
     agrisee.process([]).write(tmp_path / "empty")
     assert os.path.getsize(tmp_path / "empty" / "report.html") > 1000
     (tmp_path / "file").write_text("")
     with pytest.raises(agrisee.FileError):
         scanned.write(tmp_path / "file")
+
+
+def test_a_scene_is_not_overwritten(scene, tmp_path):
+    made = agrisee.make_truss(tmp_path, total=3, hidden=0, seed=2)
+    before = made.read_bytes()
+    with pytest.raises(agrisee.FileError, match="already holds a scene; use force=True to overwrite it"):
+        agrisee.make_truss(tmp_path, total=3, hidden=0, seed=3)
+    assert made.read_bytes() == before == scene.read_bytes()
+    assert agrisee.make_truss(tmp_path, total=3, hidden=0, seed=3, force=True).read_bytes() != before
 
 
 def test_own_loop_gives_the_same_result(scene, scanned, camera):
