@@ -78,6 +78,8 @@ SharedResult process_arrays(const py::object& points, const py::object& normals,
   in.origin.check_normals = check_normals;
   in.origin.trust_viewpoint = trust_viewpoint;
   if (views.is_none() != sensors.is_none()) throw InputError("views and sensors belong together: give both or neither");
+  if (in.origin.viewpoint && !views.is_none())
+    throw InputError("viewpoint is for a cloud of a single view: leave it out where views and sensors are given");
   if (!sensors.is_none())
     with_points(array_of_rows(sensors, "sensors"), [&](const auto& rows) {
       for (std::size_t i = 0; i < rows.size; ++i) in.origin.sensors.push_back(rows[i].template cast<double>());

@@ -97,7 +97,8 @@ def test_views_and_sensors(points):
     for wrong, error in ((dict(views=views), agrisee.InputError), (dict(views=views[1:], sensors=sensors), agrisee.InputError),
                          (dict(views=views + 1, sensors=sensors), agrisee.InputError),
                          (dict(views=views.astype(float), sensors=sensors), TypeError),
-                         (dict(views=views, sensors=[0.0, 0.0, 0.0]), agrisee.InputError)):
+                         (dict(views=views, sensors=[0.0, 0.0, 0.0]), agrisee.InputError),
+                         (dict(views=views, sensors=sensors, viewpoint=VIEWPOINT), agrisee.InputError)):
         with pytest.raises(error):
             agrisee.process(both, **wrong)
 
