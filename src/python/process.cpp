@@ -66,6 +66,21 @@ ScanResult run(const Input& in, const ArrayPoints<S>& rows) {
   return process(ArrayCloud<S>{rows, view_of<S>(*in.normals)}, in.parameters, in.origin, {}, in.threads);
 }
 
+/// Calls f; where it doubts the viewpoint, the message says which arguments help.
+template <typename F>
+ScanResult with_advice(const Input& in, F&& f) {
+  try {
+    return f();
+  } catch (const InputError& e) {
+    const std::string what = e.what();
+    if (what.find("as seen from the viewpoint") == std::string::npos) throw;
+    throw InputError(
+        what + ". If several views saw the points, leave viewpoint out, or give views and sensors; " +
+        (in.normals && !in.origin.check_normals ? "if your normals face away from it, add check_normals=True; " : "") +
+        "if viewpoint is right, add trust_viewpoint=True");
+  }
+}
+
 SharedResult process_arrays(const py::object& points, const py::object& normals, const py::object& viewpoint,
                             const py::object& radius, const py::object& parameters, int threads, bool check_normals,
                             bool trust_viewpoint, const py::object& views, const py::object& sensors) {
@@ -86,7 +101,12 @@ SharedResult process_arrays(const py::object& points, const py::object& normals,
     });
   in.views = views_of(views, in.points, in.origin.sensors.size());
   in.threads = threads_of(threads);
-  return with_points(in.points, [&](const auto& rows) { return shared(interruptible([&] { return run(in, rows); })); });
+  return with_points(in.points, [&](const auto& rows) {
+    ScanResult result = interruptible([&] { return with_advice(in, [&] { return run(in, rows); }); });
+    if (result.raw.empty() && rows.size > 0)
+      result.warnings.push_back("all " + std::to_string(rows.size) + " points were dropped: they are not finite");
+    return shared(std::move(result));
+  });
 }
 
 }  // namespace

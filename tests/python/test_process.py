@@ -108,6 +108,24 @@ def test_rows_that_are_not_finite_are_dropped(points, result):
     assert values(agrisee.process(more, viewpoint=VIEWPOINT)) == values(result)
 
 
+def test_a_cloud_without_finite_rows_is_told():
+    result = agrisee.process(np.full((5, 3), np.nan))
+    assert result.why_no_fruit == "there are no points"
+    assert result.warnings == ["all 5 points were dropped: they are not finite"]
+    assert agrisee.process([]).warnings == []
+
+
+def test_a_wrong_viewpoint_is_refused_with_the_arguments_that_help(points):
+    behind = dict(viewpoint=(0, 1, 0.2))
+    with pytest.raises(agrisee.InputError, match="as seen from the viewpoint.*give views and sensors; if viewpoint is right, add trust_viewpoint=True"):
+        agrisee.process(points, **behind)
+    assert any("as seen from the viewpoint" in warning for warning in agrisee.process(points, trust_viewpoint=True, **behind).warnings)
+    center = np.where(points[:, :1] < 0, (-0.035, 0.5, 0.2), (0.035, 0.5, 0.2))
+    inwards = ((center - points) / 0.035).astype(np.float32)
+    with pytest.raises(agrisee.InputError, match="if your normals face away from it, add check_normals=True"):
+        agrisee.process(points, inwards, viewpoint=VIEWPOINT)
+
+
 def test_arrays_are_views_that_keep_the_result_alive(points):
     result = agrisee.process(points, viewpoint=VIEWPOINT)
     seen, labels = result.points, result.labels
