@@ -215,7 +215,7 @@ void bind_pipeline(py::module_& m) {
       "view in already; len(views) tells.");
   scan.def(py::init(&make_scan), py::arg("workcell"), py::arg("parameters") = py::none(),
            py::arg("planner") = py::none(), py::arg("reach") = py::none(), py::arg("seed") = 0, py::arg("threads") = 0,
-           R"(workcell: Workcell, a dict as of Workcell.from_dict, or the path of a scene file.
+           R"(workcell: Workcell, a dict as of Workcell.from_dict, or the path of a scene file or its folder.
 parameters: Parameters, or a dict of them.
 planner: gain, see, fixed or random; by default that of the parameters.
 reach: reach(request, joints) -> ReachableView or None, for an arm of your own: whether it can take a ViewRequest from

@@ -35,7 +35,7 @@ SharedResult scan(const fs::path& scene, const std::string& noise, std::uint64_t
       call_back([&] { progress(pipeline.views().size(), pipeline.views().back()); });
     };
   return shared(interruptible([&] {
-    const io::SceneFile file = io::read_scene(scene);
+    const io::SceneFile file = io::read_scene(scene_file(scene));
     const study::TracedScene traced(file.scene, options.threads);
     ScanResult result = study::scan(file.workcell, traced, values, std::move(options));
     result.warnings.insert(result.warnings.begin(), file.warnings.begin(), file.warnings.end());
@@ -67,7 +67,7 @@ fs::path make_truss(const fs::path& folder, int total, int hidden, std::uint64_t
 class Camera {
  public:
   Camera(const fs::path& scene, const std::string& noise, std::uint64_t seed, int threads)
-      : file_(io::read_scene(scene)),
+      : file_(io::read_scene(scene_file(scene))),
         noise_(study::parse_noise(noise)),
         seed_(seed),
         threads_(threads_of(threads)),
@@ -101,7 +101,7 @@ void bind_simulation(py::module_& m) {
         py::arg("progress") = py::none(), py::arg("threads") = 0,
         R"(Scan a scene with a simulated camera and arm.
 
-scene: path of a scene file.
+scene: path of a scene file, or of its folder.
 noise: none, gaussian:SIGMA (m), l515, azure, d405 (each also with :shade or :sun), l515-white or rough.
 seed: of noise and planner.
 parameters, planner, reach, threads: as for Pipeline.
@@ -114,8 +114,7 @@ Returns a ScanResult.)");
         "FileError if the folder holds a scene, unless force is given.");
   py::class_<Camera>(m, "SimulatedCamera", "A simulated depth camera in a scene.")
       .def(py::init<const fs::path&, const std::string&, std::uint64_t, int>(), py::arg("scene"),
-           py::arg("noise") = "none", py::arg("seed") = 0, py::arg("threads") = 0,
-           "scene: path of a scene file; noise: as for scan.")
+           py::arg("noise") = "none", py::arg("seed") = 0, py::arg("threads") = 0, "scene, noise: as for scan.")
       .def_property_readonly("workcell", &Camera::workcell, "the workcell of the scene")
       .def("capture", &Camera::capture, py::arg("pose"),
            "H x W float32: z (m) of each pixel as seen from the 4 x 4 pose world_T_optical; 0 = no return.");

@@ -58,8 +58,9 @@ py::object tool_of(const Workcell& cell) {
 void bind_cell(py::module_& m) {
   py::class_<Workcell>(m, "Workcell", "Arm, camera, scan volume and keep-out spaces; docs/formats.md has the keys.")
       .def_static(
-          "from_yaml", [](const std::filesystem::path& path) { return io::read_scene(path).workcell; }, py::arg("path"),
-          "The workcell of a scene file. Raises FileError, which names line and key.")
+          "from_yaml", [](const std::filesystem::path& path) { return io::read_scene(scene_file(path)).workcell; },
+          py::arg("path"),
+          "The workcell of a scene file, or of its folder. Raises FileError, which names line and key.")
       .def_static(
           "from_dict", &from_dict, py::arg("values"),
           "A workcell from the keys of a scene file, as nested dicts. Raises ParameterError, which names the key.")
@@ -139,11 +140,16 @@ std::shared_ptr<const py::object> kept(const py::object& function) {
 
 }  // namespace
 
+std::filesystem::path scene_file(const std::filesystem::path& path) {
+  std::error_code error;
+  return std::filesystem::is_directory(path, error) ? path / "scene.yaml" : path;
+}
+
 Workcell workcell_of(const py::object& argument) {
   if (py::isinstance<Workcell>(argument)) return argument.cast<Workcell>();
   if (py::isinstance<py::dict>(argument)) return from_dict(argument.cast<py::dict>());
   if (py::isinstance<py::str>(argument) || py::hasattr(argument, "__fspath__"))
-    return io::read_scene(argument.cast<std::filesystem::path>()).workcell;
+    return io::read_scene(scene_file(argument.cast<std::filesystem::path>())).workcell;
   throw py::type_error("workcell must be agrisee.Workcell, a dict, or the path of a scene file, got " +
                        py::repr(argument).cast<std::string>());
 }

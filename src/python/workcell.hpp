@@ -6,13 +6,18 @@
 #include <agrisee/plan/planner.hpp>
 #include <agrisee/workcell.hpp>
 
+#include <filesystem>
 #include <pybind11/pybind11.h>
 
 namespace agrisee::python {
 
 namespace py = pybind11;
 
-/// A workcell from an argument: agrisee.Workcell, a dict as of Workcell.from_dict, or the path of a scene file.
+/// The scene file that a path names: itself or, in a folder, scene.yaml.
+std::filesystem::path scene_file(const std::filesystem::path& path);
+
+/// A workcell from an argument: agrisee.Workcell, a dict as of Workcell.from_dict, or the path of a scene file or its
+/// folder.
 /// @throws pybind11::type_error for another type, FileError for a file, ParameterError for a dict
 Workcell workcell_of(const py::object& argument);
 

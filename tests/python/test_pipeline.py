@@ -234,3 +234,8 @@ def test_workcells(scene, tmp_path):
     with pytest.raises(TypeError, match="workcell must be"):
         agrisee.Pipeline(3)
     assert os.path.samefile(scene, os.path.join(os.path.dirname(scene), "scene.yaml"))
+    for folder in (scene.parent, str(scene.parent)):  # as the command takes it
+        assert agrisee.Workcell.from_yaml(folder).name == agrisee.SimulatedCamera(folder).workcell.name == cell.name
+        assert agrisee.Pipeline(folder).views == [] and len(agrisee.scan(folder, parameters={"max_views": 1}).views) == 1
+    with pytest.raises(agrisee.FileError, match="scene.yaml"):
+        agrisee.scan(tmp_path)
