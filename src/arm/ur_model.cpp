@@ -103,7 +103,7 @@ const UrModel& ur_model(std::string_view name) {
     known += (known.empty() ? "" : ", ") + std::string(model.name);
   }
   throw InputError("no arm is called '" + std::string(name) + "'; known are " + known +
-                   " (for another arm see PipelineOptions::reach)");
+                   " (for another arm, give the pipeline a function `reach`)");
 }
 
 }  // namespace agrisee::arm

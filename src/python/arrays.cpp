@@ -16,13 +16,15 @@ std::string shape_text(const py::array& a) { return py::str(a.attr("shape")).cas
 }  // namespace
 
 py::array array_of_rows(const py::handle& argument, const char* name) {
-  const py::array a = py::array::ensure(argument);
+  py::array a = py::array::ensure(argument);
   if (!a) {
     PyErr_Clear();
     throw py::type_error(std::string(name) + " must be an N x 3 array, got " +
                          py::str(py::type::of(argument).attr("__name__")).cast<std::string>());
   }
   if (a.size() == 0 && a.ndim() == 1) return py::array_t<float>(py::array::ShapeContainer{0, 3});  // an empty list
+  const bool whole = a.dtype().kind() == 'i' || a.dtype().kind() == 'u';
+  if (whole && !py::isinstance<py::array>(argument)) a = a.attr("astype")(py::dtype::of<double>());  // a list of lists
   if (!is_float(a))
     throw py::type_error(std::string(name) + " must be float32 or float64 in the machine's byte order, got " +
                          py::str(a.dtype()).cast<std::string>());

@@ -331,7 +331,11 @@ Pose pose_of(const py::handle& argument, const char* name) {
   check_input(a.ndim() == 2 && a.shape(0) == 4 && a.shape(1) == 4, wanted.c_str());
   Pose pose;
   pose.matrix() = Eigen::Map<const Eigen::Matrix<double, 4, 4, Eigen::RowMajor>>(a.data());
-  check_input(pose.matrix().row(3) == Eigen::RowVector4d(0, 0, 0, 1), (wanted + " whose last row is 0 0 0 1").c_str());
+  if (!pose.matrix().allFinite()) throw InputError(std::string(name) + " is not finite: it holds NaN or infinity");
+  const Eigen::RowVector4d last(0, 0, 0, 1);
+  if (pose.matrix().row(3) != last)
+    throw InputError(wanted + " whose last row is 0 0 0 1" +
+                     (pose.matrix().col(3).transpose() == last ? ". Is it transposed?" : ""));
   return pose;
 }
 

@@ -176,6 +176,8 @@ def test_bad_frames_are_refused_and_the_scan_goes_on(scene, camera):
         ((1000 * depth, view.pose), agrisee.InputError, "is it in millimetres"),
         ((depth, view.pose[:3]), agrisee.InputError, "pose must be a 4 x 4 matrix"),
         ((depth, 2 * view.pose), agrisee.InputError, "last row"),
+        ((depth, view.pose.T), agrisee.InputError, "last row is 0 0 0 1. Is it transposed?"),
+        ((depth, np.nan * view.pose), agrisee.InputError, "pose is not finite"),
         ((depth, np.diag([2.0, 2, 2, 1])), agrisee.InputError, "world_T_optical"),
         ((depth, view.pose, [0, 1]), agrisee.InputError, "joints must be 6 numbers"),
         ((depth, view.pose, np.degrees(view.joints)), agrisee.InputError, "are the angles in degrees?"),
@@ -224,7 +226,7 @@ def test_workcells(scene, tmp_path):
         "scan_volume": {"min": low, "max": high}})
     assert np.array_equal(twin.scan_volume[0], low) and twin.intrinsics["width"] == 64 and "ur3" in repr(twin)
     assert agrisee.Pipeline(twin).next_view() is not None
-    with pytest.raises(agrisee.ParameterError, match="robot.arm"):
+    with pytest.raises(agrisee.ParameterError, match="robot.arm.*for another arm, give the pipeline a function `reach`"):
         agrisee.Workcell.from_dict({"robot": {"arm": "ur99", "base": {"xyz": [0, 0, 0], "rpy": [0, 0, 0]}},
                                     "scan_volume": {"min": low, "max": high}})
     with pytest.raises(agrisee.ParameterError, match="scan_volume"):

@@ -70,7 +70,7 @@ def test_icp():
     start[:3, 3] = shift
     again = agrisee.icp((target - shift).astype(np.float32), target, target_normals=normals, initial=start)
     assert np.allclose(again.target_T_source, start, atol=1e-4)
-    with pytest.raises(agrisee.InputError, match="ICP needs one normal a target point"):
+    with pytest.raises(agrisee.InputError, match="ICP needs one normal a target point: give target_normals, or set point_to_point"):
         agrisee.icp(target, target)
     with pytest.raises(agrisee.InputError, match="target_normals must have as many rows"):
         agrisee.icp(target, target, target_normals=normals[1:])
@@ -84,6 +84,7 @@ def test_rays():
     distance, triangle, on = bvh.nearest(np.array([[0.2, 0.2, 1.2]], np.float32))
     assert np.allclose(distance, 0.2) and triangle.tolist() == [1] and np.allclose(on, [[0.2, 0.2, 1]])
     assert len(bvh) == 2 and "2 triangles" in repr(bvh)
+    assert bvh.rays([[0, 0, 0]], [[0, 0, 1]])[0] == 1  # lists of whole numbers
     for wrong, error in (([[0, 1, 6]], agrisee.InputError), ([[0, 1, -1]], agrisee.InputError), ([[0.0, 1, 2]], TypeError), ([0, 1, 2], agrisee.InputError)):
         with pytest.raises(error):
             agrisee.Bvh(vertices, wrong)

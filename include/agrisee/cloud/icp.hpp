@@ -180,7 +180,7 @@ IcpResult register_cloud(const Source& source, const std::vector<Vector3<scalar_
   check_input(source_normals.empty() || source_normals.size() == agrisee::size(source),
               "ICP needs one normal a source point");
   check_input((parameters.point_to_point && target_normals.empty()) || target_normals.size() == agrisee::size(target),
-              "ICP needs one normal a target point");
+              "ICP needs one normal a target point: give target_normals, or set point_to_point");
   check_input(is_rigid(initial), "the initial pose of ICP is not rigid");
 
   // Without target normals there is nothing to test the source's against.
