@@ -52,7 +52,8 @@ python:
 	@$(CONFIGURE) -DAGRISEE_BUILD_PYTHON=ON -DAGRISEE_BUILD_TESTS=ON
 	@cmake --build build/release --target agrisee_python -j $(JOBS)
 	@cd build/release && ctest -R '^python\.' --output-on-failure
-	@echo "To use it: export PYTHONPATH=$$PWD/build/release/python"
+	@echo "To use it with $$(sed -n 's/^AGRISEE_MODULE_PYTHON:INTERNAL=//p' build/release/CMakeCache.txt):" \
+	  "export PYTHONPATH=$$PWD/build/release/python"
 
 # The source tarball holds what is committed; SOURCE_DATE_EPOCH makes the packages the same bytes each time.
 packages:
