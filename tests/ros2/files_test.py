@@ -81,12 +81,21 @@ def test_launch():
     stand_ins()
     with tempfile.TemporaryDirectory() as folder:
         params = pathlib.Path(folder, 'params.yaml')
-        params.write_text('max_views: 4\nsplit: {bodies: {radius_min: 0.01}}\nchannels: {score: 0.8}\n', encoding='utf-8')
-        actions = launched(workcell='/cell.yaml', params=str(params), labels='true', labels_image='/yolo/labels', seed='7')
+        params.write_text('max_views: 4\nsplit: {bodies: {radius_min: 0.01}}\nchannels: {score: 0.8, color: true, labels: false}\n', encoding='utf-8')
+        actions = launched(workcell='/cell.yaml', params=str(params), labels='1', labels_image='/yolo/labels', seed='7')
     node = next(a for a in actions if type(a).__name__ == 'LifecycleNode').kwargs
-    assert node['parameters'] == [{
-        'max_views': 4, 'split': {'bodies': {'radius_min': 0.01}}, 'channels': {'score': 0.8, 'color': False, 'labels': True},
-        'workcell': '/cell.yaml', 'seed': 7, 'autostart': False}], node['parameters']
+    assert node['parameters'] == [{  # an argument that is not given leaves what the file says
+        'max_views': 4, 'split': {'bodies': {'radius_min': 0.01}}, 'channels': {'score': 0.8, 'color': True, 'labels': True},
+        'workcell': '/cell.yaml', 'seed': 7}], node['parameters']
+    for text, wanted in (('True', True), ('1', True), ('false', False), ('0', False)):
+        actions = launched(workcell='/cell.yaml', autostart=text)
+        node_parameters = next(a for a in actions if type(a).__name__ == 'LifecycleNode').kwargs['parameters']
+        assert node_parameters == [{'workcell': '/cell.yaml', 'autostart': wanted}], node_parameters
+    try:
+        launched(workcell='/cell.yaml', color='yes')
+        raise AssertionError('color:=yes was taken')
+    except ValueError as error:
+        assert str(error) == 'color has to be true or false, got yes'
     remapped = dict(node['remappings'])
     assert remapped['labels/image'] == '/yolo/labels'
     source = (ROS2 / 'scan_node.cpp').read_text(encoding='utf-8')

@@ -23,10 +23,10 @@ from lifecycle_msgs.msg import Transition
 ARGUMENTS = {
     'workcell': (None, 'scene file; of it robot, sensor, scan_volume and keep_out are used'),
     'params': ('', "YAML file with parameters of the pipeline, as of agrisee scan --params"),
-    'seed': ('0', 'of the planner'),
-    'autostart': ('false', 'start without the service'),
-    'color': ('false', 'take colors from color_image'),
-    'labels': ('false', "take a detector's label images from labels_image"),
+    'seed': ('', 'of the planner; if it is not given, that of params'),
+    'autostart': ('', 'true: start without the service; if it is not given, as in params'),
+    'color': ('', 'true: take colors from color_image; if it is not given, as in params'),
+    'labels': ('', "true: take a detector's label images from labels_image; if it is not given, as in params"),
     'depth_image': ('/depth/image', 'topic'),
     'camera_info': ('/depth/camera_info', 'topic'),
     'color_image': ('/color/image', 'topic; registered to the depth image'),
@@ -37,18 +37,26 @@ ARGUMENTS = {
 }
 
 
+def is_true(name, text):
+    if text.lower() not in ('true', '1', 'false', '0'):
+        raise ValueError(f'{name} has to be true or false, got {text}')
+    return text.lower() in ('true', '1')
+
+
 def nodes(context):
     value = {name: LaunchConfiguration(name).perform(context) for name in ARGUMENTS}
     parameters = {}
     if value['params']:
         with open(value['params'], encoding='utf-8') as file:
             parameters = yaml.safe_load(file) or {}
-    parameters.update({
-        'workcell': os.path.abspath(value['workcell']),
-        'seed': int(value['seed']),
-        'autostart': value['autostart'] == 'true',
-    })
-    parameters.setdefault('channels', {}).update({name: value[name] == 'true' for name in ('color', 'labels')})
+    parameters['workcell'] = os.path.abspath(value['workcell'])
+    if value['seed']:
+        parameters['seed'] = int(value['seed'])
+    if value['autostart']:
+        parameters['autostart'] = is_true('autostart', value['autostart'])
+    for name in ('color', 'labels'):
+        if value[name]:
+            parameters.setdefault('channels', {})[name] = is_true(name, value[name])
     scan = LifecycleNode(
         package='agrisee_ros2', executable='scan_node', name='agrisee', namespace='', output='screen', parameters=[parameters],
         remappings=[('depth/image', value['depth_image']), ('depth/camera_info', value['camera_info']),
