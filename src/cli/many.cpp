@@ -49,6 +49,46 @@ std::vector<std::string> names_of(fs::path path) {
   return out;
 }
 
+/// A path by which an input is known, wherever the command is called, and whether it names a scene or its folder.
+std::string whole_path(const fs::path& path) {
+  std::error_code error;
+  fs::path whole = fs::absolute(path, error).lexically_normal();
+  if (!whole.has_filename() || whole.filename() == "scene.yaml") whole = whole.parent_path();
+  return whole.string();
+}
+
+/// The folders in an output folder that hold a result of a list (job.json), by their inputs.
+std::map<std::string, std::set<std::string>> folders_in(const fs::path& output) {
+  std::map<std::string, std::set<std::string>> out;
+  std::error_code error;
+  for (fs::directory_iterator i(output, error), end; !error && i != end; i.increment(error))
+    if (const auto job = read_job(i->path())) out[whole_path(job->input)].insert(i->path().filename().string());
+  return out;
+}
+
+/// For each path a name that distinguishes it from the others, see jobs_of; those of a.ply and a.pcd are alike.
+std::vector<std::string> distinct_names(const std::vector<std::string>& paths) {
+  std::vector<std::vector<std::string>> parts;
+  std::vector<std::size_t> used(paths.size(), 1);
+  for (const std::string& path : paths) parts.push_back(names_of(path));
+  const auto name = [&](std::size_t i) {
+    std::string out = parts[i][0];
+    for (std::size_t k = 1; k < std::min(used[i], parts[i].size()); ++k) out = parts[i][k] + "_" + out;
+    return out;
+  };
+  for (bool clash = true; clash;) {  // while two names are equal, add one more folder to each of them
+    clash = false;
+    std::map<std::string, std::vector<std::size_t>> same;
+    for (std::size_t i = 0; i < paths.size(); ++i) same[name(i)].push_back(i);
+    for (const auto& [text, group] : same)
+      for (const std::size_t i : group)
+        if (group.size() > 1 && used[i] < parts[i].size()) ++used[i], clash = true;
+  }
+  std::vector<std::string> out;
+  for (std::size_t i = 0; i < paths.size(); ++i) out.push_back(name(i));
+  return out;
+}
+
 /// Fill in a summary's columns from the files of a finished result; columns whose values are missing stay empty.
 void add_result(const fs::path& folder, SummaryRow& row) {
   const io::Json run = io::load_json_or_null(folder / "run.json");
@@ -118,34 +158,32 @@ Shard parse_shard(const std::string& text) {
   return shard;
 }
 
-std::vector<Job> jobs_of(const std::vector<std::string>& inputs) {
+std::vector<Job> jobs_of(const std::vector<std::string>& inputs, const std::string& output) {
   std::vector<std::string> paths;
   std::set<std::string> known;
   for (const std::string& input : inputs)
     for (const std::string& path : is_pattern(input) ? matches(input) : std::vector<std::string>{input})
       if (known.insert(fs::path(path).lexically_normal().string()).second) paths.push_back(path);
-  std::vector<std::vector<std::string>> names;
-  std::vector<std::size_t> used(paths.size(), 1);
-  for (const std::string& path : paths) names.push_back(names_of(path));
-  const auto folder = [&](std::size_t i) {
-    std::string out = names[i][0];
-    for (std::size_t k = 1; k < std::min(used[i], names[i].size()); ++k) out = names[i][k] + "_" + out;
-    return out;
-  };
-  for (bool clash = true; clash;) {  // while two names are equal, add one more folder to each of them
-    clash = false;
-    std::map<std::string, std::vector<std::size_t>> same;
-    for (std::size_t i = 0; i < paths.size(); ++i) same[folder(i)].push_back(i);
-    for (const auto& [name, group] : same)
-      for (const std::size_t i : group)
-        if (group.size() > 1 && used[i] < names[i].size()) ++used[i], clash = true;
-  }
+  const std::size_t count = paths.size();
+  const std::map<std::string, std::set<std::string>> before = folders_in(output);
+  std::set<std::string> listed;
+  for (const std::string& path : paths) listed.insert(whole_path(path));
+  std::error_code error;
+  for (const auto& [path, folders] : before)  // inputs of older lists distinguish names, too
+    if (!listed.count(path) && fs::exists(path, error)) paths.push_back(path);
+  std::vector<std::string> folders = distinct_names(paths);
   std::vector<Job> jobs;
   std::set<std::string> taken;
+  std::vector<bool> kept(paths.size(), false);
   for (std::size_t i = 0; i < paths.size(); ++i) {
-    std::string name = folder(i);
-    while (!taken.insert(name).second) name += "_";  // such as a.ply and a.pcd in one folder
-    jobs.push_back({paths[i], name});
+    const auto found = before.find(whole_path(paths[i]));
+    if (found == before.end()) continue;
+    if (!found->second.count(folders[i])) folders[i] = *found->second.begin();
+    kept[i] = taken.insert(folders[i]).second;
+  }
+  for (std::size_t i = 0; i < count; ++i) {
+    while (!kept[i] && !taken.insert(folders[i]).second) folders[i] += "_";  // such as a.ply and a.pcd in one folder
+    jobs.push_back({paths[i], folders[i]});
   }
   return jobs;
 }
@@ -185,7 +223,7 @@ bool is_list(const std::vector<std::string>& inputs, const std::string& shard) {
 int run_inputs(const std::vector<std::string>& inputs, const std::string& shard, const std::string& output,
                const ListedCommand& command) {
   if (!is_list(inputs, shard)) return command.run(inputs.empty() ? std::string() : inputs[0], output, Begin::as_asked);
-  return run_jobs(jobs_of(inputs), parse_shard(shard), output, command);
+  return run_jobs(jobs_of(inputs, output), parse_shard(shard), output, command);
 }
 
 void add_shard_option(CLI::App& command, std::string& shard) {

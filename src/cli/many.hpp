@@ -23,9 +23,9 @@ struct Job {
 /// The files that paths and patterns (*, ?, [...]) name, each once, in the given order; the matches of a pattern are
 /// sorted. The folder of a file is named after the file, preceded by the names of as many of the folders above as are
 /// needed to distinguish it from the others ("truss_7/scene.yaml" becomes truss_7). The names do not depend on the
-/// shard.
-/// @throws UsageError for a pattern that matches nothing
-std::vector<Job> jobs_of(const std::vector<std::string>& inputs);
+/// shard. An input that has a folder in `output` (job.json) keeps it, and a folder of another input is not taken.
+/// @throws FileError for a pattern that matches nothing
+std::vector<Job> jobs_of(const std::vector<std::string>& inputs, const std::string& output);
 
 /// How to begin with a folder.
 enum class Begin {

@@ -39,7 +39,7 @@ std::regex pattern_of(const char* option, const std::string& text) {
 
 /// All scans of an output folder: its results, and the inputs of its list that have none. A result whose input the list
 /// puts into another folder is left over from an older list, and is left out.
-void collect_scans(const fs::path& folder, std::vector<season::Scan>& scans) {
+void collect_scans(const fs::path& folder, std::vector<season::Scan>& scans, std::vector<fs::path>& left_out) {
   std::error_code error;
   std::vector<SummaryRow> list;
   if (fs::exists(folder / "summary.csv", error)) list = read_summary(folder / "summary.csv");
@@ -48,10 +48,12 @@ void collect_scans(const fs::path& folder, std::vector<season::Scan>& scans) {
   for (const fs::path& result : season::result_folders(folder)) {
     const season::Scan scan = season::open_result(result);
     const auto listed = folder_of.find(scan.input);
-    if (listed == folder_of.end() || (folder / listed->second).lexically_normal() == result.lexically_normal())
+    if (listed == folder_of.end() || (folder / listed->second).lexically_normal() == result.lexically_normal()) {
       scans.push_back(scan);
-    else
-      std::cerr << result.string() << ": left out; " << scan.input << " is now in " << listed->second << "\n";
+      continue;
+    }
+    left_out.push_back(result);
+    std::cerr << result.string() << ": left out; " << scan.input << " is now in " << listed->second << "\n";
   }
   for (const SummaryRow& row : list) {
     if (row.status == "ok" || fs::exists(folder / row.folder / "run.json", error)) continue;
@@ -114,10 +116,12 @@ void add_to_season(const std::vector<std::string>& folders, const SeasonOptions&
   if (!options.row.empty()) rules.row = pattern_of("--row", options.row);
   if (!options.date.empty()) rules.date = pattern_of("--date", options.date);
   std::vector<season::Scan> scans;
-  for (const std::string& folder : folders) collect_scans(folder, scans);
-  const season::Added added = season::add_scans(options.database, scans, rules, threads_of(options.threads));
-  std::cout << added.added << " scans added, " << added.changed << " replaced, " << added.unchanged
-            << " were there: " << options.database << "\n";
+  std::vector<fs::path> left_out;
+  for (const std::string& folder : folders) collect_scans(folder, scans, left_out);
+  const season::Added added = season::add_scans(options.database, scans, left_out, rules, threads_of(options.threads));
+  std::cout << added.added << " scans added, " << added.changed << " replaced, " << added.unchanged << " were there"
+            << (added.removed > 0 ? ", " + std::to_string(added.removed) + " removed" : "") << ": " << options.database
+            << "\n";
 }
 
 #else

@@ -164,21 +164,22 @@ class Writer {
 
 }  // namespace
 
-Added add_scans(const std::string& database, const std::vector<Scan>& scans, const PlaceRules& rules, int threads) {
+Added add_scans(const std::string& database, const std::vector<Scan>& scans, const std::vector<fs::path>& left_out,
+                const PlaceRules& rules, int threads) {
   const Connection connection(database, Connection::Mode::write);
   prepare(connection);
   Writer writer(connection);
   Added out;
   std::error_code error;
   const fs::path home = fs::absolute(fs::path(database), error).parent_path();
-  const auto name_of_folder = [&](const Scan& scan) {
-    fs::path folder = fs::absolute(scan.folder, error).lexically_normal();
+  const auto name_of_folder = [&](const fs::path& path) {
+    fs::path folder = fs::absolute(path, error).lexically_normal();
     if (!folder.has_filename()) folder = folder.parent_path();  // "scans/1/" is "scans/1"
     return folder.lexically_relative(home.lexically_normal()).string();
   };
   std::vector<Entry> entries;
   for (const Scan& scan : scans) {
-    const std::string folder = name_of_folder(scan);
+    const std::string folder = name_of_folder(scan.folder);
     const Place place = rules.of(scan.input.empty() ? folder : scan.input);
     io::Fingerprint print;  // other rules for rows and dates change the scan, too
     print.add(scan.content + "\n" + place.row + "\n" + place.date);
@@ -197,6 +198,8 @@ Added add_scans(const std::string& database, const std::vector<Scan>& scans, con
     ++(id > 0 ? out.changed : out.added);
     open.push_back(&e);
   }
+  for (const fs::path& folder : left_out)
+    if (const long long id = writer.find(name_of_folder(folder)).first; id > 0) writer.forget(id), ++out.removed;
   constexpr std::size_t kBatch = 1024;  // so many results are in memory at a time
   for (std::size_t from = 0; from < open.size(); from += kBatch) {
     std::vector<std::optional<ResultFiles>> files(std::min(kBatch, open.size() - from));

@@ -3,6 +3,7 @@
 /// The results of a season in one SQLite file.
 #pragma once
 
+#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -15,13 +16,16 @@ struct Added {
   std::size_t added = 0;      ///< scans that were not there
   std::size_t changed = 0;    ///< scans whose result is another than before
   std::size_t unchanged = 0;  ///< scans that were there already
+  std::size_t removed = 0;    ///< scans that were there and are left out
 };
 
 /// Put scans into a database, which is created if it is missing. A scan is known by its folder, relative to that of the
 /// database: one that is there with the same content is skipped, one with another content is replaced. All of it
 /// happens in one transaction: if it fails, or the process is killed, the database stays as it was.
+/// @param left_out folders of scans that are removed if they are there
 /// @param threads number of threads that read files; the database does not depend on it
 /// @throws FileError for a result that cannot be read, or a file that is no such database
-Added add_scans(const std::string& database, const std::vector<Scan>& scans, const PlaceRules& rules, int threads);
+Added add_scans(const std::string& database, const std::vector<Scan>& scans,
+                const std::vector<std::filesystem::path>& left_out, const PlaceRules& rules, int threads);
 
 }  // namespace agrisee::season

@@ -90,6 +90,14 @@ def keyed():
     redone(["a", "b", "c"], "--params", "p.yaml", "--force")
     ball("in/d.ply")
     redone(["d"], "--params", "p.yaml")
+    # Names that become ambiguous change nothing for what is done, whether both or only the new input is named.
+    ball("other/a.ply")
+    words = ["-o", "out", "--viewpoint", "0,0,0", *FEW_FILES, "--params", "p.yaml"]
+    before = made()
+    assert "5 inputs, 4 done before, 0 failed" in run("process", "in/*.ply", "other/a.ply", *words)
+    assert "1 inputs, 1 done before, 0 failed" in run("process", "other/a.ply", "--shard", "1/1", *words)
+    assert {**made(), **before} == made() and sorted(set(made()) - set(before)) == ["other_a"], made()
+    shutil.rmtree("other")
     # A result that the list did not make is neither skipped nor overwritten.
     run("process", "in/a.ply", "-o", "out/a", "--force", *FEW_FILES)
     assert "out/a: already holds a result" in process("--params", "p.yaml", code=2)
@@ -191,6 +199,11 @@ def database():
     assert "0 scans added, 2 replaced, 2 were there" in run("merge", "out", "--db", "s.sqlite")
     assert ask("SELECT count(*), count(DISTINCT scan) FROM fruit") == [(4, 4)]
     assert ask("SELECT count(*) FROM scans WHERE status != 'ok'") == [(0,)]
+    # What an older list left behind goes.
+    shutil.copytree("out/p2", "out/old")
+    assert "1 scans added" in run("merge", "out/old", "--db", "s.sqlite")
+    assert "out/old: left out" in run("merge", "out", "--db", "s.sqlite") and ask("SELECT count(*) FROM scans") == [(4,)]
+    shutil.rmtree("out/old")
     # A folder that is named twice is one; other rules for rows change what is there.
     assert "0 scans added, 0 replaced, 4 were there" in run("merge", "out", "out/", "--db", "s.sqlite")
     assert "0 scans added, 3 replaced, 1 were there" in run("merge", "out", "--db", "s.sqlite", "--row", "p([0-9])")
