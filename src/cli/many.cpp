@@ -104,20 +104,13 @@ void add_result(const fs::path& folder, SummaryRow& row) {
   row.seconds = at("/seconds/total");
 }
 
-/// @throws UsageError if the input is one of the files of the result
-void check_input_stays(const std::string& input, const fs::path& folder) {
-  std::error_code error;
-  for (const char* name : kResultFiles)
-    if (fs::equivalent(input, folder / name, error))
-      throw UsageError(input + ": is the input and would be overwritten");
-}
-
 /// Does a job unless it is done. @return whether there was anything to do
 bool do_job(const Job& job, const fs::path& folder, const ListedCommand& command, SummaryRow& row) {
   JobRecord record{command.name, job.input, "", AGRISEE_VERSION, "started", ""};
   bool recorded = false, worked = true;
   try {
-    check_input_stays(job.input, folder);
+    check_inputs_stay({job.input}, folder.string());
+    check_inputs_stay(command.files, folder.string());
     record.key = command.key(job.input);
     const auto before = read_job(folder);
     const bool same = before && before->key == record.key && !record.key.empty() && !command.force;

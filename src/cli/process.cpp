@@ -70,12 +70,9 @@ void check_cloud(const ProcessOptions& options, const Cloud& cloud, const Parame
                     "out, which keeps the normals; if the normals are wrong, add --turn-normals");
 }
 
-/// @throws UsageError if a file of the result would overwrite the cloud
-void check_input_is_kept(const ProcessOptions& options) {
-  std::error_code error;
-  for (const char* name : {"cloud.ply", "cloud_raw.ply"})
-    if (std::filesystem::equivalent(options.cloud, std::filesystem::path(options.output) / name, error))
-      throw UsageError(options.cloud + ": is the input and would be overwritten");
+/// The files that options name.
+std::vector<std::string> files_of(const ProcessOptions& options) {
+  return {options.parameter_file, options.views, options.depth, options.color, options.masks, options.boxes};
 }
 
 io::RunInfo run_info(const ProcessOptions& options, const Parameters& parameters, const std::string& scene) {
@@ -227,9 +224,10 @@ std::string key_of(const ProcessOptions& options, const std::string& input) {
 
 int run_process(const ProcessOptions& options) {
   check_input_options(options);
+  check_inputs_stay({options.cloud}, options.output);
+  check_inputs_stay(files_of(options), options.output);
   const Parameters parameters = parameters_of(options);
   parameters.check();
-  check_input_is_kept(options);
   if (!options.prepared) check_output(options.output, options.force);
   const bool recording = options.depth.empty() && is_recording(options.cloud);
   if (recording && !(options.views.empty() && options.viewpoint.empty()))
@@ -323,7 +321,7 @@ void add_process(CLI::App& app, Run& run) {
       "  agrisee process 'season/*.ply' -o results --shard 2/8");
   command->callback([options, &run] {
     run = [options] {
-      ListedCommand list{"process", options->force, {}, {}, {}};
+      ListedCommand list{"process", options->force, files_of(*options), {}, {}, {}};
       list.run = [&](const std::string& input, const std::string& folder, Begin begin) {
         ProcessOptions one = *options;
         one.cloud = input;

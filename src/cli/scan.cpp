@@ -223,6 +223,7 @@ int run_scan(const ScanOptions& options) {
   check_scan(file.workcell, task.parameters);  // an impossible scan is rejected before anything is written
   std::unique_ptr<plan::Planner> planner = study_planner(task, file, traced);
   if (!resuming) {
+    check_inputs_stay({options.scene, options.parameter_file}, folder.string());
     if (!options.prepared) prepare_output(folder.string(), options.force);
     io::write_scan_task(folder / "scan.json", task);
   } else if (options.mcap.empty() && is_finished(folder.string(), options)) {
@@ -237,7 +238,7 @@ int run_scan(const ScanOptions& options) {
 
 /// Scan every scene of the list.
 int run_scans(const ScanOptions& options) {
-  ListedCommand list{"scan", options.force, {}, {}, {}};
+  ListedCommand list{"scan", options.force, {options.parameter_file}, {}, {}, {}};
   if (!options.mcap.empty() && is_list(options.scenes, options.shard))
     throw UsageError("--mcap: is one file, so name one scene without --shard");
   list.run = [&](const std::string& input, const std::string& folder, Begin begin) {

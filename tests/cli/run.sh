@@ -138,6 +138,9 @@ PY
     expect 0 '' process r1/cloud.ply -o turned --viewpoint 0,0,0.2 --turn-normals
     expect 1 'input' process r1/cloud.ply -o r1 --force
     expect 0 '' process r1/cloud_raw.ply -o raw --views r1/views.csv --radius 0.02,0.05 && grep -qE '^[45] fruit' out.txt || fail "process of the raw points misses fruit"
+    for words in "r1/cloud_raw.ply --views raw/views.csv" "r1/cloud.ply --params raw/run.json"; do
+      expect 1 'raw/.*: is an input and would be overwritten' process $words -o raw --force
+    done
     expect 1 'excludes' process r1/cloud_raw.ply -o raw2 --views r1/views.csv --viewpoint 0,0,0
     ;;
   report)

@@ -98,6 +98,9 @@ def keyed():
     assert "1 inputs, 1 done before, 0 failed" in run("process", "other/a.ply", "--shard", "1/1", *words)
     assert {**made(), **before} == made() and sorted(set(made()) - set(before)) == ["other_a"], made()
     shutil.rmtree("other")
+    # The files of options stay.
+    assert "is an input" in run("process", "in/[ab].ply", "-o", "out", "--params", "out/a/run.json", code=2)
+    assert os.path.exists("out/a/fruits.json")
     # A result that the list did not make is neither skipped nor overwritten.
     run("process", "in/a.ply", "-o", "out/a", "--force", *FEW_FILES)
     assert "out/a: already holds a result" in process("--params", "p.yaml", code=2)
