@@ -69,6 +69,8 @@ void collect_scans(const fs::path& folder, std::vector<season::Scan>& scans, std
 
 int run_season(const PageOptions& options) {
   std::error_code error;
+  if (fs::equivalent(options.database, options.output, error))
+    throw UsageError(options.output + ": is the database, which the page would replace; name another file");
   if (!options.force && fs::exists(options.output, error))
     throw UsageError(options.output + ": exists; use --force to overwrite it");
   const season::Overview overview = season::read_overview(options.database);

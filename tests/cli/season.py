@@ -226,6 +226,7 @@ def database():
         assert told in text, (told, text)
     assert text.index("<td>2</td>") < text.index("<td>10</td>") and "script" not in text
     assert "use --force" in run("season", "s.sqlite", "-o", page, code=1)
+    assert "is the database" in run("season", "s.sqlite", "-o", "./s.sqlite", "--force", code=1)
     assert "is not a regular expression" in run("merge", "out", "--db", "s.sqlite", "--row", "(", code=1)
     assert "no such file" in run("season", "none.sqlite", "-o", "x.html", code=2)
     with open("other.sqlite", "w", encoding="utf-8") as file:
