@@ -169,3 +169,25 @@ TEST_CASE("channels are added to a frame, with what is known of their instances"
   other.depth.pop_back();
   CHECK_THROWS_WITH(io::add_channels(other, files), Catch::Contains("has 2 x 1 pixels, but the depth image 1 x 1"));
 }
+
+TEST_CASE("the channels of a frame that are written are read again") {
+  const TempFolder folder;
+  sensor::DepthFrame frame = tiny_frame();
+  const io::ChannelFiles files{folder / "color.png", folder / "masks.png", {}};
+  CHECK_THROWS_AS(io::write_channels(frame, files), InputError);
+  CHECK_NOTHROW(io::write_channels(frame, {}));
+  frame.color = {{255, 0, 1}, {12, 200, 34}};
+  frame.instances = {0, 700};
+  frame.detections = {{700, 0.1, true, "tomato", {}}, {3, 1.0 / 3.0, false, "", sensor::PixelBox{0.5, 0.0, 1.5, 1.0}}};
+  io::write_channels(frame, files);
+  sensor::DepthFrame again = tiny_frame();
+  io::add_channels(again, files);
+  CHECK(again.color == frame.color);
+  CHECK(again.instances == frame.instances);
+  REQUIRE(again.detections.size() == 2);
+  CHECK(again.detections[0].name == "tomato");
+  CHECK(again.detections[0].score == 0.1);
+  CHECK(again.detections[1].score == 1.0 / 3.0);
+  CHECK(!again.detections[1].fruit);
+  CHECK(again.detections[1].box->width == 1.5);
+}

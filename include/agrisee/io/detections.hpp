@@ -34,4 +34,10 @@ std::vector<sensor::Detection> read_detections(const std::filesystem::path& path
 /// @throws FileError as the readers, and for an image of another size than the depth image
 void add_channels(sensor::DepthFrame& frame, const ChannelFiles& files);
 
+/// Write the channels of a depth frame so that add_channels reads the same: colors, masks, and detections in a file of
+/// the masks' name with .json.
+/// @param files a channel without a path is not written; those of boxes are not needed
+/// @throws InputError if the frame lacks a channel; FileError when a file cannot be written
+void write_channels(const sensor::DepthFrame& frame, const ChannelFiles& files);
+
 }  // namespace agrisee::io

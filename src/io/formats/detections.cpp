@@ -2,6 +2,7 @@
 #include <agrisee/io/color_image.hpp>
 #include <agrisee/io/detections.hpp>
 #include <agrisee/io/files.hpp>
+#include <agrisee/io/png.hpp>
 
 #include <algorithm>
 #include <functional>
@@ -202,6 +203,26 @@ void add_channels(sensor::DepthFrame& frame, const ChannelFiles& files) {
       if (!d.box) fail(files.boxes, "detection " + std::to_string(d.instance) + " has no box (u, v, width, height)");
     add_detections(frame, std::move(boxes));
   }
+}
+
+void write_channels(const sensor::DepthFrame& frame, const ChannelFiles& files) {
+  sensor::check(frame);
+  const sensor::Intrinsics& k = frame.intrinsics;
+  if (!files.color.empty()) {
+    check_input(!frame.color.empty(), "write_channels: the frame has no colors");
+    write_png(files.color, {k.width, k.height, frame.color});
+  }
+  if (files.masks.empty()) return;
+  check_input(!frame.instances.empty(), "write_channels: the frame has no masks");
+  write_file(files.masks, encode_png16({k.width, k.height, frame.instances}));
+  Json list = Json::array();
+  for (const sensor::Detection& d : frame.detections) {
+    Json one{{"instance", d.instance}, {"score", d.score}};
+    if (!d.name.empty() || !d.fruit) one["class"] = d.fruit || !is_fruit(d.name) ? d.name : "other";
+    if (d.box) one["box"] = {d.box->u, d.box->v, d.box->width, d.box->height};
+    list.push_back(one);
+  }
+  write_file(fs::path(files.masks).replace_extension(".json"), dump(list));
 }
 
 }  // namespace agrisee::io
