@@ -3,8 +3,11 @@
 #pragma once
 
 #include <agrisee/io/scan_page.hpp>
+#include <agrisee/io/scan_record.hpp>
+#include <agrisee/io/scene.hpp>
 #include <agrisee/parameters.hpp>
 #include <agrisee/result.hpp>
+#include <agrisee/study/capture.hpp>
 #include <agrisee/study/depth_noise.hpp>
 #include <agrisee/workcell.hpp>
 
@@ -70,6 +73,12 @@ Parameters parameters_of(const CommonOptions& options);
 int threads_of(int requested);
 /// The noise model of an option. @throws UsageError for any other text
 study::NoiseModel noise_of(const std::string& text);
+
+/// Fingerprint of a scene file and its meshes.
+std::string content_of(const std::string& scene, const io::SceneFile& file);
+
+/// The colors and masks that a scan simulates.
+study::ImageOptions images_of(const io::ScanTask& task);
 
 /// Check whether a scan can start, before anything is written. @throws ParameterError, InputError
 void check_scan(const Workcell& workcell, const Parameters& parameters);

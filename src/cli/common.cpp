@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <agrisee/io/files.hpp>
+#include <agrisee/io/fingerprint.hpp>
 #include <agrisee/io/parameters.hpp>
 #include <agrisee/io/render.hpp>
 #include <agrisee/io/scan_record.hpp>
@@ -83,6 +84,20 @@ study::NoiseModel noise_of(const std::string& text) {
     const std::string word = text.substr(0, text.find(':'));
     throw UsageError(e.what() + (word == "gaussian" ? "" : io::did_you_mean(word, known)));
   }
+}
+
+std::string content_of(const std::string& scene, const io::SceneFile& file) {
+  io::Fingerprint print;
+  print.add(io::read_bytes(scene).view());
+  print.add(file.scene);
+  return print.text();
+}
+
+study::ImageOptions images_of(const io::ScanTask& task) {
+  study::ImageOptions images;
+  images.color = task.color;
+  if (!task.detector.empty()) images.detector = study::detector_named(task.detector);
+  return images;
 }
 
 void check_scan(const Workcell& workcell, const Parameters& parameters) {

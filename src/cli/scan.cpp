@@ -69,14 +69,6 @@ io::ScanTask task_to_resume(const ScanOptions& options, const fs::path& path) {
   return task;
 }
 
-/// Fingerprint of a scene file and its meshes.
-std::string content_of(const std::string& scene, const io::SceneFile& file) {
-  io::Fingerprint print;
-  print.add(io::read_bytes(scene).view());
-  print.add(file.scene);
-  return print.text();
-}
-
 /// Fingerprint of all that changes the result of a scan: version, scene, parameters, noise, seed.
 std::string key_of(const ScanOptions& options, const std::string& scene) {
   ScanOptions one = options;
@@ -146,8 +138,7 @@ int run_task(const fs::path& folder, const io::ScanTask& task, const io::SceneFi
              const study::TracedScene& traced, std::unique_ptr<plan::Planner> planner, const ScanOptions& options) {
   study::SimulationOptions simulation;
   simulation.noise = study::parse_noise(task.noise);
-  simulation.images.color = task.color;
-  if (!task.detector.empty()) simulation.images.detector = study::detector_named(task.detector);
+  simulation.images = images_of(task);
   simulation.seed = task.seed;
   simulation.threads = task.threads;
   simulation.planner = std::move(planner);

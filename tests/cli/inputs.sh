@@ -28,6 +28,13 @@ assert all(f["picking_reason"] == "not_tested" for f in exact if f["picking_reas
 runs = [json.load(open(f + "/run.json")) for f in "ra"]
 assert runs[1]["views"] == 6 and runs[1]["planner"] == "none" and runs[0]["cluster_origin_world"] == runs[1]["cluster_origin_world"]
 PY
+    # A view that is missing is told of; a damaged one leaves nothing half-written.
+    cp -r r gap && rm gap/views/0003.view gap/views/0005.view
+    expect 0 'gap/views: holds no record of view 3,5, which is left out' export-views gap -o gaps && grep -q '^4 views' out.txt || fail "gaps: $(cat out.txt)"
+    [ "$(grep -c 'depth: ' gaps/views.yaml)" = 4 ] && grep -q 0004.png gaps/views.yaml || fail "gaps: $(cat gaps/views.yaml)"
+    truncate -s 1000 gap/views/0004.view
+    expect 2 '0004.view: is damaged; .*run.json.*--resume.*the others are exported' export-views gap -o damaged && [ ! -e damaged ] || fail "a half export"
+    rm gap/views/0004.view gap/run.json && expect 0 '' scan --resume gap && cmp gap/fruits.json r/fruits.json || fail "the views are not taken again"
     # Without a scan volume all that is seen counts; poses may be stated in other forms.
     python3 - <<'PY'
 import re

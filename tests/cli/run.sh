@@ -219,6 +219,18 @@ PY
     expect 0 '' scan --resume a --no-picture
     cmp -s a/fruits.json b/fruits.json || fail "a resumed scan sees other colours"
     expect 1 'detector' scan $scan -o c --detector clever
+    # Exported, the views keep colors and masks.
+    expect 0 '' export-views b -o views --npy && [ -s views/color/0003.png ] && [ -s views/masks/0003.png ] || fail "no colors or masks: $(ls views)"
+    expect 0 '' process views -o again --no-picture && cmp b/cloud.ply again/cloud.ply || fail "the exported views give another cloud"
+    python3 - b/fruits.json again/fruits.json <<'PY' || fail "the exported views give other fruit"
+import json, sys
+drop = lambda fruit: {k: v for k, v in fruit.items() if not k.startswith(("picking", "pre_grasp", "approach", "reachable"))}
+scan, again = ([drop(f) for f in json.load(open(name))] for name in sys.argv[1:])
+assert scan == again and scan and all("ripeness" in f for f in scan), (scan, again)
+PY
+    cp t/scene.yaml scene.yaml && echo '# changed' >>t/scene.yaml
+    expect 2 't/scene.yaml: is not the scene of the scan' export-views b -o changed
+    mv scene.yaml t/scene.yaml
     python3 - plain/fruits.json a/fruits.json <<'PY' || fail "ripeness in fruits.json"
 import json, sys
 plain, colored = (json.load(open(name)) for name in sys.argv[1:])

@@ -209,7 +209,9 @@ std::optional<ViewRecord> read_view_record(const fs::path& folder, std::size_t v
   if (bytes.substr(0, kFirstLine.size()) != kFirstLine)
     fail(path, bytes.substr(0, kFirstWords.size()) == kFirstWords ? "only version 1 of the view record is known"
                                                                   : "is not a view record");
-  const auto damaged = [&] { fail(path, "is damaged; if you remove it, the view is taken again"); };
+  const auto damaged = [&] {
+    fail(path, "is damaged; if it is removed, and run.json, too, `agrisee scan --resume` takes the view again");
+  };
   std::uint64_t sum = 0;
   if (bytes.size() < kFirstLine.size() + sizeof sum) damaged();
   std::memcpy(&sum, bytes.data() + bytes.size() - sizeof sum, sizeof sum);
