@@ -7,6 +7,7 @@
 #include <agrisee/io/recorded_views.hpp>
 #include <agrisee/io/results.hpp>
 #include <agrisee/process.hpp>
+#include <agrisee/sensor/detection_check.hpp>
 #include <agrisee/sensor/rectify.hpp>
 #include <agrisee/version.hpp>
 
@@ -155,7 +156,7 @@ Cloud points_of(const sensor::DepthFrame& frame) {
 /// Process a single depth image; the frame of the result is the camera's optical frame.
 Processed process_frame(const ProcessOptions& options, const Parameters& parameters) {
   sensor::DepthFrame frame = frame_of(options);
-  const auto doubt = sensor::doubt_of(frame.intrinsics);
+  const auto doubt = sensor::doubt_of(frame.intrinsics), masks = sensor::doubt_of_masks(frame);
   const Cloud all = points_of(frame);
   CloudOrigin origin;
   origin.viewpoint = Eigen::Vector3d::Zero();
@@ -170,7 +171,8 @@ Processed process_frame(const ProcessOptions& options, const Parameters& paramet
   } catch (const InputError& e) {
     throw FileError(options.depth + ": " + e.what());
   }
-  if (doubt) out.result.warnings.push_back(*doubt);
+  for (const auto& text : {doubt, masks})
+    if (text) out.result.warnings.push_back(*text);
   return out;
 }
 

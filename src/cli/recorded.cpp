@@ -9,6 +9,7 @@
 #include <agrisee/io/scan_record.hpp>
 #include <agrisee/io/scene.hpp>
 #include <agrisee/pipeline.hpp>
+#include <agrisee/sensor/detection_check.hpp>
 #include <agrisee/study/traced_scene.hpp>
 
 #include <algorithm>
@@ -267,9 +268,13 @@ Processed process_recording(const std::string& path, const CommonOptions& option
   pipeline_options.seed = options.seed;
   pipeline_options.threads = threads_of(options.threads);
   Pipeline pipeline(out.workcell, parameters, std::move(pipeline_options));
+  std::string doubt_of_masks;
+  std::size_t doubted = 0;
   for (std::size_t i = 0; i < source.poses.size(); ++i) {
     sensor::DepthFrame frame = source.frame(i);
     out.history.depth.push_back(io::depth_picture(frame));
+    if (const auto text = sensor::doubt_of_masks(frame); text && ++doubted == 1)
+      doubt_of_masks = "view " + std::to_string(i) + ": " + *text;
     pipeline.observe(std::move(frame), source.poses[i]);
     if (!options.quiet) show_progress(pipeline.views(), source.poses.size());
   }
@@ -279,6 +284,8 @@ Processed process_recording(const std::string& path, const CommonOptions& option
   const std::vector<std::string> notes = shortened(source.warnings);
   out.result.warnings.insert(out.result.warnings.begin(), notes.begin(), notes.end());
   if (doubt) out.result.warnings.push_back(*doubt);
+  if (doubted > 1) doubt_of_masks += " (so in " + std::to_string(doubted) + " views)";
+  if (doubted > 0) out.result.warnings.push_back(doubt_of_masks);
   return out;
 }
 

@@ -248,6 +248,12 @@ for f in fruits:
                 labels[row][column] = f["id"]
 png("masks.png", 0, labels)
 png("color.png", 2, [b"\xc8\x28\x1e" * width] * height)
+binary = [bytearray(width) for _ in range(height)]
+for u, v in (40, 40), (width - 40, 40), (40, height - 40):
+    for row in range(v - 9, v + 9):
+        binary[row][u - 9:u + 9] = b"\xff" * 18
+png("binary.png", 0, binary)
+open("normal.csv", "w").write("u,v,width,height\n0.2,0.3,0.1,0.1\n0.6,0.3,0.1,0.1\n")
 height -= 1
 png("small.png", 0, labels[1:])
 open("boxes.csv", "w").write("\n".join(boxes) + "\n")
@@ -259,6 +265,10 @@ PY
     for f in masked boxed; do
       [ "$(grep -c '"id"' $f/fruits.json)" = "$(grep -c '"id"' plain/fruits.json)" ] || fail "$f: another number of fruit"
     done
+    expect 0 '' process $image --masks binary.png -o binary --no-picture --no-report
+    grep -q '^Note: instance 255 of the masks lies in .* places far apart: does it stand for all fruit' out.txt || fail "a binary mask: $(cat out.txt)"
+    expect 2 'depth/0000.png: holds [0-9]+ instances, which are no masks: is it a depth image' process $image --masks e/depth/0000.png -o x
+    expect 2 'normal.csv: all boxes are smaller than a pixel: are they normalized' process $image --boxes normal.csv -o x
     expect 2 'small.png: is damaged|small.png: .*pixels, but the depth image' process $image --masks small.png -o x
     expect 2 'has colors or opacity' process $image --masks color.png -o x
     expect 2 'no such file' process $image --color none.png -o x

@@ -191,3 +191,32 @@ TEST_CASE("the channels of a frame that are written are read again") {
   CHECK(!again.detections[1].fruit);
   CHECK(again.detections[1].box->width == 1.5);
 }
+
+TEST_CASE("boxes that are shares of the image or corners, and masks that are a depth image, are refused") {
+  const TempFolder folder;
+  const auto add = [](const std::filesystem::path& boxes) {
+    sensor::DepthFrame frame;
+    frame.intrinsics = {64, 48, 50.0, 50.0, 31.5, 23.5};
+    frame.depth.assign(frame.intrinsics.size(), 1.0f);
+    io::add_channels(frame, {{}, {}, boxes});
+  };
+  const std::string head = "u,v,width,height\n";
+  CHECK_NOTHROW(add(folder.file("a.csv", head + "10,10,8,8\n30,10,8,8\n58,40,12,12\n")));
+  CHECK_NOTHROW(add(folder.file("b.csv", head + "0,0,64,48\n")));
+  CHECK_NOTHROW(add(folder.file("c.csv", head + "0.2,0.2,0.5,0.5\n10,10,8,8\n")));
+  CHECK_NOTHROW(add(folder.file("d.csv", head)));
+  require_file_error(folder.file("e.csv", head + "0.2,0.2,0.1,0.1\n0.7,0.3,0.2,0.2\n"), "normalized", add);
+  require_file_error(folder.file("f.csv", head + "2,2,10,10\n40,10,50,18\n"),
+                     "ends outside of the image: are the numbers corners", add);
+  require_file_error(folder.file("g.csv", head + "2,2,8,8\n10,2,16,8\n2,10,8,16\n10,10,16,16\n"), "corners", add);
+  sensor::DepthFrame frame;
+  frame.intrinsics = {64, 48, 50.0, 50.0, 31.5, 23.5};
+  frame.depth.assign(frame.intrinsics.size(), 1.0f);
+  std::string rows;
+  for (int v = 0; v < 48; ++v) {
+    rows += '\0';
+    for (int u = 0; u < 64; ++u) rows += static_cast<char>(100 + u);
+  }
+  const auto depth = folder.file("depth.png", io::png_file(64, 48, 8, io::PngKind::gray, rows));
+  CHECK_THROWS_WITH(io::add_channels(frame, {{}, depth, {}}), Catch::Contains("depth.png: holds 64 instances"));
+}

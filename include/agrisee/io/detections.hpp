@@ -31,7 +31,8 @@ std::vector<sensor::Detection> read_detections(const std::filesystem::path& path
 
 /// Add the channels of some files to a depth frame. A box is used if its instance has no mask; otherwise both are the
 /// same detection. Boxes that name no instance belong to none of the masks.
-/// @throws FileError as the readers, and for an image of another size than the depth image
+/// @throws FileError as the readers, for an image of another size than the depth image, for masks that are none
+/// (sensor::check_masks), and for boxes that are shares of the image or corners
 void add_channels(sensor::DepthFrame& frame, const ChannelFiles& files);
 
 /// Write the channels of a depth frame so that add_channels reads the same: colors, masks, and detections in a file of

@@ -3,6 +3,7 @@
 #include <agrisee/io/detections.hpp>
 #include <agrisee/io/files.hpp>
 #include <agrisee/io/png.hpp>
+#include <agrisee/sensor/detection_check.hpp>
 
 #include <algorithm>
 #include <functional>
@@ -141,6 +142,24 @@ void check_size(const fs::path& path, int width, int height, const sensor::Intri
                  "; channels have to be registered to the depth image");
 }
 
+/// @throws FileError if all boxes are shares of the image, or corners
+void check_boxes(const fs::path& path, const std::vector<sensor::Detection>& boxes, const sensor::Intrinsics& k) {
+  constexpr std::size_t kMany = 4;  // so many cannot all reach from their left to the left of the image, and upwards
+  if (boxes.empty()) return;
+  bool shares = true, corners = true, beyond = false;
+  for (const sensor::Detection& d : boxes) {
+    const sensor::PixelBox& b = *d.box;
+    shares = shares && b.width < 1.0 && b.height < 1.0;
+    corners = corners && b.u >= 0.0 && b.v >= 0.0 && b.width > b.u && b.height > b.v;
+    beyond = beyond || b.u + b.width > k.width + 1.0 || b.v + b.height > k.height + 1.0;
+  }
+  if (shares)
+    fail(path, "all boxes are smaller than a pixel: are they normalized, as shares of the image? Pixels are expected");
+  if (corners && (beyond || boxes.size() >= kMany))
+    fail(path, std::string(beyond ? "a box ends outside of the image" : "all boxes reach across each other") +
+                   ": are the numbers corners (left, upper, right, lower)? u, v, width, height are expected");
+}
+
 /// The file with classes and scores beside a label image; empty if there is none.
 fs::path table_beside(const fs::path& masks) {
   for (const char* extension : {".json", ".csv"}) {
@@ -190,6 +209,11 @@ void add_channels(sensor::DepthFrame& frame, const ChannelFiles& files) {
     check_size(files.masks, image.width, image.height, k);
     frame.instances = std::move(image.labels);
     frame.detected = true;
+    try {
+      sensor::check_masks(frame);
+    } catch (const InputError& e) {
+      fail(files.masks, e.what());
+    }
     if (const fs::path table = table_beside(files.masks); !table.empty()) add_detections(frame, read_detections(table));
   }
   if (!files.boxes.empty()) {
@@ -201,6 +225,7 @@ void add_channels(sensor::DepthFrame& frame, const ChannelFiles& files) {
     std::vector<sensor::Detection> boxes = read_detections(files.boxes, last + 1);
     for (const sensor::Detection& d : boxes)
       if (!d.box) fail(files.boxes, "detection " + std::to_string(d.instance) + " has no box (u, v, width, height)");
+    check_boxes(files.boxes, boxes, k);
     add_detections(frame, std::move(boxes));
   }
 }
