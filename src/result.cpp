@@ -31,7 +31,9 @@ std::string nothing_seen(const std::vector<View>& views) {
            ": the views show no return at all; if points were given, are they in the optical frame, with z forward?";
   const double depth = median(depths), distance = median(distances);
   constexpr double kFarthest = 20.0, kFactor = 8.0;  // m; depths of a wrong unit are off by a factor of ten or more
-  std::string cause = "is the camera turned to it? Poses have to be world_T_optical, with z forward and y down";
+  std::string cause =
+      "is the camera turned to it? Poses have to be world_T_optical, with z forward and y down, "
+      "quaternions in the order x y z w";
   if (distance > kFarthest)
     cause = "are the poses in millimetres? They have to be in metres";
   else if (depth > kFactor * distance || kFactor * depth < distance)

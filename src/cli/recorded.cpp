@@ -14,8 +14,10 @@
 #include <functional>
 #include <iostream>
 #include <memory>
+#include <utility>
 
 #include "inputs.hpp"
+#include "summary.hpp"
 
 namespace agrisee::cli {
 namespace {
@@ -37,6 +39,7 @@ class NoPlanner final : public plan::Planner {
 struct Survey {
   Aabb seen;                              ///< all points of the views that were looked at
   std::vector<fuse::ViewSample> samples;  ///< some of their points
+  std::size_t changed = 0;                ///< views that show something else than the first
 };
 
 /// Views from any kind of recording.
@@ -64,18 +67,36 @@ ViewSource source_of_mcap(const std::string& path, const io::McapChoice& choice)
   return out;
 }
 
+/// Whether two frames of a camera show different things: not only noise. At least 30 % of what one of them shows, the
+/// other does not show, or 3 % nearer or farther.
+bool differ(const sensor::DepthFrame& a, const sensor::DepthFrame& b) {
+  constexpr std::size_t kSamples = 2000;
+  constexpr double kOff = 0.03, kShare = 0.3;
+  std::size_t shown = 0, off = 0;
+  for (std::size_t i = 0; i < a.depth.size(); i += a.depth.size() / kSamples + 1) {
+    const double za = double(a.depth[i]), zb = double(b.depth[i]);
+    const bool in_a = sensor::DepthFrame::valid(a.depth[i]), in_b = sensor::DepthFrame::valid(b.depth[i]);
+    shown += in_a || in_b;
+    off += in_a != in_b || (in_a && std::abs(za - zb) > kOff * za);
+  }
+  return static_cast<double>(off) > kShare * static_cast<double>(shown);
+}
+
 /// Look at all views; where the scan volume is known, at some are enough.
 Survey survey(const ViewSource& source) {
   constexpr std::size_t kEnough = 16;
   const std::size_t step = source.workcell.scan_volume.empty() ? 1 : source.poses.size() / kEnough + 1;
   Survey out;
+  sensor::DepthFrame first;
   for (std::size_t i = 0; i < source.poses.size(); i += step) {
-    const sensor::DepthFrame frame = source.frame(i);
+    sensor::DepthFrame frame = source.frame(i);
+    if (!first.depth.empty()) out.changed += frame.depth.size() == first.depth.size() && differ(first, frame);
     out.samples.push_back(fuse::sample_of(frame, source.poses[i]));
     const Aabb seen = io::extent_of(frame, source.poses[i]);
     if (seen.empty()) continue;
     out.seen.extend(seen.min);
     out.seen.extend(seen.max);
+    if (first.depth.empty()) first = std::move(frame);
   }
   return out;
 }
@@ -88,12 +109,38 @@ Aabb all_that_is_seen(const std::string& path, Aabb seen) {
   return seen;
 }
 
+constexpr const char* kRuleOfPoses =
+    "Poses have to be world_T_optical: z forward, x right, y down; quaternions are x y z w";
+
+/// @throws FileError if the poses are all alike, but not the images
+void check_poses_differ(const std::string& path, const ViewSource& source, const Survey& first) {
+  const auto same = [&](const Pose& pose) { return pose.matrix() == source.poses.front().matrix(); };
+  if (2 * first.changed >= first.samples.size() && std::all_of(source.poses.begin(), source.poses.end(), same))
+    throw FileError(path + ": all " + std::to_string(source.poses.size()) +
+                    " views have the same pose, but different images. Each view needs the pose that the camera had "
+                    "when its image was taken");
+}
+
+/// A warning if a third or more of the views that have points show none in the scan volume, but not all.
+std::optional<std::string> doubt_of_aim(const std::vector<View>& views) {
+  std::size_t with_points = 0;
+  std::vector<std::size_t> beside;
+  for (std::size_t i = 0; i < views.size(); ++i) {
+    if (!(views[i].median_depth > 0.0)) continue;
+    ++with_points;
+    if (views[i].points_in == 0) beside.push_back(i);
+  }
+  if (beside.empty() || 3 * beside.size() < with_points || beside.size() == with_points) return std::nullopt;
+  return std::to_string(beside.size()) + " of " + std::to_string(views.size()) +
+         " views show nothing of the scan volume (" + comma_list(beside) + "): are their poses right? " + kRuleOfPoses;
+}
+
 /// Test the poses. @return a warning if the views hardly agree
 /// @throws FileError if the poses are not world_T_optical
 std::optional<std::string> doubt_of_poses(const std::string& path, const Survey& first, const Aabb& volume) {
   constexpr double kHardly = 0.1;
   const fuse::PoseCheck check = fuse::check_poses(first.samples, volume);
-  const std::string rule = "Poses have to be world_T_optical: z forward, x right, y down";
+  const std::string rule = kRuleOfPoses;
   if (!check.mistake.empty())
     throw FileError(path + ": it seems that the poses " + check.mistake +
                     (check.mended > 0.0
@@ -139,6 +186,7 @@ Processed process_recording(const std::string& path, const CommonOptions& option
   Processed out;
   out.workcell = source.workcell;
   const Survey first = survey(source);
+  check_poses_differ(path, source, first);
   const std::optional<std::string> doubt = doubt_of_poses(path, first, source.workcell.scan_volume);
   if (out.workcell.scan_volume.empty()) out.workcell.scan_volume = all_that_is_seen(path, first.seen);
   PipelineOptions pipeline_options;
@@ -162,7 +210,8 @@ Processed process_recording(const std::string& path, const CommonOptions& option
   check_contradictions(path, out.result.views);
   const std::vector<std::string> notes = shortened(source.warnings);
   out.result.warnings.insert(out.result.warnings.begin(), notes.begin(), notes.end());
-  if (doubt) out.result.warnings.push_back(*doubt);
+  for (const auto& text : {doubt, doubt_of_aim(out.result.views)})
+    if (text) out.result.warnings.push_back(*text);
   if (doubted > 1) doubt_of_masks += " (so in " + std::to_string(doubted) + " views)";
   if (doubted > 0) out.result.warnings.push_back(doubt_of_masks);
   return out;

@@ -23,13 +23,22 @@ Pose turned(const Pose& pose, const Eigen::Matrix3d& axes) {
   return out;
 }
 
+/// A pose whose quaternion was stated as w x y z and read as x y z w.
+Pose with_w_first(const Pose& pose) {
+  const Eigen::Quaterniond read(pose.linear());
+  Pose out = pose;
+  out.linear() = Eigen::Quaterniond(read.x(), read.y(), read.z(), read.w()).toRotationMatrix();
+  return out;
+}
+
 const std::vector<Mistake>& mistakes() {
   static const Eigen::Matrix3d body = (Eigen::Matrix3d() << 0, 0, 1, -1, 0, 0, 0, -1, 0).finished();
   static const Eigen::Matrix3d graphics = Eigen::Vector3d(1, -1, -1).asDiagonal();
   static const std::vector<Mistake> all{
       {"are inverted (optical_T_world)", [](const Pose& pose) { return pose.inverse(Eigen::Isometry); }},
       {"are those of a frame with x forward and z up", [](const Pose& pose) { return turned(pose, body); }},
-      {"are those of a frame with z backward and y up", [](const Pose& pose) { return turned(pose, graphics); }}};
+      {"are those of a frame with z backward and y up", [](const Pose& pose) { return turned(pose, graphics); }},
+      {"have quaternions in the order w x y z", with_w_first}};
   return all;
 }
 

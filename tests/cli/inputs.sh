@@ -70,12 +70,31 @@ restated("body", lambda m: times(m, [[0, -1, 0, 0], [0, 0, -1, 0], [1, 0, 0, 0],
 poses = re.findall(r"pose: \[\[.*\]\]", text)
 shifted = iter(poses[1:] + poses[:1])
 open("exact/shifted.yaml", "w").write(re.sub(r"pose: \[\[.*\]\]", lambda m: next(shifted), text))
+restated("same", lambda m, first=json.loads(re.search(r"pose: (\[\[.*\]\])", text).group(1)): first)
+def w_first(m):  # as x y z w, from a file that states w x y z
+    q = [1 + m[0][0] + m[1][1] + m[2][2], m[2][1] - m[1][2], m[0][2] - m[2][0], m[1][0] - m[0][1]]
+    n = sum(c * c for c in q) ** 0.5
+    return f"{{xyz: {[row[3] for row in m[:3]]}, quaternion: {[c / n for c in q]}}}"
+pose = lambda m: "pose: " + w_first(json.loads(m.group(1)))
+open("exact/w_first.yaml", "w").write(re.sub(r"pose: (\[\[.*\]\])", pose, text))
+lines = text.splitlines(True)
+away = [i for i, line in enumerate(lines) if "pose: " in line][:3]
+for i in away:  # three of six views look elsewhere
+    m = json.loads(lines[i].split("pose: ")[1])
+    lines[i] = "    pose: " + json.dumps(m[:1] + [m[1][:3] + [m[1][3] - 2.0]] + m[2:]) + "\n"
+open("exact/away.yaml", "w").write("".join(lines))
 restated("mm", lambda m: [row[:3] + [1000 * row[3]] for row in m[:3]] + m[3:])
 PY
     expect 2 'shifted.yaml: [0-9]+ of [0-9]+ views contradict the others' process exact/shifted.yaml -o d
     expect 2 'inverted.yaml: it seems that the poses are inverted \(optical_T_world\)\..*world_T_optical' process exact/inverted.yaml -o d
     expect 2 'body.yaml: it seems that the poses are those of a frame with x forward' process exact/body.yaml -o d
+    expect 2 'same.yaml: all 6 views have the same pose, but different images' process exact/same.yaml -o d
+    expect 2 'w_first.yaml: it seems that the poses have quaternions in the order w x y z' process exact/w_first.yaml -o d
     [ ! -e d ] || fail "refused poses wrote something"
+    expect 0 '' process exact/away.yaml -o away --no-picture --no-report
+    grep -qE '^Note: 3 of 6 views show nothing of the scan volume \(0,1,2\): are their poses right\? .*quaternions are x y z w' out.txt || fail "views that look elsewhere: $(cat out.txt)"
+    sed '/0001.npy/,$d' exact/views.yaml >exact/still.yaml && sed -n '/^  - depth/,$p' exact/still.yaml >view.txt && cat view.txt >>exact/still.yaml
+    expect 0 '' process exact/still.yaml -o still --no-picture --no-report
     expect 0 '' process exact/mm.yaml -o mm --no-picture --no-report
     grep -qE '^No fruit: no view saw a point inside the scan volume: the median depth is 0\.[0-9]+ m, and the sensor stood [0-9]+ m .*are the poses in millimetres' out.txt ||
       fail "poses in millimetres: $(cat out.txt)"

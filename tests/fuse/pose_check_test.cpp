@@ -31,6 +31,13 @@ Pose inverted(const Pose& pose) { return pose.inverse(Eigen::Isometry); }
 Pose of_body(const Pose& pose) { return rotated(pose, (Eigen::Matrix3d() << 0, -1, 0, 0, 0, -1, 1, 0, 0).finished()); }
 /// Of the frame with z backward and y up.
 Pose of_graphics(const Pose& pose) { return rotated(pose, Eigen::Vector3d(1, -1, -1).asDiagonal()); }
+/// From a quaternion w x y z that is read as x y z w.
+Pose of_w_first(const Pose& pose) {
+  const Eigen::Quaterniond q(pose.linear());
+  Pose out = pose;
+  out.linear() = Eigen::Quaterniond(q.z(), q.w(), q.x(), q.y()).toRotationMatrix();
+  return out;
+}
 
 }  // namespace
 
@@ -56,6 +63,20 @@ TEST_CASE("poses that are inverted, or of other axes, are recognized") {
     CHECK(mistake(inverted, volume) == "are inverted (optical_T_world)");
     CHECK(mistake(of_body, volume) == "are those of a frame with x forward and z up");
     CHECK(mistake(of_graphics, volume) == "are those of a frame with z backward and y up");
+  }
+}
+
+TEST_CASE("quaternions whose w was taken for x are recognized from views of several sides") {
+  std::vector<ViewSample> right_views, read_wrongly;
+  for (const Vector3d& position :
+       std::vector<Vector3d>{{0.25, 0.3, 0.2}, {-0.25, 0.3, 0.2}, {0, 0.25, 0.4}, {0, 0.25, 0}}) {
+    const Pose pose = look_along(position, Vector3d(0.01, 0.55, 0.2) - position);
+    right_views.push_back(sample_of(frame_from(pose), pose));
+    read_wrongly.push_back(sample_of(frame_from(pose), of_w_first(pose)));
+  }
+  for (const Aabb& volume : {kNowhere, kVolume}) {
+    CHECK(check_poses(right_views, volume).mistake.empty());
+    CHECK(check_poses(read_wrongly, volume).mistake == "have quaternions in the order w x y z");
   }
 }
 

@@ -37,7 +37,8 @@ struct PoseCheck {
   std::string mistake;       ///< the mistake in words, if that change is so much better that it must be right
 };
 
-/// Test whether poses are inverted, or belong to a frame with other axes than the optical one (x forward, or y up).
+/// Test whether poses are inverted, belong to a frame with other axes than the optical one (x forward, or y up), or
+/// come from quaternions whose w was taken for x.
 ///
 /// A change is accepted as the correction if at least 40 % of the points agree with it, and twice as many as without
 /// it. A single view, which has no other to agree with, is assumed to see the scan volume.
