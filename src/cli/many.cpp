@@ -136,6 +136,24 @@ bool do_job(const Job& job, const fs::path& folder, const ListedCommand& command
   return worked;
 }
 
+/// Results of a list are in folders of their own, beside its summary; that of a single input is in the output folder.
+/// @throws UsageError if a folder holds one of both, and is to hold the other
+void check_list_folder(const fs::path& output, bool list) {
+  constexpr const char* kQuotes = " (a pattern is a list also where it matches one file, if it is in quotes)";
+  std::error_code error;
+  if (list) {
+    for (const char* name : {"run.json", "scan.json"})
+      if (io::load_json_or_null(output / name).contains("format_version"))
+        throw UsageError(output.string() + ": is a result itself (" + name +
+                         "), so it cannot hold those of a list; name another folder" + kQuotes);
+    return;
+  }
+  for (fs::directory_iterator i(output, error), end; !error && i != end; i.increment(error))
+    if (is_summary(i->path()))
+      throw UsageError(output.string() + ": holds the results of a list (" + i->path().filename().string() +
+                       "), so it cannot be a result itself; name another folder" + kQuotes);
+}
+
 }  // namespace
 
 Shard parse_shard(const std::string& text) {
@@ -215,7 +233,9 @@ bool is_list(const std::vector<std::string>& inputs, const std::string& shard) {
 
 int run_inputs(const std::vector<std::string>& inputs, const std::string& shard, const std::string& output,
                const ListedCommand& command) {
-  if (!is_list(inputs, shard)) return command.run(inputs.empty() ? std::string() : inputs[0], output, Begin::as_asked);
+  const bool list = is_list(inputs, shard);
+  if (!inputs.empty()) check_list_folder(output, list);
+  if (!list) return command.run(inputs.empty() ? std::string() : inputs[0], output, Begin::as_asked);
   return run_jobs(jobs_of(inputs, output), parse_shard(shard), output, command);
 }
 

@@ -66,7 +66,7 @@ int run_merge(const MergeOptions& options) {
   int code = kSuccess;
   for (const std::string& folder : options.folders)
     code = std::max(code, join_summaries(folder, options.season.database.empty()));
-  if (!options.season.database.empty()) add_to_season(options.folders, options.season);
+  if (!options.season.database.empty()) code = std::max(code, add_to_season(options.folders, options.season));
   return code;
 }
 

@@ -4,6 +4,7 @@
 
 #include <agrisee/io/files.hpp>
 
+#include <algorithm>
 #include <filesystem>
 #include <iostream>
 #include <map>
@@ -28,31 +29,51 @@ struct PageOptions {
 
 #ifdef AGRISEE_HAS_SQLITE
 
-/// A regular expression of the command line. @throws UsageError if it is none
+/// A regular expression of the command line. @throws UsageError if it is none, or has no group
 std::regex pattern_of(const char* option, const std::string& text) {
   try {
-    return std::regex(text, std::regex::icase);
+    std::regex pattern(text, std::regex::icase);
+    if (pattern.mark_count() == 0)
+      throw UsageError(std::string(option) + ": '" + text + "' has no group: put what is to be stored in parentheses");
+    return pattern;
   } catch (const std::regex_error& e) {
     throw UsageError(std::string(option) + ": '" + text + "' is not a regular expression: " + e.what());
   }
 }
 
-/// All scans of an output folder: its results, and the inputs of its list that have none. A result whose input the list
-/// puts into another folder is left over from an older list, and is left out.
-void collect_scans(const fs::path& folder, std::vector<season::Scan>& scans, std::vector<fs::path>& left_out) {
+/// What the folders of a season hold.
+struct Found {
+  std::vector<season::Scan> scans;
+  std::vector<fs::path> left_out;   ///< results of inputs whose list has put them into another folder
+  std::vector<std::string> unread;  ///< why results cannot be read
+};
+
+/// Add all scans of an output folder: its results, and the inputs of its list that have none. A result whose input the
+/// list puts into another folder is left over from an older list, and is left out.
+/// @throws FileError if there is none
+void collect_scans(const fs::path& folder, Found& found) {
   std::error_code error;
   std::vector<SummaryRow> list;
   if (fs::exists(folder / "summary.csv", error)) list = read_summary(folder / "summary.csv");
   std::map<std::string, std::string> folder_of;
   for (const SummaryRow& row : list) folder_of[row.input] = row.folder;
-  for (const fs::path& result : season::result_folders(folder)) {
-    const season::Scan scan = season::open_result(result);
-    const auto listed = folder_of.find(scan.input);
-    if (listed == folder_of.end() || (folder / listed->second).lexically_normal() == result.lexically_normal()) {
-      scans.push_back(scan);
+  const std::vector<fs::path> results = season::result_folders(folder);
+  if (results.empty() && list.empty())
+    throw FileError(folder.string() + ": holds no result of agrisee (run.json), nor does a folder in it");
+  for (const fs::path& result : results) {
+    season::Scan scan;
+    try {
+      scan = season::open_result(result);
+    } catch (const FileError& e) {
+      found.unread.emplace_back(e.what());
       continue;
     }
-    left_out.push_back(result);
+    const auto listed = folder_of.find(scan.input);
+    if (listed == folder_of.end() || (folder / listed->second).lexically_normal() == result.lexically_normal()) {
+      found.scans.push_back(scan);
+      continue;
+    }
+    found.left_out.push_back(result);
     std::cerr << result.string() << ": left out; " << scan.input << " is now in " << listed->second << "\n";
   }
   for (const SummaryRow& row : list) {
@@ -63,7 +84,7 @@ void collect_scans(const fs::path& folder, std::vector<season::Scan>& scans, std
     scan.message = row.message;
     scan.input = row.input;
     scan.content = row.status + ": " + row.message;
-    scans.push_back(scan);
+    found.scans.push_back(scan);
   }
 }
 
@@ -97,14 +118,15 @@ void add_season_options(CLI::App& command, SeasonOptions& options) {
                                       "SQLite file for all results in the folders: scans, fruit, views; results that "
                                       "it already holds are skipped");
   command
-      .add_option(
-          "--row", options.row,
-          "regular expression that finds the row of plants in the path of an input (default: row_07 and the like)")
+      .add_option("--row", options.row,
+                  "regular expression whose group finds the row of plants in the path of an input (default: row_07 and "
+                  "the like)")
       ->needs(database);
   command
-      .add_option("--date", options.date,
-                  "regular expression that finds the date in the path of an input (default: 2026-06-03 or 20260603, or "
-                  "else the day of processing)")
+      .add_option(
+          "--date", options.date,
+          "regular expression whose group finds the date in the path of an input (default: 2026-06-03 or 20260603, or "
+          "else the day of processing)")
       ->needs(database);
   command.add_option("--threads", options.threads, "number of threads that read results (0: one per core)")
       ->check(CLI::Range(0, 1024))
@@ -113,22 +135,35 @@ void add_season_options(CLI::App& command, SeasonOptions& options) {
 
 #ifdef AGRISEE_HAS_SQLITE
 
-void add_to_season(const std::vector<std::string>& folders, const SeasonOptions& options) {
+int add_to_season(const std::vector<std::string>& folders, const SeasonOptions& options) {
   season::PlaceRules rules;
   if (!options.row.empty()) rules.row = pattern_of("--row", options.row);
   if (!options.date.empty()) rules.date = pattern_of("--date", options.date);
-  std::vector<season::Scan> scans;
-  std::vector<fs::path> left_out;
-  for (const std::string& folder : folders) collect_scans(folder, scans, left_out);
-  const season::Added added = season::add_scans(options.database, scans, left_out, rules, threads_of(options.threads));
+  Found found;
+  for (const std::string& folder : folders) collect_scans(folder, found);
+  season::Added added =
+      season::add_scans(options.database, found.scans, found.left_out, rules, threads_of(options.threads));
   std::cout << added.added << " scans added, " << added.changed << " replaced, " << added.unchanged << " were there"
             << (added.removed > 0 ? ", " + std::to_string(added.removed) + " removed" : "") << ": " << options.database
             << "\n";
+  const auto tell_unmatched = [&](const char* option, const std::string& pattern, std::string season::Place::*part) {
+    const auto has_it = [&](const season::Scan& scan) {
+      return !(rules.of(scan.input.empty() ? scan.folder.string() : scan.input).*part).empty();
+    };
+    if (!pattern.empty() && !found.scans.empty() && std::none_of(found.scans.begin(), found.scans.end(), has_it))
+      std::cerr << "agrisee: " << option << ": '" << pattern << "' is in the path of no input, such as '"
+                << found.scans.front().input << "'\n";
+  };
+  tell_unmatched("--row", options.row, &season::Place::row);
+  tell_unmatched("--date", options.date, &season::Place::date);
+  found.unread.insert(found.unread.end(), added.unread.begin(), added.unread.end());
+  for (const std::string& fault : found.unread) std::cerr << "agrisee: left out: " << fault << "\n";
+  return found.unread.empty() ? kSuccess : kBadInput;
 }
 
 #else
 
-void add_to_season(const std::vector<std::string>&, const SeasonOptions&) { throw UsageError(kNoSqlite); }
+int add_to_season(const std::vector<std::string>&, const SeasonOptions&) { throw UsageError(kNoSqlite); }
 
 #endif
 

@@ -19,7 +19,8 @@ struct SeasonOptions {
 void add_season_options(CLI::App& command, SeasonOptions& options);
 
 /// Put all results in some folders, at any depth, into the database, and print how many are new.
-/// @throws UsageError without SQLite, or for a regular expression that is none; FileError
-void add_to_season(const std::vector<std::string>& folders, const SeasonOptions& options);
+/// @return kBadInput if results cannot be read, which are told of
+/// @throws UsageError without SQLite, or for a regular expression that is none; FileError for a folder without results
+int add_to_season(const std::vector<std::string>& folders, const SeasonOptions& options);
 
 }  // namespace agrisee::cli

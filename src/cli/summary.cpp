@@ -5,7 +5,9 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <fstream>
 #include <map>
+#include <optional>
 #include <set>
 
 #include "io/formats/csv.hpp"
@@ -14,6 +16,14 @@ namespace agrisee::cli {
 namespace {
 
 constexpr const char* kSummaryHeader = "input,folder,status,fruits,views,stop_reason,seconds,message";
+
+/// The shard that the name of a summary states; none for another name.
+std::optional<Shard> shard_of(const std::string& name) {
+  Shard shard;
+  char end = 0;
+  const int read = std::sscanf(name.c_str(), "summary-%zu-of-%zu.cs%c", &shard.index, &shard.count, &end);
+  return read == 3 && end == 'v' ? std::optional(shard) : std::nullopt;
+}
 
 /// Whether all inputs of a shard are done.
 bool is_done(const std::vector<SummaryRow>& rows) {
@@ -25,6 +35,14 @@ bool is_done(const std::vector<SummaryRow>& rows) {
 std::string summary_name(const Shard& shard) {
   if (shard.count == 1) return "summary.csv";
   return "summary-" + std::to_string(shard.index) + "-of-" + std::to_string(shard.count) + ".csv";
+}
+
+bool is_summary(const std::filesystem::path& path) {
+  const std::string name = path.filename().string();
+  if (name != "summary.csv" && !shard_of(name)) return false;
+  std::string first;
+  std::ifstream file(path);
+  return std::getline(file, first) && first == kSummaryHeader;
 }
 
 void write_summary(const std::filesystem::path& path, const std::vector<SummaryRow>& rows) {
@@ -72,17 +90,28 @@ std::vector<std::size_t> ShardSummaries::unfinished() const {
 }
 
 ShardSummaries read_shards(const std::filesystem::path& folder) {
-  std::map<std::size_t, std::set<std::size_t>> found;  // for each N, the I that exist
-  std::error_code error;
+  std::map<std::size_t, std::set<std::size_t>> found;              // for each N, the I that exist
+  std::map<std::size_t, std::filesystem::file_time_type> written;  // for each N, last
+  std::error_code error, ignored;
   for (const auto& entry : std::filesystem::directory_iterator(folder, error)) {
-    std::size_t index = 0, count = 0;
-    char end = 0;
-    if (std::sscanf(entry.path().filename().string().c_str(), "summary-%zu-of-%zu.cs%c", &index, &count, &end) == 3 &&
-        end == 'v')
-      found[count].insert(index);
+    const auto shard = shard_of(entry.path().filename().string());
+    if (!shard) continue;
+    found[shard->count].insert(shard->index);
+    const auto time = std::filesystem::last_write_time(entry.path(), ignored);
+    const auto known = written.emplace(shard->count, time).first;
+    known->second = std::max(known->second, time);
   }
   if (error) io::fail(folder, error.message());
-  if (found.size() > 1) io::fail(folder, "holds summaries of different numbers of shards");
+  if (found.size() > 1) {
+    const auto newest = std::max_element(written.begin(), written.end(),
+                                         [](const auto& a, const auto& b) { return a.second < b.second; });
+    std::string stale;
+    for (const auto& [count, indices] : found)
+      if (count != newest->first)
+        stale += (stale.empty() ? "summary-*-of-" : ", summary-*-of-") + std::to_string(count) + ".csv";
+    io::fail(folder, "holds summaries of different numbers of shards. The last that were written are of " +
+                         std::to_string(newest->first) + "; if these are to stay, delete " + stale);
+  }
   ShardSummaries out;
   if (found.empty()) return out;
   if (found.begin()->first > kMostShards)

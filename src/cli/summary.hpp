@@ -24,6 +24,9 @@ struct SummaryRow {
 /// "summary.csv", or that of a shard: "summary-2-of-8.csv".
 std::string summary_name(const Shard& shard);
 
+/// Whether a file is a summary, or that of a shard, by its name and first line.
+bool is_summary(const std::filesystem::path& path);
+
 /// Write a summary. @throws FileError when it cannot be written
 void write_summary(const std::filesystem::path& path, const std::vector<SummaryRow>& rows);
 

@@ -185,32 +185,44 @@ Added add_scans(const std::string& database, const std::vector<Scan>& scans, con
     print.add(scan.content + "\n" + place.row + "\n" + place.date);
     entries.push_back({&scan, folder, place, print.text()});
   }
-  std::set<std::string> listed;    // folders, which may be named twice
-  std::vector<const Entry*> open;  // scans that are new or changed
+  std::set<std::string> listed;                          // folders, which may be named twice
+  std::vector<std::pair<const Entry*, long long>> open;  // scans that are new or changed, with their id, 0 of new ones
   for (const Entry& e : entries) {
     if (!listed.insert(e.folder).second) continue;
     const auto [id, content] = writer.find(e.folder);
-    if (id > 0 && content == e.content) {
+    if (id > 0 && content == e.content)
       ++out.unchanged;
-      continue;
-    }
-    if (id > 0) writer.forget(id);
-    ++(id > 0 ? out.changed : out.added);
-    open.push_back(&e);
+    else
+      open.emplace_back(&e, id);
   }
   for (const fs::path& folder : left_out)
     if (const long long id = writer.find(name_of_folder(folder)).first; id > 0) writer.forget(id), ++out.removed;
   constexpr std::size_t kBatch = 1024;  // so many results are in memory at a time
   for (std::size_t from = 0; from < open.size(); from += kBatch) {
     std::vector<std::optional<ResultFiles>> files(std::min(kBatch, open.size() - from));
+    std::vector<std::string> faults(files.size());
     parallel_for(
         files.size(), threads,
         [&](std::size_t k) {
-          const Scan& scan = *open[from + k]->scan;
-          if (scan.status == "ok") files[k] = read_result(scan.folder);
+          const Scan& scan = *open[from + k].first->scan;
+          if (scan.status != "ok") return;
+          try {
+            files[k] = read_result(scan.folder);
+          } catch (const FileError& e) {
+            faults[k] = e.what();
+          }
         },
         4);
-    for (std::size_t k = 0; k < files.size(); ++k) writer.add(*open[from + k], files[k] ? &*files[k] : nullptr);
+    for (std::size_t k = 0; k < files.size(); ++k) {
+      if (!faults[k].empty()) {
+        out.unread.push_back(faults[k]);
+        continue;
+      }
+      const auto [entry, id] = open[from + k];
+      if (id > 0) writer.forget(id);
+      ++(id > 0 ? out.changed : out.added);
+      writer.add(*entry, files[k] ? &*files[k] : nullptr);
+    }
   }
   connection.run("COMMIT");
   return out;

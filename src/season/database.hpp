@@ -13,10 +13,11 @@ namespace agrisee::season {
 
 /// What add_scans did.
 struct Added {
-  std::size_t added = 0;      ///< scans that were not there
-  std::size_t changed = 0;    ///< scans whose result is another than before
-  std::size_t unchanged = 0;  ///< scans that were there already
-  std::size_t removed = 0;    ///< scans that were there and are left out
+  std::size_t added = 0;                 ///< scans that were not there
+  std::size_t changed = 0;               ///< scans whose result is another than before
+  std::size_t unchanged = 0;             ///< scans that were there already
+  std::size_t removed = 0;               ///< scans that were there and are left out
+  std::vector<std::string> unread = {};  ///< why results could not be read; what was there of them stays
 };
 
 /// Put scans into a database, which is created if it is missing. A scan is known by its folder, relative to that of the
@@ -24,7 +25,7 @@ struct Added {
 /// happens in one transaction: if it fails, or the process is killed, the database stays as it was.
 /// @param left_out folders of scans that are removed if they are there
 /// @param threads number of threads that read files; the database does not depend on it
-/// @throws FileError for a result that cannot be read, or a file that is no such database
+/// @throws FileError for a file that is no such database
 Added add_scans(const std::string& database, const std::vector<Scan>& scans,
                 const std::vector<std::filesystem::path>& left_out, const PlaceRules& rules, int threads);
 

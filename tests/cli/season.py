@@ -154,6 +154,16 @@ def interrupted():
     with open("three/summary-1-of-3.csv", "w", encoding="utf-8") as file:
         file.write(stopped)
     assert "Run shards 1 again" in run("merge", "three", code=2)
+    # Those of another number of shards are named.
+    run(*shard, "2/2")
+    assert "written are of 2; if these are to stay, delete summary-*-of-3.csv" in run("merge", "three", code=2)
+    # A result is no list, and a list no result.
+    assert "holds the results of a list" in run("scan", "in/t1/scene.yaml", "-o", "three", "--force", code=1)
+    os.makedirs("single")
+    with open("single/summary.csv", "w", encoding="utf-8") as file:
+        file.write("of another program\n")
+    run("scan", "in/t1/scene.yaml", "-o", "single", "--max-views", "1", *FEW_FILES)
+    assert "single: is a result itself (run.json)" in run(*scan, "single", code=1)
 
 
 @case
@@ -207,6 +217,18 @@ def database():
     assert "1 scans added" in run("merge", "out/old", "--db", "s.sqlite")
     assert "out/old: left out" in run("merge", "out", "--db", "s.sqlite") and ask("SELECT count(*) FROM scans") == [(4,)]
     shutil.rmtree("out/old")
+    # A result that cannot be read does not stop the others, and what was there of it stays.
+    shutil.copytree("out", "broken")
+    for folder in os.listdir("broken"):
+        if os.path.isdir("broken/" + folder) and folder.endswith("row_10_p1"):
+            os.truncate(f"broken/{folder}/fruits.json", 40)
+    told = run("merge", "broken", "--db", "b.sqlite", code=2)
+    assert "3 scans added" in told and "left out: broken/" in told and "fruits.json" in told, told
+    shutil.rmtree("broken")
+    os.makedirs("nothing")
+    assert "nothing: holds no result" in run("merge", "nothing", "--db", "n.sqlite", code=2) and not os.path.exists("n.sqlite")
+    assert "has no group" in run("merge", "out", "--db", "b.sqlite", "--row", "p[0-9]", code=1)
+    assert "'block([0-9])' is in the path of no input, such as 'in/" in run("merge", "out", "--db", "b.sqlite", "--row", "block([0-9])")
     # A folder that is named twice is one; other rules for rows change what is there.
     assert "0 scans added, 0 replaced, 4 were there" in run("merge", "out", "out/", "--db", "s.sqlite")
     assert "0 scans added, 3 replaced, 1 were there" in run("merge", "out", "--db", "s.sqlite", "--row", "p([0-9])")
