@@ -28,6 +28,9 @@ struct UsageError : Error {
   using Error::Error;
 };
 
+/// What an exception says; of one of the file system the path and the reason.
+std::string message_of(const std::exception& e);
+
 /// Each of these adds a subcommand. When the user chooses it, `run` is set to a function that does the work and returns
 /// the exit code.
 using Run = std::function<int()>;

@@ -28,6 +28,12 @@ namespace agrisee::cli {
 
 namespace fs = std::filesystem;
 
+std::string message_of(const std::exception& e) {
+  if (const auto* const of_files = dynamic_cast<const fs::filesystem_error*>(&e))
+    return of_files->path1().string() + ": " + of_files->code().message();
+  return e.what();
+}
+
 std::vector<std::string> preset_choices() { return {kPresetNames.begin(), kPresetNames.end()}; }
 
 std::vector<std::string> planner_choices() {

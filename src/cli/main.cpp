@@ -65,7 +65,7 @@ int main(int argc, char** argv) {
         << "agrisee: the memory does not suffice: is something in millimetres, and so a thousand times too large?\n";
     return cli::kBadInput;
   } catch (const std::exception& e) {
-    std::cerr << "agrisee: " << e.what() << "\n";
+    std::cerr << "agrisee: " << cli::message_of(e) << "\n";
     return cli::kBadInput;
   }
 }

@@ -4,12 +4,15 @@
 #include <agrisee/version.hpp>
 
 #include <algorithm>
+#include <cerrno>
+#include <cstring>
 #include <filesystem>
 #include <glob.h>
 #include <iostream>
 #include <map>
 #include <set>
 #include <sstream>
+#include <unistd.h>
 
 #include "commands.hpp"
 #include "interrupt.hpp"
@@ -26,12 +29,30 @@ bool is_pattern(const std::string& input) {
   return input.find_first_of("*?[") != std::string::npos && !fs::exists(input, error);
 }
 
-std::vector<std::string> matches(const std::string& pattern) {
+std::vector<std::string> paths_of(const std::string& pattern) {
   glob_t found{};
   const int failed = ::glob(pattern.c_str(), 0, nullptr, &found);
   std::vector<std::string> out;
   for (std::size_t i = 0; failed == 0 && i < found.gl_pathc; ++i) out.emplace_back(found.gl_pathv[i]);
   ::globfree(&found);
+  return out;
+}
+
+/// Tell of the folders on the way of a pattern that cannot be entered: glob passes over them.
+void tell_closed_folders(const std::string& pattern) {
+  std::error_code error;
+  for (std::size_t slash = pattern.find('/', 1); slash != std::string::npos; slash = pattern.find('/', slash + 1)) {
+    const std::string next = pattern.substr(slash + 1, pattern.find('/', slash + 1) - slash - 1);
+    const int needed = is_pattern(next) ? R_OK | X_OK : X_OK;
+    for (const std::string& folder : paths_of(pattern.substr(0, slash)))
+      if (fs::is_directory(folder, error) && ::access(folder.c_str(), needed) != 0)
+        std::cerr << "agrisee: " << folder << ": " << std::strerror(errno) << "; what is in it is left out\n";
+  }
+}
+
+std::vector<std::string> matches(const std::string& pattern) {
+  tell_closed_folders(pattern);
+  std::vector<std::string> out = paths_of(pattern);
   if (out.empty()) throw FileError(pattern + ": matches no file");
   return out;
 }
@@ -126,7 +147,7 @@ bool do_job(const Job& job, const fs::path& folder, const ListedCommand& command
       if (code != kSuccess) row.message = "ended with exit code " + std::to_string(code);
     }
   } catch (const std::exception& e) {
-    row.message = e.what();
+    row.message = message_of(e);
   }
   row.status = row.message.empty() ? "ok" : "failed";
   if (row.message.empty()) add_result(folder, row);

@@ -184,7 +184,7 @@ int run_task(const fs::path& folder, const io::ScanTask& task, const io::SceneFi
                 recorder.history(result));
   } catch (const std::exception& e) {
     std::error_code ignored;
-    std::cerr << "\nagrisee: the scan failed midway: " << e.what() << "\n";
+    std::cerr << "\nagrisee: the scan failed midway: " << message_of(e) << "\n";
     if (taken > 0)
       std::cerr << "The views taken so far are in " << (folder / "views").string() << "; " << resume << "\n";
     else if (options.resume.empty() && !fs::exists(io::view_record_path(folder, 0)))

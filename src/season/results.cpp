@@ -25,21 +25,28 @@ std::string groups_of(const std::string& text, const std::regex& pattern) {
   return out;
 }
 
+/// Add the results in and below a folder. @param inner whether it is itself below the first: then a result holds no
+/// other
+void find_results(const fs::path& folder, bool inner, std::vector<fs::path>& out) {
+  std::error_code error;
+  if (fs::exists(folder / "run.json", error)) {
+    out.push_back(folder);
+    if (inner) return;
+  }
+  if (inner && fs::is_symlink(folder, error)) return;
+  fs::directory_iterator i(folder, error);
+  for (; !error && i != fs::directory_iterator(); i.increment(error))
+    if (std::error_code ignored; i->is_directory(ignored)) find_results(i->path(), true, out);
+  if (error) io::fail(folder, error.message());
+}
+
 }  // namespace
 
 Place PlaceRules::of(const std::string& path) const { return {groups_of(path, row), groups_of(path, date)}; }
 
 std::vector<fs::path> result_folders(const fs::path& folder) {
   std::vector<fs::path> out;
-  std::error_code error;
-  if (fs::exists(folder / "run.json", error)) out.push_back(folder);
-  fs::recursive_directory_iterator i(folder, error);
-  for (; !error && i != fs::recursive_directory_iterator(); i.increment(error))
-    if (i->is_directory(error) && fs::exists(i->path() / "run.json", error)) {
-      out.push_back(i->path());
-      i.disable_recursion_pending();  // a result holds no other
-    }
-  if (error) io::fail(folder, error.message());
+  find_results(folder, false, out);
   std::sort(out.begin(), out.end());
   return out;
 }

@@ -99,6 +99,23 @@ PY
     expect 2 'matches no file' process 'no/*.ply' -o four
     expect 1 'I/N' process one/t2/cloud.ply -o four --shard 3/2
     expect 1 'I <= N <= 1000000' process one/t2/cloud.ply -o four --shard 1/-2
+    # Folders that cannot be entered are named. Root enters all.
+    as_other=""; [ "$(id -u)" != 0 ] || as_other="setpriv --reuid=65534 --regid=65534 --clear-groups"
+    mkdir -p six/in/a six/in/b six/out && cp one/t2/cloud.ply six/in/a/c.ply && cp one/t2/cloud.ply six/in/b/c.ply
+    chmod -R a+rX six && chmod a+rwx six/out && chmod 0 six/in/b
+    if $as_other "$agrisee" --version >/dev/null 2>&1 && $as_other test ! -x six/in/b -a -r six/in/a/c.ply; then
+      for pattern in c.ply '*.ply'; do
+        $as_other "$agrisee" process "six/in/*/$pattern" -o six/out --no-picture --no-report --quiet 2>err.txt || fail "a closed folder: $(cat err.txt)"
+        grep -q '^agrisee: six/in/b: Permission denied; what is in it is left out' err.txt || fail "a closed folder is not named: $(cat err.txt)"
+      done
+      $as_other "$agrisee" process six/in/b/c.ply -o six/out/b 2>err.txt && fail "a closed folder"
+      grep -q '^agrisee: six/in/b/c.ply: cannot be opened: Permission denied' err.txt || fail "a closed folder: $(cat err.txt)"
+      $as_other "$agrisee" export-views six/in/b -o six/out/b 2>err.txt && fail "a closed folder"
+      grep -q '^agrisee: six/in/b/scan.json: Permission denied' err.txt || fail "a raw error: $(cat err.txt)"
+      $as_other "$agrisee" merge six --db six/out/s.sqlite 2>err.txt && fail "a closed folder"
+      grep -qE '^agrisee: (six/in/b: Permission denied|.*without SQLite)' err.txt || fail "merge does not name the folder: $(cat err.txt)"
+    fi
+    chmod 755 six/in/b
     # As spread by others.
     if command -v parallel >/dev/null 2>&1; then
       parallel -j 2 "$agrisee" scan "'season/*/scene.yaml'" -o five --max-views 2 --shard {}/3 ::: 1 2 3 >/dev/null 2>&1

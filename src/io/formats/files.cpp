@@ -84,6 +84,7 @@ void fail(const fs::path& path, std::size_t line, const std::string& message) {
 InputFile::InputFile(const fs::path& path) : path_(path) {
   std::error_code error;
   const fs::file_status status = fs::status(path, error);
+  if (status.type() == fs::file_type::none) fail(path, "cannot be opened: " + error.message());
   if (!fs::exists(status)) fail(path, "no such file" + nearest_path(path));
   if (fs::is_directory(status)) fail(path, "is a directory, not a file");
   if (!fs::is_regular_file(status) && !fs::is_fifo(status)) fail(path, "is not a regular file");
