@@ -28,6 +28,11 @@ struct UsageError : Error {
   using Error::Error;
 };
 
+/// A scan that failed midway, or could take no view; kScanFailed.
+struct ScanFailed : Error {
+  using Error::Error;
+};
+
 /// What an exception says; of one of the file system the path and the reason.
 std::string message_of(const std::exception& e);
 

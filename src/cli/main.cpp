@@ -60,6 +60,9 @@ int main(int argc, char** argv) {
   } catch (const cli::UsageError& e) {
     std::cerr << "agrisee: " << e.what() << "\n";
     return cli::kUsage;
+  } catch (const cli::ScanFailed& e) {
+    std::cerr << "agrisee: " << e.what() << "\n";
+    return cli::kScanFailed;
   } catch (const std::bad_alloc&) {
     std::cerr
         << "agrisee: the memory does not suffice: is something in millimetres, and so a thousand times too large?\n";

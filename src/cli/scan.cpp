@@ -133,7 +133,7 @@ io::RunInfo run_info(const io::ScanTask& task, const Workcell& workcell) {
   return info;
 }
 
-/// Run a scan whose folder is prepared, and write its result. @return the exit code
+/// Run a scan whose folder is prepared, and write its result. @return the exit code @throws ScanFailed
 int run_task(const fs::path& folder, const io::ScanTask& task, const io::SceneFile& file,
              const study::TracedScene& traced, std::unique_ptr<plan::Planner> planner, const ScanOptions& options) {
   study::SimulationOptions simulation;
@@ -184,18 +184,19 @@ int run_task(const fs::path& folder, const io::ScanTask& task, const io::SceneFi
                 recorder.history(result));
   } catch (const std::exception& e) {
     std::error_code ignored;
-    std::cerr << "\nagrisee: the scan failed midway: " << message_of(e) << "\n";
+    if (!options.quiet && taken > 0) end_progress();
+    std::string told = "the scan failed midway: " + message_of(e);
     if (taken > 0)
-      std::cerr << "The views taken so far are in " << (folder / "views").string() << "; " << resume << "\n";
-    else if (options.resume.empty() && !fs::exists(io::view_record_path(folder, 0)))
+      told += "; the views taken so far are in " + (folder / "views").string() + ", " + resume;
+    else if (options.resume.empty() && !fs::exists(io::view_record_path(folder, 0), ignored))
       fs::remove(folder / "scan.json", ignored);  // there is nothing to resume
-    return kScanFailed;
+    throw ScanFailed(told);
   }
   print_summary(result, folder.string(), options);
-  if (!result.views.empty()) return kSuccess;
-  std::cerr << "agrisee: no view could be taken (" << to_string(result.stop_reason)
-            << "): the scan volume is out of the arm's reach\n";
-  return kScanFailed;
+  if (result.views.empty())
+    throw ScanFailed(std::string("no view could be taken (") + to_string(result.stop_reason) +
+                     "): the scan volume is out of the arm's reach");
+  return kSuccess;
 }
 
 int run_scan(const ScanOptions& options) {

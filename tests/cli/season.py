@@ -6,6 +6,7 @@
 import json
 import os
 import random
+import re
 import shutil
 import signal
 import sqlite3
@@ -154,6 +155,20 @@ def interrupted():
     with open("three/summary-1-of-3.csv", "w", encoding="utf-8") as file:
         file.write(stopped)
     assert "Run shards 1 again" in run("merge", "three", code=2)
+    # Why a scan failed is in the summary.
+    with open("in/t1/scene.yaml", encoding="utf-8") as file:
+        text = file.read()
+    os.makedirs("far")
+    for name in os.listdir("in/t1"):
+        shutil.copy("in/t1/" + name, "far")
+    with open("far/scene.yaml", "w", encoding="utf-8") as file:
+        file.write(re.sub(r"(base: *\{? *xyz: *\[)[^]]*\]", r"\g<1>5, 5, 5]", text))
+    told = run("scan", "far/scene.yaml", "-o", "four", "--shard", "1/1", *FEW_FILES, code=2)
+    with open("four/summary.csv", encoding="utf-8") as file:
+        assert "no view could be taken (" in file.read() and "no view could be taken" in told
+    with open("four/far/job.json", encoding="utf-8") as file:
+        assert "out of the arm's reach" in json.load(file)["message"]
+    run("scan", "far/scene.yaml", "-o", "five", *FEW_FILES, code=3)
     # Those of another number of shards are named.
     run(*shard, "2/2")
     assert "written are of 2; if these are to stay, delete summary-*-of-3.csv" in run("merge", "three", code=2)
