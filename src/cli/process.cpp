@@ -14,6 +14,7 @@
 #include <filesystem>
 #include <iostream>
 #include <memory>
+#include <optional>
 
 #include "commands.hpp"
 #include "inputs.hpp"
@@ -153,10 +154,19 @@ Cloud points_of(const sensor::DepthFrame& frame) {
   return cloud;
 }
 
+/// That the scale of the depths may be wrong, if no fruit was found and most bodies are of no expected size.
+std::optional<std::string> doubt_of_scale(const ScanResult& result, double median_depth) {
+  const BodyCounts& n = result.bodies;
+  if (!result.fruits.empty() || 2 * (n.too_large + n.too_small) <= n.rejected()) return std::nullopt;
+  return "most surfaces are too " + std::string(n.too_large > n.too_small ? "large" : "small") +
+         " for fruit, and the median depth is " + metres(median_depth) + ": is --depth-scale right?";
+}
+
 /// Process a single depth image; the frame of the result is the camera's optical frame.
 Processed process_frame(const ProcessOptions& options, const Parameters& parameters) {
   sensor::DepthFrame frame = frame_of(options);
   const auto doubt = sensor::doubt_of(frame.intrinsics), masks = sensor::doubt_of_masks(frame);
+  const double median_depth = sensor::median_depth(frame).value_or(0.0);
   const Cloud all = points_of(frame);
   CloudOrigin origin;
   origin.viewpoint = Eigen::Vector3d::Zero();
@@ -171,7 +181,7 @@ Processed process_frame(const ProcessOptions& options, const Parameters& paramet
   } catch (const InputError& e) {
     throw FileError(options.depth + ": " + e.what());
   }
-  for (const auto& text : {doubt, masks})
+  for (const auto& text : {doubt, masks, doubt_of_scale(out.result, median_depth)})
     if (text) out.result.warnings.push_back(*text);
   return out;
 }

@@ -243,6 +243,8 @@ print(",".join(re.search(rf"\b{key}: (\S+)", text).group(1) for key in ("fx", "f
     image="--depth e/depth/0000.png --intrinsics $camera --depth-scale 0.0001"
     expect 0 '' process $image -o plain
     grep -q '"ripeness"' plain/fruits.json && fail "ripeness without colours"
+    expect 0 '' process --depth e/depth/0000.png --intrinsics $camera -o tenfold --no-picture --no-report
+    grep -qE '^Note: most surfaces are too large for fruit, and the median depth is [3-9][.0-9]* m: is --depth-scale right\?' out.txt || fail "a wrong scale: $(cat out.txt)"
     python3 - <<'PY'
 import json, re, struct, zlib
 text = open("e/views.yaml").read()
