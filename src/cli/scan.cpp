@@ -208,6 +208,7 @@ int run_scan(const ScanOptions& options) {
   if (!options.mcap.empty() && !options.force && fs::exists(options.mcap))
     throw UsageError("--mcap: " + options.mcap + " exists already; " +
                      (resuming ? "name another file" : "--force overwrites it"));
+  if (!options.mcap.empty()) io::AtomicFile(options.mcap);  // what cannot be written is told of before the scan
   if (resuming && content != task.content)
     throw FileError(task.scene + ": is not the scene with which the scan in " + folder.string() + " started");
   task.content = content;

@@ -169,6 +169,8 @@ PY
     cmp bare/fruits.json quiet/fruits.json && [ -s quiet/truss.png ] && [ -s quiet/report.html ] || fail "--quiet changes the result"
     expect 0 '' process r/cloud.ply -o bare --force --no-report && [ -s bare/truss.png ] && [ ! -e bare/report.html ] || fail "--no-report"
     expect 0 '' process r/cloud.ply -o bare --force --no-picture && [ ! -e bare/truss.png ] && [ -s bare/report.html ] || fail "--no-picture"
+    expect 2 'nodir/x.mcap: cannot be written: No such file or directory' scan t -o early --mcap nodir/x.mcap
+    [ ! -e early ] || fail "a scan whose MCAP file cannot be written begins"
     # A scan without pictures is finished, and a later --resume adds them.
     expect 0 '' scan t -o s --seed 1 --max-views 2 --no-picture --no-report --quiet && [ ! -s err.txt ] || fail "--quiet scan"
     expect 0 'nothing to do' scan --resume s --no-picture --no-report

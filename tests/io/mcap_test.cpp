@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Scans as MCAP files; tests/mcap asks Foxglove's own libraries what they say of them.
+#include <agrisee/io/cloud_file.hpp>
 #include <agrisee/io/files.hpp>
 #include <agrisee/io/mcap.hpp>
 
@@ -81,6 +82,27 @@ TEST_CASE("an MCAP file with any byte missing or wrong is an error or a recordin
     bytes[at] = static_cast<char>(bytes[at] ^ 0x81);
     look(bytes);
   }
+}
+
+TEST_CASE("a recording that is cut off before its first image, or of another format, is told of as such") {
+  const test::TempFolder folder;
+  const auto path = folder / "scan.mcap";
+  write_three_views(path);
+  const io::Bytes whole = io::read_bytes(path);
+  const auto read = [](const std::filesystem::path& p) { io::McapRecording recording(p); };
+  const auto cut = folder.file("cut.mcap", std::string(whole.view().substr(0, whole.size / 3)));
+  test::require_file_error(cut, "is cut off before", read);
+  for (const char* name : {"a.mcap", "a.bag", "a.db3"}) {
+    const auto cloud = [](const std::filesystem::path& p) { io::read_cloud(p); };
+    const auto bag = folder.file(std::string("1") + name, "#ROSBAG V2.0\n" + std::string(20, '\0'));
+    const auto sqlite = folder.file(std::string("2") + name, "SQLite format 3" + std::string(20, '\0'));
+    test::require_file_error(bag, "is a bag of ROS 1", read);
+    test::require_file_error(bag, "is a bag of ROS 1", cloud);
+    test::require_file_error(sqlite, "mcap convert", read);
+    test::require_file_error(sqlite, "mcap convert", cloud);
+  }
+  test::require_file_error(folder.file("b.mcap", "#"), "is not an MCAP file", read);
+  test::require_file_error(folder.file("c.mcap", ""), "is not an MCAP file", read);
 }
 
 TEST_CASE("poses between transforms are interpolated along the chain of frames") {

@@ -5,6 +5,7 @@
 #include <agrisee/io/ply.hpp>
 
 #include "io/formats/cloud_columns.hpp"
+#include "io/formats/mcap.hpp"
 #include "io/formats/npy.hpp"
 #include "io/formats/table.hpp"
 #include "io/formats/text.hpp"
@@ -23,6 +24,7 @@ CloudFile read_cloud(const std::filesystem::path& path, NonFinite non_finite) {
   if (is_npy(first) || extension == ".npy") return read_npy_cloud(path, non_finite);
   if (first.empty()) fail(path, "is empty");
   if (is_table(first) || extension == ".xyz" || extension == ".csv") return read_table_cloud(path, non_finite);
+  if (const std::string recording = mcap::other_recording(first); !recording.empty()) fail(path, recording);
   fail(path, "is no point cloud that can be read: neither PLY, PCD or NPY nor a table of numbers (XYZ, CSV)");
 }
 

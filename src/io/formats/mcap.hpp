@@ -98,6 +98,9 @@ struct Contents {
   bool cut_off = false;                                                ///< the file ends within a record
 };
 
+/// What a file is that begins like a recording of another format, and how to convert it; empty for others.
+std::string other_recording(std::string_view first_bytes);
+
 /// Read the list of all messages. A file that was cut off counts up to its last whole record.
 /// @throws FileError for a file that is not MCAP, is damaged, or has compressed chunks
 Contents read_contents(const std::filesystem::path& path);

@@ -179,9 +179,25 @@ class Walk {
 
 }  // namespace
 
+std::string other_recording(std::string_view first_bytes) {
+  constexpr std::string_view kRos1 = "#ROSBAG", kSqlite = "SQLite format 3";
+  if (first_bytes.substr(0, kRos1.size()) == kRos1)
+    return "is a bag of ROS 1, which is not read; convert it with `rosbags-convert --src FILE --dst OTHER "
+           "--dst-storage "
+           "mcap`";
+  if (first_bytes.substr(0, kSqlite.size()) == kSqlite)
+    return "is an SQLite file, as ROS 2 records them (.db3), which is not read; convert it with `mcap convert "
+           "--compression none FILE OTHER.mcap`, or record with `ros2 bag record -s mcap`";
+  return "";
+}
+
 Contents read_contents(const fs::path& path) {
   Source source(path);
-  if (source.size() < kMagic.size() || source.read(0, kMagic.size()) != kMagic) fail(path, "is not an MCAP file");
+  const std::string first = source.read(0, std::min<std::uint64_t>(source.size(), 16));
+  if (first.compare(0, kMagic.size(), kMagic) != 0) {
+    const std::string other = other_recording(first);
+    fail(path, other.empty() ? "is not an MCAP file" : other);
+  }
   Contents out;
   out.cut_off = Walk(source, out).records(kMagic.size(), source.size(), false) || out.cut_off;  // no end of the data
   return out;

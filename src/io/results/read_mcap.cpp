@@ -83,6 +83,9 @@ std::vector<mcap::Message> depth_images(const fs::path& path, const mcap::Conten
     if (!by_topic.count(wanted)) fail(path, "has no images on " + wanted + did_you_mean(wanted, all));
     return by_topic[wanted];
   }
+  if (depth.empty() && contents.cut_off)
+    fail(path,
+         "is cut off before the end of its first chunk with depth images; it was perhaps copied while it was recorded");
   if (depth.empty())
     fail(path, "has no depth images (sensor_msgs/msg/Image with 16UC1 or 32FC1, of " + std::to_string(all.size()) +
                    " topics with images)");
