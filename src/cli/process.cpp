@@ -95,6 +95,9 @@ Processed process_cloud(const ProcessOptions& options, const Parameters& paramet
   const io::CloudFile file = read_cloud_input(options.cloud);
   if (file.dropped > 0)
     std::cerr << options.cloud << ": " << file.dropped << " points that are not finite were dropped\n";
+  if (file.skipped > 0)
+    std::cerr << options.cloud << ": of its " << file.skipped + 3
+              << " columns only the first three, x, y and z, are read; PLY and CSV can hold more\n";
   const CloudOrigin origin = origin_of(options, file.cloud);
   check_cloud(options, file.cloud, parameters, origin);
   const Cloud cloud = parameters.fuse_surfaces ? thinned(file.cloud, parameters) : file.cloud;

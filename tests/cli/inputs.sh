@@ -129,6 +129,19 @@ PY
       cmp ply/fruits.json $f/fruits.json || fail "the same cloud as $f gives other fruit"
     done
     "$agrisee" process - -o pipe <c.npy >/dev/null || fail "standard input, redirected"
+    python3 - <<'PY'
+import struct
+def npy(name, descr, shape, data):
+    header = f"{{'descr': {descr}, 'fortran_order': False, 'shape': {shape}, }}\n".encode()
+    open(name, "wb").write(b"\x93NUMPY\1\0" + struct.pack("<H", len(header)) + header + data)
+npy("fields.npy", "[('x', '<f4'), ('y', '<f4'), ('z', '<f4')]", "(1,)", bytes(12))
+npy("half.npy", "'<f2'", "(1, 3)", bytes(6))
+rows = [[float(c) for c in line.split()] for line in open("c.xyz")]
+npy("four.npy", "'<f4'", f"({len(rows)}, 4)", b"".join(struct.pack("<4f", *row, 7.0) for row in rows))
+PY
+    expect 2 'fields.npy: holds records with named fields; save an array of numbers' process fields.npy -o d
+    expect 2 "half.npy: holds numbers of the type '<f2', which is not read" process half.npy -o d
+    expect 0 'four.npy: of its 4 columns only the first three' process four.npy -o four --no-picture --no-report && cmp ply/fruits.json four/fruits.json || fail "four columns"
     cat c.xyz | "$agrisee" process - -o pipe2 >/dev/null || fail "standard input, piped"
     "$agrisee" process <(cat r/cloud_raw.ply) -o pipe3 >/dev/null || fail "a named pipe"
     for f in pipe pipe2 pipe3; do cmp ply/fruits.json $f/fruits.json || fail "$f gives other fruit"; done

@@ -23,6 +23,7 @@ struct CloudFile {
   std::size_t dropped = 0;  ///< number of points left out because they were not finite
   std::size_t width = 0;    ///< points per row of an organized cloud; the number of points otherwise
   std::size_t height = 0;   ///< number of rows; 1 when the cloud is not organized
+  std::size_t skipped = 0;  ///< columns of an NPY file behind x, y and z, which are not read
 };
 
 /// Read a cloud. The first bytes of the file say whether it is PLY (ASCII or binary), PCD (ASCII, binary or

@@ -47,7 +47,9 @@ CloudFile read_npy_cloud(const std::filesystem::path& path, NonFinite non_finite
                        size * (array.fortran ? 1 : shape.back()), array.type, array.swapped,
                        cloud.sink(std::string(1, "xyz"[axis]))});
   decode(columns, points);
-  return cloud.finish(non_finite, organized ? shape[1] : points, organized ? shape[0] : 1);
+  CloudFile out = cloud.finish(non_finite, organized ? shape[1] : points, organized ? shape[0] : 1);
+  out.skipped = shape.back() - 3;
+  return out;
 }
 
 }  // namespace agrisee::io

@@ -56,8 +56,15 @@ bool parse_type(std::string_view text, NpyArray& array) {
   return false;
 }
 
-/// The type in a message: the text up to the next key.
-std::string type_text(std::string_view text) { return excerpt(text.substr(0, text.find(", '"))); }
+/// Refuse an array of another type than numbers that are read. @param text its type in the header
+[[noreturn]] void refuse_type(const std::filesystem::path& path, std::string_view text) {
+  if (!text.empty() && text.front() == '[')
+    fail(path,
+         "holds records with named fields; save an array of numbers: "
+         "numpy.lib.recfunctions.structured_to_unstructured(a).astype('float32')");
+  if (!text.empty()) text = text.substr(1, text.find(text.front(), 1) - 1);  // without quotes
+  fail(path, "holds numbers of the type " + excerpt(text) + ", which is not read; save them with .astype('float32')");
+}
 
 }  // namespace
 
@@ -81,8 +88,7 @@ NpyArray parse_npy(const std::filesystem::path& path, std::string_view bytes) {
   const std::string_view header = bytes.substr(begin, length);
   NpyArray array;
   const std::string_view type = value_of(header, "descr"), order = value_of(header, "fortran_order");
-  if (!parse_type(type, array))
-    fail(path, "holds numbers of the type " + type_text(type) + "; save them with .astype('float32')");
+  if (!parse_type(type, array)) refuse_type(path, type);
   array.fortran = order.substr(0, 4) == "True";
   if (!array.fortran && order.substr(0, 5) != "False") fail(path, "bad NPY header: no 'fortran_order'");
   if (!parse_shape(value_of(header, "shape"), array.shape)) fail(path, "bad NPY header: no 'shape'");
