@@ -73,12 +73,13 @@ SeenOn seen_on_of(const Cloud& cloud, const Parameters& parameters, const CloudO
   };
 }
 
-/// @throws InputError if a sensor stood farther from all points than any sensor sees
+/// @throws InputError if a sensor's position is not finite, or farther from all points than any sensor sees
 void check_distance(const Cloud& cloud, const std::vector<Eigen::Vector3d>& sensors) {
   constexpr double kFarthest = 20.0;  // m; depth cameras see less far, and 20 mm are nearer than any of them sees
   const Aabb box = bounding_box(cloud.points);
   if (box.empty()) return;
   for (const Eigen::Vector3d& sensor : sensors) {
+    check_input(sensor.allFinite(), "the position of a sensor (the viewpoint) is not finite");
     const double distance = (sensor - sensor.cwiseMax(box.min).cwiseMin(box.max)).norm();
     if (!(distance <= kFarthest))
       throw InputError("a sensor stood " + metres(distance) +

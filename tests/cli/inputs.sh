@@ -157,6 +157,7 @@ rows = [line.rsplit(",", 1) for line in open("c.csv").read().splitlines()]
 open("first.csv", "w").write("\n".join(point for point, view in rows if view in ("view", "0")) + "\n")
 PY
     expect 2 'first.csv: [0-9]+ % of what is curved as fruit is hollow as seen from the viewpoint' process first.csv -o d --viewpoint 0,1.2,0.2
+    expect 2 'first.csv: the position of a sensor \(the viewpoint\) is not finite' process first.csv -o d --viewpoint nan,0,0
     [ ! -e d ] || fail "a refused viewpoint wrote something"
     expect 0 '' process first.csv -o first --viewpoint 0,0,0.2 && ! grep -q '^Note' out.txt || fail "the right viewpoint: $(cat out.txt)"
     expect 0 '' process first.csv -o behind --viewpoint 0,1.2,0.2 --turn-normals && grep -q '^Note: .* is hollow as seen from the viewpoint' out.txt || fail "no note"
