@@ -15,6 +15,7 @@
 #include <unistd.h>
 
 #include "commands.hpp"
+#include "folder_lock.hpp"
 #include "interrupt.hpp"
 #include "io/formats/json_value.hpp"
 #include "job_record.hpp"
@@ -129,7 +130,9 @@ void add_result(const fs::path& folder, SummaryRow& row) {
 bool do_job(const Job& job, const fs::path& folder, const ListedCommand& command, SummaryRow& row) {
   JobRecord record{command.name, job.input, "", AGRISEE_VERSION, "started", ""};
   bool recorded = false, worked = true;
+  FolderLock lock;
   try {
+    lock.take(folder.string());
     check_inputs_stay({job.input}, folder.string());
     check_inputs_stay(command.files, folder.string());
     record.key = command.key(job.input);
@@ -141,6 +144,7 @@ bool do_job(const Job& job, const fs::path& folder, const ListedCommand& command
       const bool interrupted = same && before->status == "started";
       // A result is deleted before a new key is noted: it must never pass for what it is not.
       if (!interrupted) prepare_output(folder.string(), before.has_value() || command.force);
+      lock.take(folder.string());
       recorded = true;
       write_job(folder, record);
       const int code = command.run(job.input, folder.string(), interrupted ? Begin::resume : Begin::again);

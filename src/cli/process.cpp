@@ -17,6 +17,7 @@
 #include <optional>
 
 #include "commands.hpp"
+#include "folder_lock.hpp"
 #include "inputs.hpp"
 #include "job_record.hpp"
 #include "many.hpp"
@@ -251,7 +252,12 @@ int run_process(const ProcessOptions& options) {
                          : recording
                              ? process_recording(recording_file(options.cloud), options, parameters, options.mcap)
                              : process_cloud(options, parameters);
-  if (!options.prepared) prepare_output(options.output, options.force);
+  FolderLock lock;  // a list has its own
+  if (!options.prepared) {
+    lock.take(options.output);
+    prepare_output(options.output, options.force);
+    lock.take(options.output);
+  }
   write_files(options.output, done.result, done.workcell, run_info(options, parameters, done.workcell.name), options,
               done.history);
   print_summary(done.result, options.output, options);

@@ -18,6 +18,7 @@
 #include <memory>
 
 #include "commands.hpp"
+#include "folder_lock.hpp"
 #include "inputs.hpp"
 #include "interrupt.hpp"
 #include "many.hpp"
@@ -215,9 +216,14 @@ int run_scan(const ScanOptions& options) {
   const study::TracedScene traced(file.scene, task.threads);
   check_scan(file.workcell, task.parameters);  // an impossible scan is rejected before anything is written
   std::unique_ptr<plan::Planner> planner = study_planner(task, file, traced);
+  FolderLock lock;  // a list has its own
+  if (!options.prepared) lock.take(folder.string());
   if (!resuming) {
     check_inputs_stay({options.scene, options.parameter_file}, folder.string());
-    if (!options.prepared) prepare_output(folder.string(), options.force);
+    if (!options.prepared) {
+      prepare_output(folder.string(), options.force);
+      lock.take(folder.string());
+    }
     io::write_scan_task(folder / "scan.json", task);
   } else if (options.mcap.empty() && is_finished(folder.string(), options)) {
     std::cerr << folder.string() << ": the scan is finished, there is nothing to do\n";

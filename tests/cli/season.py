@@ -3,6 +3,7 @@
 
   python3 season.py AGRISEE WORKDIR CASE      keyed, interrupted, database or million; exit code 77: built without SQLite
 """
+import fcntl
 import json
 import os
 import random
@@ -142,6 +143,16 @@ def interrupted():
     for n in 1, 2:
         with open(f"out/t{n}/fruits.json", "rb") as a, open(f"whole/t{n}/fruits.json", "rb") as b:
             assert a.read() == b.read(), "another result"
+    # Where another process works, nothing is touched; the lock ends with that process.
+    lock = os.open("out/t1", os.O_RDONLY)
+    fcntl.flock(lock, fcntl.LOCK_EX)
+    for words in [*scan, "out", "--force"], ["scan", "--resume", "out/t1"], ["scan", "in/t1", "-o", "out/t1", "--force"], \
+            ["process", "out/t2/cloud.ply", "-o", "out/t1", "--force"]:
+        assert "out/t1: another process works in this folder" in run(*words, code=2)
+    with open("out/t1/fruits.json", "rb") as a, open("whole/t1/fruits.json", "rb") as b:
+        assert a.read() == b.read(), "a result of another process was touched"
+    os.close(lock)
+    assert "2 inputs, 2 done before, 0 failed" in run(*scan, "out")
     # Shards that were stopped or never started are named.
     shard = [*scan, "three", "--shard"]
     run(*shard, "2/3")
