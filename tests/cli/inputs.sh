@@ -291,6 +291,9 @@ for u, v in (40, 40), (width - 40, 40), (40, height - 40):
         binary[row][u - 9:u + 9] = b"\xff" * 18
 png("binary.png", 0, binary)
 open("normal.csv", "w").write("u,v,width,height\n0.2,0.3,0.1,0.1\n0.6,0.3,0.1,0.1\n")
+header = f"{{'descr': '<f4', 'fortran_order': False, 'shape': ({width}, {height}), }}\n".encode()
+open("turned.npy", "wb").write(b"\x93NUMPY\1\0" + struct.pack("<H", len(header)) + header +
+                               struct.pack("<f", 0.5) * (width * height))
 height -= 1
 png("small.png", 0, labels[1:])
 open("boxes.csv", "w").write("\n".join(boxes) + "\n")
@@ -306,6 +309,8 @@ PY
     grep -q '^Note: instance 255 of the masks lies in .* places far apart: does it stand for all fruit' out.txt || fail "a binary mask: $(cat out.txt)"
     expect 2 'depth/0000.png: holds [0-9]+ instances, which are no masks: is it a depth image' process $image --masks e/depth/0000.png -o x
     expect 2 'normal.csv: all boxes are smaller than a pixel: are they normalized' process $image --boxes normal.csv -o x
+    expect 0 '' process --depth turned.npy --intrinsics $camera -o turned --no-picture --no-report
+    grep -qE '^Note: the principal point, .* 384 x 512, but in that of one of 512 x 384: is the image transposed' out.txt || fail "a transposed image: $(cat out.txt)"
     expect 2 'small.png: is damaged|small.png: .*pixels, but the depth image' process $image --masks small.png -o x
     expect 2 'has colors or opacity' process $image --masks color.png -o x
     expect 2 'no such file' process $image --color none.png -o x

@@ -41,5 +41,11 @@ TEST_CASE("a principal point far from the middle is doubted") {
   CHECK_FALSE(sensor::doubt_of(k));
   std::swap(k.fx, k.cx), std::swap(k.fy, k.cy);
   REQUIRE(sensor::doubt_of(k));
+  CHECK(sensor::doubt_of(k)->find("cropped") != std::string::npos);
   CHECK(sensor::doubt_of(k)->find("(731, 737), is far from the middle of the image, 1024 x 768") != std::string::npos);
+  k = {480, 640, 600.0, 600.0, 319.5, 239.5};
+  REQUIRE(sensor::doubt_of(k));
+  CHECK(sensor::doubt_of(k)->find("but in that of one of 640 x 480: is the image transposed?") != std::string::npos);
+  k.cx = 239.5, k.cy = 319.5;
+  CHECK_FALSE(sensor::doubt_of(k));
 }

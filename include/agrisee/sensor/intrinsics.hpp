@@ -45,17 +45,22 @@ struct Intrinsics {
   }
 };
 
-/// What speaks against intrinsics: a principal point far from the middle, as in a cropped image, or when focal lengths
-/// and principal point are swapped. Empty for a usual camera.
+/// What speaks against intrinsics: a principal point far from the middle, as in a cropped image, when focal lengths and
+/// principal point are swapped, or when width and height are. Empty for a usual camera.
 inline std::optional<std::string> doubt_of(const Intrinsics& k) {
-  constexpr double kFar = 0.35;  // share of the width or height
-  const double off =
-      std::max(std::abs(k.cx - 0.5 * (k.width - 1)) / k.width, std::abs(k.cy - 0.5 * (k.height - 1)) / k.height);
-  if (!(off > kFar)) return std::nullopt;
+  constexpr double kFar = 0.35, kOff = 0.1, kNear = 0.03;  // shares of the width or height
+  const auto off = [&](int width, int height) {
+    return std::max(std::abs(k.cx - 0.5 * (width - 1)) / width, std::abs(k.cy - 0.5 * (height - 1)) / height);
+  };
+  const double as_is = off(k.width, k.height);
+  const bool transposed = as_is > kOff && off(k.height, k.width) < kNear;
+  if (!transposed && !(as_is > kFar)) return std::nullopt;
   const auto whole = [](double pixels) { return std::to_string(std::lround(pixels)); };
   return "the principal point, (" + whole(k.cx) + ", " + whole(k.cy) + "), is far from the middle of the image, " +
          std::to_string(k.width) + " x " + std::to_string(k.height) +
-         ": is the image cropped, or are fx, fy and cx, cy swapped?";
+         (transposed ? ", but in that of one of " + std::to_string(k.height) + " x " + std::to_string(k.width) +
+                           ": is the image transposed? Arrays have the shape (rows, columns)"
+                     : ": is the image cropped, or are fx, fy and cx, cy swapped?");
 }
 
 /// Intrinsics of an image whose principal point is in its middle.
