@@ -61,7 +61,8 @@ CLI::Option* add_common_options(CLI::App& command, CommonOptions& options) {
   command.add_flag("--force", options.force, "overwrite an existing result");
   command.add_flag("--json", options.json, "print the summary and the fruit as JSON");
   command.add_flag("--quiet", options.quiet, "print neither progress nor the table of fruit");
-  command.add_flag("--no-picture", options.no_picture, "do not write truss.png, which takes most of the time");
+  command.add_flag("--no-picture", options.no_picture,
+                   "do not write truss.png, which takes about half of the time of `process`");
   command.add_flag("--no-report", options.no_report, "do not write report.html");
   return output;
 }

@@ -83,9 +83,10 @@ void add_merge(CLI::App& app, Run& run) {
                     "only print the numbers of the shards to run again, separated by commas");
   add_season_options(*command, options->season);
   command->footer(
+      "Without --db it only joins the summaries of shards; a list without --shard has written its summary itself.\n"
       "Examples:\n"
       "  agrisee merge results\n"
-      "  sbatch --array=$(agrisee merge results --unfinished) season.sh\n"
+      "  left=$(agrisee merge results --unfinished); [ -z \"$left\" ] || sbatch --array=$left season.sh\n"
       "  agrisee merge results --db season.sqlite");
   command->callback([options, &run] { run = [options] { return run_merge(*options); }; });
 }
