@@ -182,9 +182,8 @@ class Walk {
 std::string other_recording(std::string_view first_bytes) {
   constexpr std::string_view kRos1 = "#ROSBAG", kSqlite = "SQLite format 3";
   if (first_bytes.substr(0, kRos1.size()) == kRos1)
-    return "is a bag of ROS 1, which is not read; convert it with `rosbags-convert --src FILE --dst OTHER "
-           "--dst-storage "
-           "mcap`";
+    return "is a bag of ROS 1, which is not read; convert it with "
+           "`rosbags-convert --src FILE --dst OTHER --dst-storage mcap`";
   if (first_bytes.substr(0, kSqlite.size()) == kSqlite)
     return "is an SQLite file, as ROS 2 records them (.db3), which is not read; convert it with `mcap convert "
            "--compression none FILE OTHER.mcap`, or record with `ros2 bag record -s mcap`";
