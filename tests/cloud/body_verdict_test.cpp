@@ -152,6 +152,18 @@ TEST_CASE("several views show that a stump is no fruit, a single view hardly doe
   CHECK(odds(0.5, {}) - odds(0.4, {}) > 3.0 * (odds(0.5, 1.0) - odds(0.4, 1.0)));
 }
 
+TEST_CASE("several views show that a box is no fruit: normals spread more than those of any fruit") {
+  const auto odds = [](double spread, std::optional<double> seen_on) {
+    Verdict v = verdict_of(cap(kPi / 2));
+    v.normal_spread = spread;
+    v.seen_on = seen_on;
+    const double p = fruit_probability(v, fit_of(0.0005), BodyParameters());
+    return std::log(p / (1.0 - p));
+  };
+  CHECK(odds(0.2, {}) - odds(0.3, {}) == Approx(odds(0.2, 1.0) - odds(0.3, 1.0)));
+  CHECK(odds(0.3, {}) - odds(0.4, {}) > 2.0 * (odds(0.3, 1.0) - odds(0.4, 1.0)));
+}
+
 TEST_CASE("a body larger than fruit are expected to be is less likely one") {
   const EllipsoidFit fit = fit_of(0.0005);
   const Verdict v = verdict_of(cap(kPi / 2));

@@ -212,9 +212,11 @@ struct BodyParameters {
   double min_confidence = 0.5;    ///< least probability that it is a fruit (detail::fruit_probability)
   double normal_noise = 0.0;      ///< standard deviation of the angle of a normal due to the sensor alone (rad)
   double alike = 0.7;             ///< how much it counts that the fruit of a single cloud are alike in size (0..1)
-  double ridge = 6.0;             ///< several views: log-odds against a fruit for each unit of roundness below 0.5
-  double max_overlap = 0.30;      ///< deepest penetration of two bodies, as a share of the smaller radius
-  FitParameters fit;              ///< fit of the ellipsoids
+  /// Several views: log-odds against a fruit for each unit of roundness below 0.5 (stumps, pipes), and for each 0.67
+  /// rad by which the spread of its normals exceeds 0.3 rad (boxes).
+  double ridge = 12.0;
+  double max_overlap = 0.30;  ///< deepest penetration of two bodies, as a share of the smaller radius
+  FitParameters fit;          ///< fit of the ellipsoids
 
   /// Whether a body of mean radius r (m) could be a fruit. The expected range is widened by 15 percent at both ends.
   bool plausible(double r) const { return r >= 0.85 * radius_min && r <= 1.15 * radius_max; }
