@@ -140,13 +140,22 @@ TEST_CASE("whatever speaks against a fruit lowers its probability") {
   CHECK(fruit_probability(Verdict(), fit_of(0.0), BodyParameters()) == 0.0);
 }
 
+namespace {
+
+/// Log-odds in favor of half a sphere with one of the evidences replaced, in several views or in a single one.
+double odds_with(double Verdict::*evidence, double value, std::optional<double> seen_on) {
+  Verdict v = verdict_of(cap(kPi / 2));
+  v.*evidence = value;
+  v.seen_on = seen_on;
+  const double p = fruit_probability(v, fit_of(0.0005), BodyParameters());
+  return std::log(p / (1.0 - p));
+}
+
+}  // namespace
+
 TEST_CASE("several views show that a stump is no fruit, a single view hardly does") {
   const auto odds = [](double roundness, std::optional<double> seen_on) {
-    Verdict v = verdict_of(cap(kPi / 2));
-    v.roundness = roundness;
-    v.seen_on = seen_on;
-    const double p = fruit_probability(v, fit_of(0.0005), BodyParameters());
-    return std::log(p / (1.0 - p));
+    return odds_with(&Verdict::roundness, roundness, seen_on);
   };
   CHECK(odds(0.7, {}) - odds(0.6, {}) == Approx(odds(0.7, 1.0) - odds(0.6, 1.0)));
   CHECK(odds(0.5, {}) - odds(0.4, {}) > 3.0 * (odds(0.5, 1.0) - odds(0.4, 1.0)));
@@ -154,11 +163,7 @@ TEST_CASE("several views show that a stump is no fruit, a single view hardly doe
 
 TEST_CASE("several views show that a box is no fruit: normals spread more than those of any fruit") {
   const auto odds = [](double spread, std::optional<double> seen_on) {
-    Verdict v = verdict_of(cap(kPi / 2));
-    v.normal_spread = spread;
-    v.seen_on = seen_on;
-    const double p = fruit_probability(v, fit_of(0.0005), BodyParameters());
-    return std::log(p / (1.0 - p));
+    return odds_with(&Verdict::normal_spread, spread, seen_on);
   };
   CHECK(odds(0.2, {}) - odds(0.3, {}) == Approx(odds(0.2, 1.0) - odds(0.3, 1.0)));
   CHECK(odds(0.3, {}) - odds(0.4, {}) > 2.0 * (odds(0.3, 1.0) - odds(0.4, 1.0)));
