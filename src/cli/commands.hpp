@@ -99,10 +99,6 @@ constexpr const char *kPicture = "truss.png", *kReport = "report.html";
 constexpr const char* kResultFiles[] = {"run.json",    "views.csv",  "cloud.ply", "cloud_raw.ply",
                                         "fruits.json", "fruits.csv", kPicture,    kReport};
 
-/// Check that no file of a result in a folder is one of some inputs; empty names are none.
-/// @throws UsageError, which names the input
-void check_inputs_stay(const std::vector<std::string>& inputs, const std::string& folder);
-
 /// Check that a folder can take a new result: that it holds none, or that `force` is on.
 /// @throws UsageError, which says how to go on, if it holds a result or an unfinished scan and `force` is off
 void check_output(const std::string& folder, bool force);

@@ -133,14 +133,6 @@ void check_output(const std::string& folder, bool force) {
       throw UsageError(folder + ": already holds a result (" + name + "); use --force to overwrite it");
 }
 
-void check_inputs_stay(const std::vector<std::string>& inputs, const std::string& folder) {
-  std::error_code error;
-  for (const std::string& input : inputs)
-    for (const char* name : kResultFiles)
-      if (fs::equivalent(input, fs::path(folder) / name, error))
-        throw UsageError(input + ": is an input and would be overwritten; name another output folder");
-}
-
 bool is_finished(const std::string& folder, const CommonOptions& options) {
   return std::all_of(std::begin(kResultFiles), std::end(kResultFiles), [&](const std::string& name) {
     return fs::exists(fs::path(folder) / name) || (options.no_picture && name == kPicture) ||

@@ -126,6 +126,18 @@ void add_result(const fs::path& folder, SummaryRow& row) {
   row.seconds = at("/seconds/total");
 }
 
+/// Check that no file of a result in a folder is an input, or a file that all inputs use; empty names are none.
+/// @throws UsageError, which names the input
+void check_inputs_stay(const std::string& input, const ListedCommand& command, const fs::path& folder) {
+  std::error_code error;
+  std::vector<std::string> used = command.files;
+  used.push_back(input);
+  for (const std::string& file : used)
+    for (const char* name : kResultFiles)
+      if (fs::equivalent(file, folder / name, error))
+        throw UsageError(file + ": is an input and would be overwritten; name another output folder");
+}
+
 /// Does a job unless it is done. @return whether there was anything to do
 bool do_job(const Job& job, const fs::path& folder, const ListedCommand& command, SummaryRow& row) {
   JobRecord record{command.name, job.input, "", AGRISEE_VERSION, "started", ""};
@@ -133,8 +145,7 @@ bool do_job(const Job& job, const fs::path& folder, const ListedCommand& command
   FolderLock lock;
   try {
     lock.take(folder.string());
-    check_inputs_stay({job.input}, folder.string());
-    check_inputs_stay(command.files, folder.string());
+    check_inputs_stay(job.input, command, folder);
     record.key = command.key(job.input);
     const auto before = read_job(folder);
     const bool same = before && before->key == record.key && !record.key.empty() && !command.force;
@@ -147,8 +158,7 @@ bool do_job(const Job& job, const fs::path& folder, const ListedCommand& command
       lock.take(folder.string());
       recorded = true;
       write_job(folder, record);
-      const int code = command.run(job.input, folder.string(), interrupted ? Begin::resume : Begin::again);
-      if (code != kSuccess) row.message = "ended with exit code " + std::to_string(code);
+      command.run(job.input, folder.string(), interrupted ? Begin::resume : Begin::again);
     }
   } catch (const std::exception& e) {
     row.message = message_of(e);
@@ -260,8 +270,11 @@ int run_inputs(const std::vector<std::string>& inputs, const std::string& shard,
                const ListedCommand& command) {
   const bool list = is_list(inputs, shard);
   if (!inputs.empty()) check_list_folder(output, list);
-  if (!list) return command.run(inputs.empty() ? std::string() : inputs[0], output, Begin::as_asked);
-  return run_jobs(jobs_of(inputs, output), parse_shard(shard), output, command);
+  if (list) return run_jobs(jobs_of(inputs, output), parse_shard(shard), output, command);
+  const std::string input = inputs.empty() ? std::string() : inputs[0];
+  check_inputs_stay(input, command, output);
+  command.run(input, output, Begin::as_asked);
+  return kSuccess;
 }
 
 void add_shard_option(CLI::App& command, std::string& shard) {

@@ -39,8 +39,8 @@ struct ListedCommand {
   std::string name;                     ///< "scan" or "process"
   bool force = false;                   ///< run all inputs again
   std::vector<std::string> files = {};  ///< that all inputs use, such as that of --params
-  /// Does one input and returns its exit code. An exception counts as a failure.
-  std::function<int(const std::string& input, const std::string& folder, Begin begin)> run;
+  /// Does one input. An exception counts as a failure.
+  std::function<void(const std::string& input, const std::string& folder, Begin begin)> run;
   /// Fingerprint of all that changes the result of an input: its files, parameters, version. Empty: not known, so that
   /// it is always run.
   std::function<std::string(const std::string& input)> key;

@@ -238,10 +238,8 @@ std::string key_of(const ProcessOptions& options, const std::string& input) {
   return print.text();
 }
 
-int run_process(const ProcessOptions& options) {
+void run_process(const ProcessOptions& options) {
   check_input_options(options);
-  check_inputs_stay({options.cloud}, options.output);
-  check_inputs_stay(files_of(options), options.output);
   const Parameters parameters = parameters_of(options);
   parameters.check();
   if (!options.prepared) check_output(options.output, options.force);
@@ -261,7 +259,6 @@ int run_process(const ProcessOptions& options) {
   write_files(options.output, done.result, done.workcell, run_info(options, parameters, done.workcell.name), options,
               done.history);
   print_summary(done.result, options.output, options);
-  return kSuccess;
 }
 
 /// Add --depth and the options that belong to it.
@@ -348,7 +345,7 @@ void add_process(CLI::App& app, Run& run) {
         one.cloud = input;
         one.output = folder;
         one.prepared = begin != Begin::as_asked;
-        return run_process(one);
+        run_process(one);
       };
       list.key = [&](const std::string& input) { return key_of(*options, input); };
       list.is_complete = [&](const std::string& folder) { return is_finished(folder, *options); };

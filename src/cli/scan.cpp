@@ -134,8 +134,8 @@ io::RunInfo run_info(const io::ScanTask& task, const Workcell& workcell) {
   return info;
 }
 
-/// Run a scan whose folder is prepared, and write its result. @return the exit code @throws ScanFailed
-int run_task(const fs::path& folder, const io::ScanTask& task, const io::SceneFile& file,
+/// Run a scan whose folder is prepared, and write its result. @throws ScanFailed
+void run_task(const fs::path& folder, const io::ScanTask& task, const io::SceneFile& file,
              const study::TracedScene& traced, std::unique_ptr<plan::Planner> planner, const ScanOptions& options) {
   study::SimulationOptions simulation;
   simulation.noise = study::parse_noise(task.noise);
@@ -197,10 +197,9 @@ int run_task(const fs::path& folder, const io::ScanTask& task, const io::SceneFi
   if (result.views.empty())
     throw ScanFailed(std::string("no view could be taken (") + to_string(result.stop_reason) +
                      "): the scan volume is out of the arm's reach");
-  return kSuccess;
 }
 
-int run_scan(const ScanOptions& options) {
+void run_scan(const ScanOptions& options) {
   const bool resuming = !options.resume.empty();
   const fs::path folder = resuming ? options.resume : options.output;
   io::ScanTask task = resuming ? task_to_resume(options, folder / "scan.json") : task_of(options);
@@ -219,7 +218,6 @@ int run_scan(const ScanOptions& options) {
   FolderLock lock;  // a list has its own
   if (!options.prepared) lock.take(folder.string());
   if (!resuming) {
-    check_inputs_stay({options.scene, options.parameter_file}, folder.string());
     if (!options.prepared) {
       prepare_output(folder.string(), options.force);
       lock.take(folder.string());
@@ -227,12 +225,12 @@ int run_scan(const ScanOptions& options) {
     io::write_scan_task(folder / "scan.json", task);
   } else if (options.mcap.empty() && is_finished(folder.string(), options)) {
     std::cerr << folder.string() << ": the scan is finished, there is nothing to do\n";
-    return kSuccess;
+    return;
   } else {
     io::remove_leftovers(folder);
     io::remove_leftovers(folder / "views");
   }
-  return run_task(folder, task, file, traced, std::move(planner), options);
+  run_task(folder, task, file, traced, std::move(planner), options);
 }
 
 /// Scan every scene of the list.
@@ -246,7 +244,7 @@ int run_scans(const ScanOptions& options) {
     one.output = folder;
     if (begin == Begin::resume && fs::exists(fs::path(folder) / "scan.json")) one.resume = folder;
     one.prepared = begin != Begin::as_asked;
-    return run_scan(one);
+    run_scan(one);
   };
   list.key = [&](const std::string& input) { return key_of(options, scene_file(input)); };
   list.is_complete = [&](const std::string& folder) { return is_finished(folder, options); };
