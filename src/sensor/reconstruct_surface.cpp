@@ -27,6 +27,12 @@ Real height_of(const Coefficients& x, const Real& a, const Real& b) {
   return x[0] + a * (x[1] + x[3] * a + x[4] * b) + b * (x[2] + x[5] * b);
 }
 
+/// Derivatives of that height by a and by b (m).
+template <typename Coefficients, typename Real>
+std::array<Real, 2> slopes_of(const Coefficients& x, const Real& a, const Real& b) {
+  return {x[1] + 2 * x[3] * a + x[4] * b, x[2] + x[4] * a + 2 * x[5] * b};
+}
+
 /// The paraboloid fitted around a block: its height over a plane at the place (a, b), in units of the distance between
 /// blocks. The plane is nearly tangent to the surface if there is little noise, and faces the sensor if there is much.
 struct Patch {
@@ -39,7 +45,8 @@ struct Patch {
   double height(double a, double b) const { return height_of(x, a, b); }
   /// Derivatives of the height by the place (m).
   Eigen::Vector2d slope(double a, double b) const {
-    return {x[1] + 2.0 * x[3] * a + x[4] * b, x[2] + x[4] * a + 2.0 * x[5] * b};
+    const auto [by_a, by_b] = slopes_of(x, a, b);
+    return {by_a, by_b};
   }
 };
 
@@ -210,7 +217,8 @@ class PatchFitter {
       const Lanes measured = z / per_height - origin[2];
       const Lanes a = da * origin[2] - origin[0], b = db * origin[2] - origin[1];
       const Lanes at_plane = height_of(x, a, b);
-      const Lanes rise = 1.0f - da * (x[1] + 2.0f * x[3] * a + x[4] * b) - db * (x[2] + x[4] * a + 2.0f * x[5] * b);
+      const auto [by_a, by_b] = slopes_of(x, a, b);
+      const Lanes rise = 1.0f - da * by_a - db * by_b;
       const Lanes bend = da * (x[3] * da + x[4] * db) + x[5] * db * db, root = rise * rise - 4.0f * bend * at_plane;
       const Lanes steepness = root.max(0.0f).sqrt();
       Lanes along = 2.0f * at_plane / (rise + steepness), residual = (measured - along) * steepness;
