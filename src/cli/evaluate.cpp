@@ -213,9 +213,9 @@ void add_evaluate(CLI::App& app, Run& run) {
   command->add_flag("--json", options->json, "print the metrics as JSON");
   command->footer(
       "In the table, as is the number of the fruit in the result (0: missed), IoU the overlap of their surfaces, seen\n"
-      "the true share of a fruit's surface near any point (in JSON: scanned), which scan can only estimate, and "
-      "recall\n"
-      "the share near points of a fruit: of the whole surface, or of the part that the arm can see (recall_obs).\n"
+      "the true share of a fruit's surface near any point (in JSON: scanned), which scan can only estimate, and\n"
+      "recall the share near points of a fruit: of the whole surface, or of the part that the arm can see\n"
+      "(recall_obs).\n"
       "docs/formats.md explains all metrics.\n"
       "Example:\n  agrisee evaluate truss/scene.yaml result --json");
   command->callback([options, &run] { run = [options] { return run_evaluate(*options); }; });
