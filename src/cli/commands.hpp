@@ -94,11 +94,6 @@ void check_scan(const Workcell& workcell, const Parameters& parameters);
 /// Create a folder. @throws UsageError if it exists and is not a folder, FileError if it cannot be created
 void make_folder(const std::string& folder);
 
-/// The files that only people look at, and all files of a result, those that a result can lack included.
-constexpr const char *kPicture = "truss.png", *kReport = "report.html";
-constexpr const char* kResultFiles[] = {"run.json",    "views.csv",  "cloud.ply", "cloud_raw.ply",
-                                        "fruits.json", "fruits.csv", kPicture,    kReport};
-
 /// Check that a folder can take a new result: that it holds none, or that `force` is on.
 /// @throws UsageError, which says how to go on, if it holds a result or an unfinished scan and `force` is off
 void check_output(const std::string& folder, bool force);

@@ -128,15 +128,15 @@ void check_output(const std::string& folder, bool force) {
     throw UsageError(folder + ": holds a scan that was not finished; continue it with `agrisee scan --resume " +
                      shell_word(folder) +
                      "`, or use --force to start again, which deletes the views that it has taken");
-  for (const char* name : kResultFiles)
+  for (const char* name : io::kResultFiles)
     if (fs::exists(fs::path(folder) / name, error))
       throw UsageError(folder + ": already holds a result (" + name + "); use --force to overwrite it");
 }
 
 bool is_finished(const std::string& folder, const CommonOptions& options) {
-  return std::all_of(std::begin(kResultFiles), std::end(kResultFiles), [&](const std::string& name) {
-    return fs::exists(fs::path(folder) / name) || (options.no_picture && name == kPicture) ||
-           (options.no_report && name == kReport);
+  return std::all_of(std::begin(io::kResultFiles), std::end(io::kResultFiles), [&](const std::string& name) {
+    return fs::exists(fs::path(folder) / name) || (options.no_picture && name == io::kPicture) ||
+           (options.no_report && name == io::kReport);
   });
 }
 
@@ -147,7 +147,7 @@ void prepare_output(const std::string& folder, bool force) {
   io::remove_leftovers(folder);
   remove_job(folder);  // a list must not take the new result for its own
   if (!force) return;
-  for (const char* name : kResultFiles) {  // no file of an older result may be mistaken for one of the new result
+  for (const char* name : io::kResultFiles) {  // no file of an older result may be mistaken for one of the new result
     const fs::path path = fs::path(folder) / name;
     fs::remove(path, error);
     if (error) throw FileError(path.string() + ": cannot be removed: " + error.message());
@@ -159,8 +159,8 @@ void write_files(const std::string& folder, const ScanResult& result, const Work
                  const CommonOptions& options, const io::ScanHistory& history) {
   io::write_result(folder, result, info);
   // The picture comes last: `scan --live` may have left a page already, which does not say that a result is complete.
-  if (!options.no_report) io::write_scan_page(fs::path(folder) / kReport, result, workcell, info, history);
-  if (!options.no_picture) io::write_picture(fs::path(folder) / kPicture, result, workcell);
+  if (!options.no_report) io::write_scan_page(fs::path(folder) / io::kReport, result, workcell, info, history);
+  if (!options.no_picture) io::write_picture(fs::path(folder) / io::kPicture, result, workcell);
 }
 
 namespace {

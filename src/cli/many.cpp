@@ -133,7 +133,7 @@ void check_inputs_stay(const std::string& input, const ListedCommand& command, c
   std::vector<std::string> used = command.files;
   used.push_back(input);
   for (const std::string& file : used)
-    for (const char* name : kResultFiles)
+    for (const char* name : io::kResultFiles)
       if (fs::equivalent(file, folder / name, error))
         throw UsageError(file + ": is an input and would be overwritten; name another output folder");
 }

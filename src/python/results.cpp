@@ -213,8 +213,9 @@ py::object completeness_of(const ScanResult& r) {
 
 /// @throws FileError if a folder holds a result
 void check_free(const std::filesystem::path& folder) {
-  for (const char* name : {"run.json", "scan.json", "views.csv", "cloud.ply", "cloud_raw.ply", "fruits.json",
-                           "fruits.csv", "truss.png", "report.html"})
+  std::vector<std::string> names(std::begin(io::kResultFiles), std::end(io::kResultFiles));
+  names.insert(names.begin() + 1, "scan.json");  // of a scan that was not finished
+  for (const std::string& name : names)
     if (std::error_code error; std::filesystem::exists(folder / name, error))
       throw FileError(folder.string() + ": already holds a result (" + name + "); use force=True to overwrite it");
 }
@@ -237,8 +238,8 @@ void write_files(const ScanResult& result, const std::filesystem::path& folder, 
   run_interruptibly([&] {
     io::write_result(folder, result, info);
     std::error_code error;
-    std::filesystem::remove(folder / "truss.png", error);  // the picture of an older result
-    io::write_scan_page(folder / "report.html", result, cell, info);
+    std::filesystem::remove(folder / io::kPicture, error);  // the picture of an older result
+    io::write_scan_page(folder / io::kReport, result, cell, info);
   });
 }
 

@@ -13,6 +13,12 @@
 
 namespace agrisee::io {
 
+/// The files of a result that only people look at: a picture (render.hpp) and a page (scan_page.hpp).
+constexpr const char *kPicture = "truss.png", *kReport = "report.html";
+/// All files of a result, those that it can lack included.
+constexpr const char* kResultFiles[] = {"run.json",    "views.csv",  "cloud.ply", "cloud_raw.ply",
+                                        "fruits.json", "fruits.csv", kPicture,    kReport};
+
 /// How a scan was made; part of run.json.
 struct RunInfo {
   std::string scene;               ///< name of the scene, or file of a ready cloud
