@@ -136,7 +136,7 @@ io::RunInfo run_info(const io::ScanTask& task, const Workcell& workcell) {
 
 /// Run a scan whose folder is prepared, and write its result. @throws ScanFailed
 void run_task(const fs::path& folder, const io::ScanTask& task, const io::SceneFile& file,
-             const study::TracedScene& traced, std::unique_ptr<plan::Planner> planner, const ScanOptions& options) {
+              const study::TracedScene& traced, std::unique_ptr<plan::Planner> planner, const ScanOptions& options) {
   study::SimulationOptions simulation;
   simulation.noise = study::parse_noise(task.noise);
   simulation.images = images_of(task);
