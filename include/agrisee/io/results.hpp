@@ -13,8 +13,8 @@
 
 namespace agrisee::io {
 
-/// The files of a result that only people look at: a picture (render.hpp) and a page (scan_page.hpp).
-constexpr const char *kPicture = "truss.png", *kReport = "report.html";
+constexpr const char* kPicture = "truss.png";   ///< of a result: for people, see render.hpp
+constexpr const char* kReport = "report.html";  ///< of a result: for people, see scan_page.hpp
 /// All files of a result, those that it can lack included.
 constexpr const char* kResultFiles[] = {"run.json",    "views.csv",  "cloud.ply", "cloud_raw.ply",
                                         "fruits.json", "fruits.csv", kPicture,    kReport};
