@@ -19,6 +19,9 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <limits>
+#include <utility>
+#include <vector>
 
 namespace agrisee {
 
@@ -82,6 +85,15 @@ class VoteGrid {
     return {low(key, y_shift_), low(key >> y_shift_, z_shift_ - y_shift_), static_cast<std::int64_t>(key >> z_shift_)};
   }
 
+  /// The number of a cell in its line, which runs along x.
+  std::size_t x(std::uint64_t key) const { return static_cast<std::size_t>(key & (cells_of_line() - 1)); }
+  /// The number of a cell's line: that of its plane, which z gives, times the lines of a plane, and y.
+  std::uint64_t line(std::uint64_t key) const { return key >> y_shift_; }
+  /// How many cells a line can have.
+  std::uint64_t cells_of_line() const { return std::uint64_t{1} << y_shift_; }
+  /// How many lines a plane can have.
+  std::uint64_t lines_of_plane() const { return std::uint64_t{1} << (z_shift_ - y_shift_); }
+
   Eigen::Vector3d origin = Eigen::Vector3d::Zero();  ///< the first finite point (m), the center of cell `-before`
   double pitch;                                      ///< edge length of a cell (m)
   Cell before = Cell::Zero();                        ///< cell of the origin's grid that would be number 0
@@ -144,56 +156,92 @@ inline std::vector<VotedCell> count_votes(const Uninitialized<std::uint64_t>& vo
   return cells;
 }
 
-/// Sums over the 27 cells about each of some cells, over which a center's votes spread. They are nine rows of three.
-/// The cells of a row are consecutive in the list, and move forward in it as the cell does.
-class RowsOfCells {
+/// Sums over the 27 cells about each cell, over which a center's votes spread. The cells with the same y and z are a
+/// line. The votes of a line and of the eight lines about it are added up once, by x, for all cells of the line.
+class SumsOfCells {
  public:
   /// @param cells ascending; must outlive this
-  RowsOfCells(const std::vector<VotedCell>& cells, const VoteGrid& grid) : cells_(cells), grid_(grid) {
-    for (std::uint64_t row = 0; row < 9; ++row) back_[row] = grid.pack(1, 1, 1) - grid.pack(0, row % 3, row / 3);
-  }
-
-  /// The votes about a cell; call it for ascending cells.
-  float total(std::uint64_t cell) {
-    float total = 0.0f;  // of whole numbers
-    for (std::size_t row = 0; row < 9; ++row) {
-      const std::uint64_t first = cell - back_[row];
-      std::size_t& at = rows_[row];
-      while (at < cells_.size() && cells_[at].key < first) ++at;
-      for (std::size_t k = at; k < cells_.size() && cells_[k].key <= first + 2; ++k) total += cells_[k].votes;
+  SumsOfCells(const std::vector<VotedCell>& cells, const VoteGrid& grid)
+      : cells_(cells), grid_(grid), by_x_(grid.cells_of_line() + 1, Sums::Zero()) {
+    for (std::size_t i = 0; i < cells.size(); ++i) {
+      const std::uint64_t line = grid.line(cells[i].key);
+      if (lines_.empty() || lines_.back().number != line) lines_.push_back({line, i});
     }
-    return total;
+    lines_.push_back({std::numeric_limits<std::uint64_t>::max(), cells.size()});
   }
 
-  /// The mean place of the votes (m) about the cell for which total() was called last.
-  Eigen::Vector3d center(std::uint64_t cell, double total) const {
-    Eigen::Vector3d mean = Eigen::Vector3d::Zero();
-    for (std::size_t row = 0; row < 9; ++row)
-      for (std::size_t k = rows_[row]; k < cells_.size() && cells_[k].key <= cell - back_[row] + 2; ++k)
-        mean += double(cells_[k].votes) * (grid_.unpack(cells_[k].key) + grid_.before).template cast<double>();
-    return grid_.origin + grid_.pitch * mean / total;
+  /// Calls f(begin, end) for the cells of each line, ascending, after adding up the votes about the line.
+  template <typename F>
+  void for_each_line(F&& f) {
+    for (std::size_t l = 0; l + 1 < lines_.size(); ++l) {
+      if ((l & 0xFF) == 0) throw_if_cancelled();
+      for_each_near(lines_[l], [&](const VotedCell& c, const Sums& one) { by_x_[grid_.x(c.key)] += c.votes * one; });
+      f(cells_.data() + lines_[l].first, cells_.data() + lines_[l + 1].first);
+      for_each_near(lines_[l], [&](const VotedCell& c, const Sums&) { by_x_[grid_.x(c.key)].setZero(); });
+    }
+  }
+
+  /// The votes about a cell of the present line.
+  float total(std::uint64_t cell) const {
+    const std::size_t x = grid_.x(cell);
+    return by_x_[x - 1][0] + by_x_[x][0] + by_x_[x + 1][0];
+  }
+
+  /// The mean place of the votes (m) about a cell of the present line.
+  Eigen::Vector3d center(std::uint64_t cell) const {
+    const std::size_t x = grid_.x(cell);
+    const Eigen::Vector4d sums = (by_x_[x - 1] + by_x_[x] + by_x_[x + 1]).cast<double>();
+    const Eigen::Vector3d off(double(by_x_[x + 1][0] - by_x_[x - 1][0]), sums[1], sums[2]);
+    const Eigen::Vector3d at = (grid_.unpack(cell) + grid_.before).cast<double>();
+    return grid_.origin + grid_.pitch * (sums[0] * at + off) / sums[0];
   }
 
  private:
+  /// Of cells with the same x: their votes, and these times how far their line is from the present one in y and in z.
+  /// Whole numbers, which single precision holds exactly.
+  using Sums = Eigen::Vector4f;
+  struct Line {
+    std::uint64_t number;
+    std::size_t first;  // its first cell
+  };
+
+  /// Calls f(cell, sums of one vote for it) for the cells of a line and of the eight about it. Call it for ascending
+  /// lines.
+  template <typename F>
+  void for_each_near(const Line& line, F&& f) {
+    for (std::size_t plane = 0; plane < 3; ++plane) {
+      const std::uint64_t first = line.number - 1 + plane * grid_.lines_of_plane() - grid_.lines_of_plane();
+      std::size_t& at = first_near_[plane];
+      while (lines_[at].number < first) ++at;
+      for (std::size_t n = at; lines_[n].number - first <= 2; ++n) {
+        const Sums one(1.0f, static_cast<float>(lines_[n].number - first) - 1.0f, static_cast<float>(plane) - 1.0f,
+                       0.0f);
+        for (std::size_t c = lines_[n].first; c < lines_[n + 1].first; ++c) f(cells_[c], one);
+      }
+    }
+  }
+
   const std::vector<VotedCell>& cells_;
   const VoteGrid& grid_;
-  std::array<std::size_t, 9> rows_{};  // where each row may begin in the list
-  std::array<std::uint64_t, 9> back_;  // from a cell's key to that of the first cell of each row
+  std::vector<Line> lines_;                  // ascending; one more marks the end
+  std::array<std::size_t, 3> first_near_{};  // of the lines about the present one, in each plane
+  std::vector<Sums> by_x_;                   // of the present line and the eight about it
 };
 
 /// The cells about which at least `min_votes` votes lie, ascending, with their sums.
 /// @param wanted bool(cell), called for ascending cells: the others are left out
-/// @param found found(cell, total, rows) receives them
+/// @param found found(cell, total, sums) receives them
 template <typename Wanted, typename Found>
 void sum_votes(const std::vector<VotedCell>& cells, const VoteGrid& grid, double min_votes, Wanted&& wanted,
                Found&& found) {
-  RowsOfCells rows(cells, grid);
-  for (const VotedCell& c : cells) {
-    if (((&c - cells.data()) & 0xFFFF) == 0) throw_if_cancelled();
-    if (double(c.votes) < min_votes / 27.0 || !wanted(c.key)) continue;
-    const auto total = double(rows.total(c.key));
-    if (total >= min_votes) found(c.key, total, rows);
-  }
+  SumsOfCells sums(cells, grid);
+  sums.for_each_line([&](const VotedCell* begin, const VotedCell* end) {
+    for (const VotedCell* c = begin; c != end; ++c) {
+      if (double(c->votes) < min_votes / 27.0) continue;  // a center has at least the mean of the cells about it
+      const auto total = double(sums.total(c->key));
+      if (total >= min_votes && wanted(c->key)) found(c->key, total, std::as_const(sums));
+    }
+  });
 }
 
 /// Most votes first; equal ones in the order of their cells.
@@ -272,8 +320,8 @@ std::vector<VotedCenter> vote_for_centers(const PointCloud<S>& cloud, double rad
     return detail::count_votes(detail::cast_votes(cloud, grid, radius_min, radius_max, votes, keeps));
   };
   std::vector<detail::VoteSum> sums;
-  const auto keep_sum = [&](std::uint64_t cell, double total, const detail::RowsOfCells& rows) {
-    sums.push_back({cell, total, rows.center(cell, total)});
+  const auto keep_sum = [&](std::uint64_t cell, double total, const detail::SumsOfCells& about) {
+    sums.push_back({cell, total, about.center(cell)});
   };
   if (fresh.empty()) {
     detail::sum_votes(cells_of(all, all), grid, min_votes, all, keep_sum);
@@ -281,7 +329,7 @@ std::vector<VotedCenter> vote_for_centers(const PointCloud<S>& cloud, double rad
     const auto is_fresh = [&](std::size_t i) { return fresh[i] != 0; };
     detail::VotedPlaces places(grid);
     detail::sum_votes(cells_of(is_fresh, all), grid, kFreshShare * min_votes, all,
-                      [&](std::uint64_t cell, double, const detail::RowsOfCells&) { places.add(cell); });
+                      [&](std::uint64_t cell, double, const detail::SumsOfCells&) { places.add(cell); });
     const auto touches = [&](std::uint64_t cell) { return places.may_touch(cell); };
     detail::sum_votes(
         cells_of(all, touches), grid, min_votes, [&](std::uint64_t cell) { return places.has(cell); }, keep_sum);
