@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <agrisee/arm/ur.hpp>
 #include <agrisee/core/cancellation.hpp>
 #include <agrisee/core/rigid_pose.hpp>
 #include <agrisee/core/stopwatch.hpp>
@@ -140,7 +139,7 @@ std::optional<std::string> Pipeline::doubt_of_joints() const {
   double farthest = 0.0;
   for (const View& v : views_) {
     if (!v.joints) continue;
-    const Pose by_joints = workcell_.world_T_base * arm::forward(*v.joints, workcell_.arm) * workcell_.tool0_T_optical;
+    const Pose by_joints = optical_pose(workcell_, *v.joints);
     const double off = (by_joints.translation() - v.world_T_optical.translation()).norm();
     far += off > kFar;
     farthest = std::max(farthest, off);

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // A UR3 that holds an L515 before a scene, for a desk without a robot: takes joint goals, publishes joint states, the
 // mounting's transforms, and depth frames whenever the arm stands. Topics and parameters: docs/ros.md.
-#include <agrisee/arm/ur.hpp>
 #include <agrisee/io/scene.hpp>
 #include <agrisee/study/capture.hpp>
 #include <agrisee/study/traced_scene.hpp>
@@ -130,7 +129,7 @@ class SimNode {
     if (stamp_.isZero() || moving(stamp_)) return;
     const Joints q = joints_at(stamp_);
     if (!frame_ || q != frame_joints_) {
-      const Pose world_T_optical = file_.workcell.world_T_base * arm::forward(q) * file_.workcell.tool0_T_optical;
+      const Pose world_T_optical = optical_pose(file_.workcell, q);
       // View k of `agrisee scan` draws its noise by k: here that is the goal's number.
       const std::uint64_t view = goals_ > 0 ? goals_ - 1 : 0;
       frame_ = study::capture(world_, file_.workcell.sensor, world_T_optical, study::parse_noise(options_.noise),

@@ -3,7 +3,7 @@
 /// The workcell of a scan: the arm and its mounting, the sensor, the volume to scan and the spaces to keep out of.
 #pragma once
 
-#include <agrisee/arm/ur_model.hpp>
+#include <agrisee/arm/ur.hpp>
 #include <agrisee/core/pose.hpp>
 #include <agrisee/geometry/aabb.hpp>
 #include <agrisee/geometry/primitives.hpp>
@@ -29,5 +29,12 @@ struct Workcell {
   Aabb scan_volume;                                                             ///< what is scanned (m, world)
   std::vector<KeepOut> keep_out;                                                ///< neither arm nor sensor may enter
 };
+
+/// The pose of the optical frame in world at joint angles `q` (rad), by the model of the arm and the hand-eye
+/// transform.
+/// @throws InputError if a joint angle is not finite
+inline Pose optical_pose(const Workcell& workcell, const Joints& q) {
+  return workcell.world_T_base * arm::forward(q, workcell.arm) * workcell.tool0_T_optical;
+}
 
 }  // namespace agrisee

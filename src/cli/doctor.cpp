@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // agrisee doctor: what this program and this machine can do, and whether a workcell makes sense.
 #include <agrisee/arm/collision.hpp>
-#include <agrisee/arm/ur.hpp>
 #include <agrisee/io/scene.hpp>
 #include <agrisee/plan/arm_reach.hpp>
 #include <agrisee/plan/directions.hpp>
@@ -159,7 +158,7 @@ void look_at_frames(const io::SceneFile& file, Findings& out) {
                                std::string(contact->with));
     return;
   }
-  const Pose start = cell.world_T_base * arm::forward(cell.start, cell.arm) * cell.tool0_T_optical;
+  const Pose start = optical_pose(cell, cell.start);
   out.tell(Level::ok, "robot.start: the camera is at " + place_text(start.translation()) + " and looks along " +
                           place_text(start.linear().col(2)) + ", touching nothing");
 }

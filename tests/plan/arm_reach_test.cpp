@@ -3,6 +3,8 @@
 #include <agrisee/arm/reachability.hpp>
 #include <agrisee/plan/arm_reach.hpp>
 
+#include <limits>
+
 #include "plan/plan_cases.hpp"
 
 using namespace cases;
@@ -54,6 +56,22 @@ bool answers(const Workcell& w, const ViewRequest& r, double distance, double ne
 }
 
 }  // namespace
+
+TEST_CASE("the joints of a view put the camera where the view is, for each arm") {
+  const auto put = [](const Workcell& w) {
+    const auto view = reach_of(w)(request(40, 20, 0.4, 0.35, 0.5), w.start);
+    REQUIRE(view.has_value());
+    CHECK(optical_pose(w, *view->joints).isApprox(view->world_T_optical, 1e-9));
+    return *view->joints;
+  };
+  Workcell w = cell();
+  const Joints of_ur3 = put(w);
+  w.arm = arm::ur_model("ur5e");
+  CHECK_FALSE(put(w).isApprox(of_ur3, 0.1));
+  Joints q = w.start;
+  q[2] = std::numeric_limits<double>::quiet_NaN();
+  CHECK_THROWS_AS(optical_pose(w, q), InputError);
+}
 
 TEST_CASE("arm reach: the mount is the workcell's, its limits and housing are the defaults") {
   const Workcell w = cell();
