@@ -19,14 +19,7 @@ Mesh read_obj(const std::filesystem::path& path) {
   while (lines.next_filled(line)) {
     const std::string_view keyword = next_word(line);
     if (keyword == "v") {
-      Eigen::Vector3f v;
-      for (int a = 0; a < 3; ++a) {
-        const std::string_view text = next_word(line);
-        const auto value = to_number(text);
-        if (!value) bad(text.empty() ? "a vertex with fewer than 3 coordinates" : excerpt(text) + " is not a number");
-        v[a] = static_cast<float>(*value);
-      }
-      mesh.vertices.push_back(v);
+      mesh.vertices.push_back(next_vertex(line, bad));
     } else if (keyword == "f") {
       std::uint32_t first = 0, previous = 0;
       std::size_t corners = 0;

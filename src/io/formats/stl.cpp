@@ -96,14 +96,7 @@ std::vector<Eigen::Vector3f> text_corners(const std::filesystem::path& path, std
     if (word == "vertex") {
       if (!loop) bad("a vertex outside of a loop");
       if (++in_loop > 3) bad("a facet with more than 3 vertices");
-      Eigen::Vector3f v;
-      for (int a = 0; a < 3; ++a) {
-        const std::string_view text = next_word(line);
-        const auto value = to_number(text);
-        if (!value) bad(text.empty() ? "a vertex with fewer than 3 coordinates" : excerpt(text) + " is not a number");
-        v[a] = static_cast<float>(*value);
-      }
-      corners.push_back(v);
+      corners.push_back(next_vertex(line, bad));
     } else if (word == "outer") {
       if (loop) bad("a loop inside of a loop");
       loop = true;
