@@ -83,7 +83,7 @@ bool has_normal(const Cloud& cloud, std::size_t i) {
 }
 
 /// Normals that came with the cloud are kept, except those that clearly face away from their sensor. These are turned.
-/// Normals that are zero or not finite are replaced by zeros.
+/// Normals that are zero or not finite are replaced by zeros, longer ones than unit normals are shortened.
 /// @return indices of the points whose normals are kept
 Indices keep_given_normals(Cloud& cloud, const CloudOrigin& origin) {
   const double away = std::cos(kFacingAway);
@@ -95,6 +95,8 @@ Indices keep_given_normals(Cloud& cloud, const CloudOrigin& origin) {
       continue;
     }
     known.push_back(static_cast<Index>(i));
+    constexpr float kLongest = 1.02f;  // rounding and averages leave no longer ones
+    if (n.squaredNorm() > kLongest * kLongest) n.normalize();
     const auto sensor = seen_from(cloud, i, origin);
     if (!sensor) continue;
     n = orient_towards(n, *sensor - cloud.points[i].cast<double>(), away);

@@ -73,19 +73,45 @@ SeenOn seen_on_of(const Cloud& cloud, const Parameters& parameters, const CloudO
   };
 }
 
-/// @throws InputError if a sensor's position is not finite, or farther from all points than any sensor sees
+/// @throws InputError if a sensor stood farther from all points than any sensor sees
 void check_distance(const Cloud& cloud, const std::vector<Eigen::Vector3d>& sensors) {
   constexpr double kFarthest = 20.0;  // m; depth cameras see less far, and 20 mm are nearer than any of them sees
   const Aabb box = bounding_box(cloud.points);
   if (box.empty()) return;
   for (const Eigen::Vector3d& sensor : sensors) {
-    check_input(sensor.allFinite(), "the position of a sensor (the viewpoint) is not finite");
     const double distance = (sensor - sensor.cwiseMax(box.min).cwiseMin(box.max)).norm();
     if (!(distance <= kFarthest))
       throw InputError("a sensor stood " + metres(distance) +
                        " from the cloud: is its position in millimetres? Positions have to be in metres, in the "
                        "frame of the cloud");
   }
+}
+
+/// The points that were measured: not those whose coordinates are not finite, nor those at the origin or at a sensor,
+/// where cameras put pixels without return.
+Indices measured_indices(const Cloud& cloud, const CloudOrigin& origin, std::vector<std::string>& warnings) {
+  constexpr float kNear = 0.001f;  // m; no sensor measures as near
+  std::vector<Eigen::Vector3f> places = {Eigen::Vector3f::Zero()};
+  if (origin.viewpoint) places.push_back(origin.viewpoint->cast<float>());
+  for (const Eigen::Vector3d& sensor : origin.sensors) places.push_back(sensor.cast<float>());
+  const auto no_return = [&](const Eigen::Vector3f& p) {
+    return std::any_of(places.begin(), places.end(),
+                       [&](const Eigen::Vector3f& place) { return (p - place).squaredNorm() < kNear * kNear; });
+  };
+  Indices kept;
+  kept.reserve(cloud.size());
+  std::size_t left_out = 0;
+  for (std::size_t i = 0; i < cloud.size(); ++i) {
+    if (!is_finite(cloud.points[i])) continue;
+    if (no_return(cloud.points[i]))
+      ++left_out;
+    else
+      kept.push_back(static_cast<Index>(i));
+  }
+  if (left_out > 0)
+    warnings.push_back(std::to_string(left_out) + " of " + std::to_string(cloud.size()) +
+                       " points lie at (0, 0, 0) or at the sensor, as pixels without return do; they were left out");
+  return kept;
 }
 
 /// The origin of the cluster frame where no scan volume is known.
@@ -163,6 +189,14 @@ Cloud without_flying_pixels(Cloud&& cloud, double max_incidence, const CloudOrig
 }  // namespace
 
 void check_origin(const Cloud& cloud, const CloudOrigin& origin) {
+  const auto finite = [](const Eigen::Vector3d& p) { return p.allFinite(); };
+  check_input(std::all_of(origin.sensors.begin(), origin.sensors.end(), finite) &&
+                  (!origin.viewpoint || finite(*origin.viewpoint)),
+              "the position of a sensor (the viewpoint) is not finite");
+  check_input(!origin.cluster_origin || finite(*origin.cluster_origin), "CloudOrigin::cluster_origin is not finite");
+  for (std::size_t v = 0; v < origin.detected.size(); ++v)
+    if (!origin.detected[v].frame)
+      throw InputError("CloudOrigin::detected: view " + std::to_string(v) + " has no frame");
   check_distance(cloud, origin.sensors);
   if (origin.viewpoint) check_distance(cloud, {*origin.viewpoint});
   if (!origin.sensors.empty() && !cloud.empty() && cloud.views.empty() && cloud.normals.empty())
@@ -206,15 +240,18 @@ void check_units(const Cloud& cloud, const Parameters& parameters) {
 ScanResult process(Cloud&& cloud, const Parameters& parameters, const CloudOrigin& origin,
                    const SeenThrough& seen_through, int threads) {
   parameters.check();
-  check_units(cloud, parameters);
-  check_origin(cloud, origin);
+  check_lengths(cloud);
   ScanResult result;
-  const Indices finite = finite_indices(cloud);
-  result.raw = finite.size() == cloud.size() ? std::move(cloud) : select(cloud, finite);
-  if (result.raw.views.empty()) result.raw.views.assign(result.raw.size(), -1);
-  check_hidden(result.raw, parameters, origin, result.warnings);
-  result.cluster_origin = origin.cluster_origin ? *origin.cluster_origin : corner_of(result.raw);
   Timing& t = result.seconds;
+  timed(t.filter, [&] {
+    const Indices measured = measured_indices(cloud, origin, result.warnings);
+    result.raw = measured.size() == cloud.size() ? std::move(cloud) : select(cloud, measured);
+    check_units(result.raw, parameters);
+    check_origin(result.raw, origin);
+    if (result.raw.views.empty()) result.raw.views.assign(result.raw.size(), -1);
+    check_hidden(result.raw, parameters, origin, result.warnings);
+  });
+  result.cluster_origin = origin.cluster_origin ? *origin.cluster_origin : corner_of(result.raw);
 
   // Clean: statistical outlier removal.
   timed(t.filter,
@@ -222,9 +259,10 @@ ScanResult process(Cloud&& cloud, const Parameters& parameters, const CloudOrigi
 
   // Split: region growing, DBSCAN on the residual, bodies that compete for the points.
   const CloudNoise noise = timed(t.normals, [&] { return provide_normals(result.cloud, parameters, origin, threads); });
-  check_side(result.cloud, parameters, origin, result.warnings);
-  timed(t.filter,
-        [&] { result.cloud = without_flying_pixels(std::move(result.cloud), parameters.max_incidence, origin); });
+  timed(t.filter, [&] {
+    check_side(result.cloud, parameters, origin, result.warnings);
+    result.cloud = without_flying_pixels(std::move(result.cloud), parameters.max_incidence, origin);
+  });
   Parameters fitted = parameters;
   BodyParameters& bodies = fitted.split.bodies;
   constexpr double kAlike = 5.0;  // errors of neighbors are alike, so a body that they carry is off by more than one's

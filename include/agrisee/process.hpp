@@ -40,7 +40,8 @@ struct CloudOrigin {
 /// Check that a cloud can have been seen from its origin. `process` calls it.
 /// @throws InputError if a sensor is more than 20 m from the cloud, so that its position must be in millimetres; if
 ///   there are sensor positions, but the points have neither views nor normals; if `origin` has a viewpoint and no
-///   sensors, but `cloud.views` names more than one view, as correct normals would be turned
+///   sensors, but `cloud.views` names more than one view, as correct normals would be turned; if a position is not
+///   finite, or a detected view has no frame
 void check_origin(const Cloud& cloud, const CloudOrigin& origin);
 
 /// The number of a cloud's own normals that face away from their sensors; `process` would turn them with
@@ -60,8 +61,9 @@ void check_units(const Cloud& cloud, const Parameters& parameters = {});
 
 /// Find the fruit in a cloud: clean, segment and locate.
 ///
-/// Points that are not finite are dropped. The cloud's own normals are kept; with `origin.check_normals`, those that
-/// face away from their sensor are turned. Missing normals are estimated and turned towards the sensors or the
+/// Points that are not finite are dropped, and so are those at the origin or at a sensor, where cameras put pixels
+/// without return; the result then has a warning. The cloud's own normals are kept; with `origin.check_normals`, those
+/// that face away from their sensor are turned. Missing normals are estimated and turned towards the sensors or the
 /// viewpoint; without either, so that neighbors agree. If normals had to be estimated, bodies are fitted with five
 /// times the local noise of the cloud (`split.bodies.fit.sensor_noise`), because the errors of a ready cloud are
 /// correlated beyond the neighborhood in which they can be told from the surface. Any number of points is accepted; too
@@ -76,15 +78,15 @@ void check_units(const Cloud& cloud, const Parameters& parameters = {});
 /// @param origin where the points were seen from
 /// @param seen_through evidence of free space from the views, or empty
 /// @param threads number of threads; the result does not depend on it
-/// @throws ParameterError; InputError for a cloud that cannot be in metres (check_units), for one viewpoint of several
-///   views (check_origin), if a point's view has no sensor position, or if the points contradict the viewpoint;
-///   Cancelled (core/cancellation.hpp)
+/// @throws ParameterError; InputError for arrays of different lengths (check_lengths), for a cloud that cannot be in
+///   metres (check_units), for one viewpoint of several views or a detection without frame (check_origin), if a point's
+///   view has no sensor position, or if the points contradict the viewpoint; Cancelled (core/cancellation.hpp)
 ScanResult process(const Cloud& cloud, const Parameters& parameters = {}, const CloudOrigin& origin = {},
                    const SeenThrough& seen_through = {}, int threads = 1);
 
 /// Like process(const Cloud&, ...), for a cloud that may be consumed; it becomes the result's `raw` cloud without a
 /// copy.
-/// @param cloud points (m); all finite
+/// @param cloud points (m)
 /// @param parameters, origin, seen_through, threads as above
 /// @throws as above
 ScanResult process(Cloud&& cloud, const Parameters& parameters = {}, const CloudOrigin& origin = {},

@@ -326,8 +326,10 @@ MaskEvidence mask_evidence(const std::vector<DetectedView>& views, const BodyPar
   parameters.check();
   MaskEvidence out;
   Images images;
-  for (const DetectedView& view : views)
+  for (const DetectedView& view : views) {
+    check_input(view.frame != nullptr, "mask_evidence: a view has no frame");
     if (view.frame->detected) images.push_back(view.masks ? view.masks : read_masks(view, bodies, parameters));
+  }
   if (images.empty()) return out;
   out.log_odds = [images, parameters](const Ellipsoid& body) { return log_odds_of(images, body, parameters); };
   out.most = parameters.max_log_odds;

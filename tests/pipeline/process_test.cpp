@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <agrisee/cloud/spacing.hpp>
+#include <agrisee/cloud/split.hpp>
 #include <agrisee/core/random.hpp>
 #include <agrisee/neighbors/kdtree.hpp>
 #include <agrisee/process.hpp>
@@ -91,6 +92,59 @@ TEST_CASE("positions of sensors in millimetres, or for points without views, are
   bare.normals.clear();
   bare.views.clear();
   CHECK_THROWS_WITH(process(bare, {}, from_eye(true)), test::says("from which view each point comes"));
+}
+
+TEST_CASE("arrays of different lengths are refused") {
+  const auto with = [](auto&& change) {
+    Cloud cloud = seen();
+    change(cloud);
+    return cloud;
+  };
+  for (const Cloud& wrong :
+       {with([](Cloud& c) { c.normals.resize(3); }), with([](Cloud& c) { c.normals.emplace_back(0, 0, 1); }),
+        with([](Cloud& c) { c.views.resize(2); }), with([](Cloud& c) { c.colors.resize(5); }),
+        with([](Cloud& c) { c.instances.resize(1); })}) {
+    CHECK_THROWS_WITH(process(wrong), test::says("there must be one for each point, or none"));
+    CHECK_THROWS_AS(process(Cloud(wrong)), InputError);
+    CHECK_THROWS_AS(thinned(wrong, {}), InputError);
+    CHECK_THROWS_AS(split(wrong), InputError);
+  }
+  const Cloud few = with([](Cloud& c) { c.colors.resize(7); });
+  CHECK_THROWS_WITH(process(few), test::says("the cloud has " + std::to_string(few.size()) + " points, but 7 colors"));
+}
+
+TEST_CASE("an origin that is not finite, or a detection without frame, is refused") {
+  CloudOrigin nowhere, empty;
+  nowhere.cluster_origin = Eigen::Vector3d(0.0, std::nan(""), 0.0);
+  CHECK_THROWS_WITH(process(seen(), {}, nowhere), test::says("CloudOrigin::cluster_origin is not finite"));
+  empty.detected.resize(1);
+  CHECK_THROWS_WITH(process(seen(), {}, empty), test::says("CloudOrigin::detected: view 0 has no frame"));
+}
+
+TEST_CASE("points of pixels without return are left out, and counted") {
+  Cloud cloud = seen();
+  cloud.normals.clear();
+  cloud.views.clear();
+  const std::size_t measured = cloud.size();
+  cloud.points.resize(3 * measured, Eigen::Vector3f::Zero());
+  CloudOrigin origin;
+  origin.viewpoint = kEye;
+  const std::string rest = " of " + std::to_string(3 * measured) + " points lie at (0, 0, 0) or at the sensor";
+  ScanResult result = process(cloud, {}, origin);
+  check_found(result, 0.004);
+  CHECK(result.raw.size() == measured);
+  REQUIRE_FALSE(result.warnings.empty());
+  CHECK_THAT(result.warnings[0], test::says(std::to_string(2 * measured) + rest));
+  for (std::size_t i = measured; i < cloud.size(); ++i) cloud.points[i] = kEye.cast<float>();
+  result = process(cloud, {}, origin);
+  check_found(result, 0.004);
+  CHECK(result.raw.size() == measured);
+}
+
+TEST_CASE("normals that are longer than unit normals are shortened") {
+  Cloud cloud = seen();
+  for (std::size_t i = 0; i < cloud.size(); i += 2) cloud.normals[i] *= 5.0f;
+  check_found(process(cloud, {}, from_eye(true)));
 }
 
 TEST_CASE("a cloud in millimetres is refused, large clouds in metres are not") {

@@ -204,6 +204,7 @@ template <typename S>
 Split split(const PointCloud<S>& cloud, const SplitParameters& parameters = {}, const SeenThrough& seen_through = {},
             int threads = 1, const MaskEvidence& masks = {}, const SeenOn& seen_on = {}) {
   parameters.check();
+  check_lengths(cloud);
   check_input(cloud.normals.size() == cloud.points.size(), "split: the cloud has no normals");
   Split out;
   out.labels.assign(cloud.size(), 0);
@@ -240,6 +241,7 @@ template <typename S>
 Split track(const PointCloud<S>& cloud, const std::vector<FoundBody>& known, const SplitParameters& parameters = {},
             const SeenThrough& seen_through = {}, const std::vector<char>& fresh = {}, const MaskEvidence& masks = {}) {
   parameters.check();
+  check_lengths(cloud);
   check_input(cloud.normals.size() == cloud.points.size(), "track: the cloud has no normals");
   check_input(fresh.empty() || fresh.size() == cloud.size(), "track: fresh needs one value a point");
   Split out;

@@ -10,6 +10,7 @@
 #include <agrisee/core/types.hpp>
 
 #include <cmath>
+#include <string>
 
 namespace agrisee {
 
@@ -27,6 +28,21 @@ struct PointCloud {
   /// True if there are no points.
   bool empty() const { return points.empty(); }
 };
+
+/// Check that each array of a cloud is empty or as long as `points`.
+/// @throws InputError that names the array and both lengths
+template <typename S>
+void check_lengths(const PointCloud<S>& cloud) {
+  const auto check = [&](const char* name, const auto& values) {
+    if (!values.empty() && values.size() != cloud.points.size())
+      throw InputError("the cloud has " + std::to_string(cloud.points.size()) + " points, but " +
+                       std::to_string(values.size()) + " " + name + ": there must be one for each point, or none");
+  };
+  check("normals", cloud.normals);
+  check("views", cloud.views);
+  check("colors", cloud.colors);
+  check("instances", cloud.instances);
+}
 
 /// Traits of AgriSEE's own clouds.
 template <typename S>
@@ -93,8 +109,10 @@ PointCloud<scalar_t<C>> select(const C& cloud, const Indices& indices) {
 }
 
 /// Copies the points `indices` of a PointCloud with all that is known of them.
+/// @throws InputError as check_lengths
 template <typename S>
 PointCloud<S> select(const PointCloud<S>& cloud, const Indices& indices) {
+  check_lengths(cloud);
   PointCloud<S> out;
   const auto copy = [&](const auto& from, auto& to) {
     if (from.empty()) return;
