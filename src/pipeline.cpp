@@ -19,6 +19,8 @@
 #include <string>
 #include <utility>
 
+#include "scan_doubts.hpp"
+
 namespace agrisee {
 namespace {
 
@@ -60,21 +62,28 @@ Pipeline::Pipeline(const Workcell& workcell, const Parameters& parameters, Pipel
       reach_(std::move(options.reach)),
       approach_(std::move(options.approach)),
       planner_(std::move(options.planner)),
-      threads_(options.threads) {
+      threads_(options.threads),
+      doubts_(std::make_unique<ScanDoubts>()) {
   parameters_.check();
   check_volume(workcell.scan_volume);
   workcell_.world_T_base = made_rigid(workcell.world_T_base, "world_T_base", &warnings_);
   workcell_.tool0_T_optical = made_rigid(workcell.tool0_T_optical, "tool0_T_optical", &warnings_);
+  if (const auto fault = fault_of_hand_eye(workcell_)) throw InputError("tool0_T_optical: " + *fault);
   map_ = make_map(workcell_, parameters_, threads_);
   own_arm_ = !reach_;
   if (workcell.tool0_T_tool) workcell_.tool0_T_tool = made_rigid(*workcell.tool0_T_tool, "tool0_T_tool", &warnings_);
   workcell_.sensor.check();
-  if (auto doubt = sensor::doubt_of(workcell_.sensor.intrinsics)) warnings_.push_back(std::move(*doubt));
+  for (std::string& doubt : doubts_of(workcell_, parameters_.gain.distance_min, parameters_.gain.distance_max))
+    warnings_.push_back(std::move(doubt));
   if (own_arm_) check_joints("start", workcell_, workcell_.start);
   if (!reach_ && !approach_) approach_ = pick::approach_of(workcell_, parameters_.picking);
-  if (!reach_) reach_ = plan::reach_of(workcell_);
+  reach_ = own_arm_ ? plan::reach_of(workcell_) : plan::checked(std::move(reach_));
   if (!planner_) planner_ = make_planner(workcell_, parameters_, options.seed, threads_);
 }
+
+Pipeline::Pipeline(Pipeline&&) noexcept = default;
+Pipeline& Pipeline::operator=(Pipeline&&) noexcept = default;
+Pipeline::~Pipeline() = default;
 
 const View& Pipeline::observe(sensor::DepthFrame frame, const Pose& world_T_optical,
                               const std::optional<Joints>& joints) {
@@ -103,7 +112,8 @@ const View& Pipeline::observe(std::shared_ptr<const sensor::DepthFrame> frame, c
   cloud_ = timed(seconds_.fuse, [&] { return map_->cloud(); });
 
   // Record the view, and tell the planner.
-  record(view, reported, change, frozen);
+  doubts_->look_at(*frame, view.world_T_optical, reported, workcell_.sensor.intrinsics);
+  record(view, change, frozen);
   if (!frozen) remember(std::move(frame), view.world_T_optical);
   timed(seconds_.segment, [&] { read_masks(); });
   timed(seconds_.plan, [&] { planner_->observe(progress(change)); });
@@ -120,6 +130,10 @@ std::optional<plan::ReachableView> Pipeline::next_view(const Joints& current) {
     stop_reason_ = StopReason::no_reachable_view;
     return std::nullopt;
   }
+  if (repeats_ >= kMostRepeats) {
+    stop_reason_ = StopReason::camera_hangs;
+    return std::nullopt;
+  }
   auto next = timed(seconds_.plan, [&] { return planner_->next(progress({}), current, reach_); });
   stop_reason_ = next ? StopReason::not_stopped : planner_->stop_reason();
   return next;
@@ -131,33 +145,9 @@ void Pipeline::check_current(const char* name, const Joints& joints) const {
   if (own_arm_) check_joints(name, workcell_, joints, 1.0);  // a real arm may stand a little outside
 }
 
-/// A sentence if our model of the arm puts the sensor elsewhere than the reported poses do.
-std::optional<std::string> Pipeline::doubt_of_joints() const {
-  constexpr double kFar = 0.05;  // m; more than arms and hand-eye transforms are off
-  if (!own_arm_) return std::nullopt;
-  std::size_t far = 0;
-  double farthest = 0.0;
-  for (const View& v : views_) {
-    if (!v.joints) continue;
-    const Pose by_joints = optical_pose(workcell_, *v.joints);
-    const double off = (by_joints.translation() - v.world_T_optical.translation()).norm();
-    far += off > kFar;
-    farthest = std::max(farthest, off);
-  }
-  if (far == 0) return std::nullopt;
-  return "by the joints of " + std::to_string(far) + " of " + std::to_string(views_.size()) +
-         " views the sensor was up to " + metres(farthest) +
-         " away from the reported pose: are the joints those of the moment, in radians? Are the arm, its base and the "
-         "hand-eye transform right?";
-}
-
 std::vector<std::string> Pipeline::warnings() const {
   std::vector<std::string> all = warnings_;
-  if (auto doubt = doubt_of_joints()) all.push_back(std::move(*doubt));
-  if (rounded_poses_ == 0) return all;
-  const std::string off = number_text(worst_rounding_, 2);
-  all.push_back("world_T_optical of " + std::to_string(rounded_poses_) + " of " + std::to_string(views_.size()) +
-                " views: the rotation matrix was off by up to " + off + " and has been made orthonormal");
+  for (std::string& doubt : doubts_->sentences(views_, workcell_, own_arm_)) all.push_back(std::move(doubt));
   return all;
 }
 
@@ -215,6 +205,7 @@ View Pipeline::begin_view(const sensor::DepthFrame& frame, const Pose& reported,
   sensor::check_depth_unit(frame);
   if (joints) check_current("observe", *joints);
   if (frame.detected) fuse::instances_of(frame);  // detections that cannot be are refused before anything changes
+  check_instances(frame, views_.size());
   View view;
   view.world_T_optical = world_T_optical;
   // The observed point: as far ahead along the optical axis as the middle of the scan volume.
@@ -229,12 +220,12 @@ View Pipeline::begin_view(const sensor::DepthFrame& frame, const Pose& reported,
 }
 
 /// Add a view to the record. Planning time counts for the next view from here on.
-/// @param reported its pose before it was made rigid
 /// @param repeated its frame is the one before
-void Pipeline::record(View view, const Pose& reported, const fuse::Change& change, bool repeated) {
+void Pipeline::record(View view, const fuse::Change& change, bool repeated) {
   view.points_in = change.points_in;
   view.points_new = change.added.size();
   if (repeated) view.discard_reason = DiscardReason::repeated_frame;
+  repeats_ = repeated ? repeats_ + 1 : 0;
   views_.push_back(std::move(view));
   for (std::size_t v = 0; v < views_.size(); ++v) {  // a view can also make others part of the map, or discard them
     View& each = views_[v];
@@ -246,9 +237,6 @@ void Pipeline::record(View view, const Pose& reported, const fuse::Change& chang
   }
   refusals_ = 0;
   planned_before_ = seconds_.plan;
-  if (is_rigid(reported)) return;
-  ++rounded_poses_;
-  worst_rounding_ = std::max(worst_rounding_, rigid_error(reported));
 }
 
 /// Keep what is needed of the last view's frame: its depths, if it shows something, to recognize it if the camera

@@ -24,9 +24,12 @@
 
 namespace agrisee {
 
+class ScanDoubts;
+
 /// Replacements for the arm model and the planner, and how to run.
 struct PipelineOptions {
-  plan::Reach reach;             ///< whether and how the arm can take a view; empty: the built-in arm model decides
+  plan::Reach reach;             ///< whether and how the arm can take a view; empty: the built-in arm model decides.
+                                 ///< Its answers are checked (plan::checked)
   pick::ReachApproach approach;  ///< whether and how the arm can approach a fruit; empty: the built-in arm model
                                  ///< decides, but not if you supply `reach`, because the arm is then unknown
   std::unique_ptr<plan::Planner> planner;  ///< where to look next; empty: the planner that `parameters.planner` names
@@ -43,13 +46,21 @@ class Pipeline {
  public:
   /// The scan ends after this many refused views in a row.
   static constexpr int kMostRefusals = 50;
+  /// The scan ends after this many frames in a row that equal the one before, because the camera hangs.
+  static constexpr int kMostRepeats = 3;
 
   /// @param workcell arm, camera, scan volume and keep-out
   /// @param parameters of all stages
   /// @param options reach, planner, seed, threads
   /// @throws ParameterError; InputError for poses that are not rigid within kRigidTolerance, a scan volume that is
-  ///   empty or longer than 50 m or, with the built-in arm model, a start posture outside its limits
+  ///   empty or longer than 50 m, a camera more than 3 m from the flange or, with the built-in arm model, a start
+  ///   posture outside its limits
   explicit Pipeline(const Workcell& workcell, const Parameters& parameters = {}, PipelineOptions options = {});
+  /// A pipeline can be moved, not copied.
+  Pipeline(Pipeline&& other) noexcept;
+  /// As the move constructor.
+  Pipeline& operator=(Pipeline&& other) noexcept;
+  ~Pipeline();
 
   /// Add a depth frame that was taken at `world_T_optical` (and `joints`, if an arm is known).
   ///
@@ -59,9 +70,9 @@ class Pipeline {
   /// or if it contradicts the other views (fuse/fused_views.hpp), because its pose must then be wrong. If the built-in
   /// arm model puts the sensor more than 50 mm away from the pose, `warnings` say so.
   /// @return the view as recorded; the reference is valid until the next observe()
-  /// @throws InputError for a frame whose size disagrees with its intrinsics or whose depths cannot be in metres
-  ///   (sensor::check_depth_unit), a pose that is not rigid within kRigidTolerance, or joints as next_view();
-  ///   Cancelled. The scan so far is kept.
+  /// @throws InputError for a frame whose size disagrees with its intrinsics, whose depths cannot be in metres
+  ///   (sensor::check_depth_unit) or whose instances cannot be masks (sensor::check_masks), a pose that is not rigid
+  ///   within kRigidTolerance, or joints as next_view(); Cancelled. The scan so far is kept.
   const View& observe(sensor::DepthFrame frame, const Pose& world_T_optical,
                       const std::optional<Joints>& joints = std::nullopt);
 
@@ -76,7 +87,8 @@ class Pipeline {
     return observe(sensor::frame_from_points(points, workcell_.sensor.intrinsics), world_T_optical, joints);
   }
 
-  /// Where to look next; empty when the scan is over, for the reason `stop_reason`.
+  /// Where to look next; empty when the scan is over, for the reason `stop_reason`. Until observe() or refused() is
+  /// called, it is asked about the same situation and answers alike.
   /// @param current joints at which the arm is now (rad)
   /// @throws InputError when `current` is not finite or, with the built-in arm model, far outside its limits; Cancelled
   std::optional<plan::ReachableView> next_view(const Joints& current);
@@ -98,7 +110,10 @@ class Pipeline {
   const Cloud& merged() const { return cloud_; }
   /// All points merged so far with their views, including those removed later.
   Cloud raw() const { return map_->all(); }
-  /// Sentences about input that should be checked: poses with rounded rotation matrices, joints far from the poses.
+  /// Sentences about input that should be checked, with the likely cause: poses with rounded rotation matrices, joints
+  /// far from the poses, many views that contradict the others, inverted poses, frames of another camera than the
+  /// workcell's, unusual intrinsics, masks that stand for all fruit or for the background, a range of the camera in
+  /// which no view is taken. May take 0.1 s.
   std::vector<std::string> warnings() const;
   /// The evidence from the masks of all views so far; empty if no detector has looked.
   const MaskEvidence& masks() const { return masks_; }
@@ -115,9 +130,8 @@ class Pipeline {
 
  private:
   View begin_view(const sensor::DepthFrame& frame, const Pose& reported, const std::optional<Joints>& joints) const;
-  void record(View view, const Pose& reported, const fuse::Change& change, bool repeated);
+  void record(View view, const fuse::Change& change, bool repeated);
   void check_current(const char* name, const Joints& joints) const;
-  std::optional<std::string> doubt_of_joints() const;
   void remember(std::shared_ptr<const sensor::DepthFrame> frame, const Pose& world_T_optical);
   bool repeats_last_frame(const sensor::DepthFrame& frame) const;
   plan::Progress progress(const fuse::Change& change) const;
@@ -141,12 +155,12 @@ class Pipeline {
   std::vector<float> last_frame_;                       // the last that showed anything
   std::vector<View> views_;
   int refusals_ = 0;  // since the last view
+  int repeats_ = 0;   // frames in a row that equal the one before
   StopReason stop_reason_ = StopReason::not_stopped;
   Timing seconds_;
-  std::vector<std::string> warnings_;  // about the workcell
-  int rounded_poses_ = 0;              // views whose reported pose had to be made rigid
-  double worst_rounding_ = 0.0;        // of these, see rigid_error
-  double planned_before_ = 0.0;        // planning seconds that earlier views account for
+  std::vector<std::string> warnings_;   // about the workcell
+  std::unique_ptr<ScanDoubts> doubts_;  // about the views
+  double planned_before_ = 0.0;         // planning seconds that earlier views account for
 };
 
 }  // namespace agrisee

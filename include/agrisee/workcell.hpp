@@ -4,6 +4,7 @@
 #pragma once
 
 #include <agrisee/arm/ur.hpp>
+#include <agrisee/core/error.hpp>
 #include <agrisee/core/pose.hpp>
 #include <agrisee/geometry/aabb.hpp>
 #include <agrisee/geometry/primitives.hpp>
@@ -29,6 +30,15 @@ struct Workcell {
   Aabb scan_volume;                                                             ///< what is scanned (m, world)
   std::vector<KeepOut> keep_out;                                                ///< neither arm nor sensor may enter
 };
+
+/// What is wrong with the hand-eye transform: a camera more than 3 m from the flange, which no arm holds. Empty if
+/// nothing is.
+inline std::optional<std::string> fault_of_hand_eye(const Workcell& workcell) {
+  constexpr double kFarthest = 3.0;  // m
+  const double held = workcell.tool0_T_optical.translation().norm();
+  if (!(held > kFarthest)) return std::nullopt;
+  return "the camera is " + metres(held) + " from the flange: is it in millimetres? Lengths have to be in metres";
+}
 
 /// The pose of the optical frame in world at joint angles `q` (rad), by the model of the arm and the hand-eye
 /// transform.

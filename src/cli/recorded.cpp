@@ -6,7 +6,6 @@
 #include <agrisee/io/depth_picture.hpp>
 #include <agrisee/io/recorded_views.hpp>
 #include <agrisee/pipeline.hpp>
-#include <agrisee/sensor/detection_check.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -195,13 +194,9 @@ Processed process_recording(const std::string& path, const CommonOptions& option
   pipeline_options.seed = options.seed;
   pipeline_options.threads = threads_of(options.threads);
   Pipeline pipeline(out.workcell, parameters, std::move(pipeline_options));
-  std::string doubt_of_masks;
-  std::size_t doubted = 0;
   for (std::size_t i = 0; i < source.poses.size(); ++i) {
     sensor::DepthFrame frame = source.frame(i);
     out.history.depth.push_back(io::depth_picture(frame));
-    if (const auto text = sensor::doubt_of_masks(frame); text && ++doubted == 1)
-      doubt_of_masks = "view " + std::to_string(i) + ": " + *text;
     pipeline.observe(std::move(frame), source.poses[i]);
     if (!options.quiet) show_progress(pipeline.views(), source.poses.size());
   }
@@ -212,8 +207,6 @@ Processed process_recording(const std::string& path, const CommonOptions& option
   out.result.warnings.insert(out.result.warnings.begin(), notes.begin(), notes.end());
   for (const auto& text : {doubt, doubt_of_aim(out.result.views)})
     if (text) out.result.warnings.push_back(*text);
-  if (doubted > 1) doubt_of_masks += " (so in " + std::to_string(doubted) + " views)";
-  if (doubted > 0) out.result.warnings.push_back(doubt_of_masks);
   return out;
 }
 

@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <agrisee/arm/reachability.hpp>
+#include <agrisee/core/rigid_pose.hpp>
 #include <agrisee/plan/arm_reach.hpp>
 
 #include <algorithm>
+#include <cmath>
+#include <utility>
 
 namespace agrisee::plan {
 
@@ -34,6 +37,26 @@ Reach reach_of(const Workcell& workcell) {
     view.target = request.target;
     view.joints = reached->joints;
     view.move_time = reached->move_time;
+    return view;
+  };
+}
+
+Reach checked(Reach reach) {
+  return [reach = std::move(reach)](const ViewRequest& request, const Joints& current) {
+    constexpr double kOff = 0.1;  // m
+    const std::optional<ReachableView> view = reach(request, current);
+    if (!view) return view;
+    check_input(is_rigid(view->world_T_optical), "reach: world_T_optical of its answer is not a rigid pose");
+    const Eigen::Vector3d target = view->world_T_optical.inverse(Eigen::Isometry) * request.target;
+    if (!(target.z() > 0.0) || !(target.head<2>().norm() <= kOff))
+      throw InputError(
+          "reach: the view of its answer does not look at the requested target: in the optical frame (z "
+          "forward) the target is at " +
+          metres(target.x()) + ", " + metres(target.y()) + ", " + metres(target.z()) +
+          ". Is world_T_optical set, and the pose of the optical frame?");
+    check_input(!view->joints || view->joints->allFinite(), "reach: the joints of its answer are not finite");
+    check_input(std::isfinite(view->move_time) && view->move_time >= 0.0,
+                "reach: move_time of its answer is negative or not finite");
     return view;
   };
 }

@@ -2,6 +2,9 @@
 // Views whose pose or frame is wrong are not believed.
 #include <agrisee/pipeline.hpp>
 
+#include <algorithm>
+#include <cmath>
+#include <functional>
 #include <set>
 
 #include "catch.hpp"
@@ -20,27 +23,55 @@ Workcell cell() {
   return w;
 }
 
+/// A pose at this distance from the target (m), looking at it.
+Pose looking_at(const Eigen::Vector3d& target, const Eigen::Vector3d& direction, double distance) {
+  Pose pose = Pose::Identity();
+  const Eigen::Vector3d z = direction.normalized(), x = z.cross(Eigen::Vector3d::UnitZ()).normalized();
+  pose.linear() << x, z.cross(x), z;
+  pose.translation() = target - distance * z;
+  return pose;
+}
+
+/// The pose of view `v` of some around the fruit.
+Pose pose_around(int v, int views) {
+  const double angle = deg(-70.0 + 140.0 * v / (views - 1));
+  return looking_at({0.01, 0.55, 0.2}, {std::sin(angle), std::cos(angle), 0.1 * (v % 3 - 1)}, 0.38);
+}
+
+/// What the workcell's camera sees of the fruit.
+sensor::DepthFrame frame_at(const Pose& pose, int v) {
+  return test::render(test::kThreeFruit, cell().sensor.intrinsics, pose, 0.001, static_cast<std::uint64_t>(v + 1));
+}
+
 /// Views around the fruit; `wrong` are reported this far off. Returns what the pipeline makes of them.
 ScanResult look_around(int views, const std::set<int>& wrong, const Eigen::Vector3d& off, int frozen = -1) {
   const Workcell w = cell();
   Pipeline pipeline(w);
   sensor::DepthFrame last;
   for (int v = 0; v < views; ++v) {
-    const double angle = deg(-70.0 + 140.0 * v / (views - 1));
-    const Eigen::Vector3d target(0.01, 0.55, 0.2);
-    const Eigen::Vector3d direction(std::sin(angle), std::cos(angle), 0.1 * (v % 3 - 1));
-    Pose pose = Pose::Identity();
-    const Eigen::Vector3d z = direction.normalized(), x = z.cross(Eigen::Vector3d::UnitZ()).normalized();
-    pose.linear() << x, z.cross(x), z;
-    pose.translation() = target - 0.38 * z;
-    sensor::DepthFrame frame =
-        test::render(test::kThreeFruit, w.sensor.intrinsics, pose, 0.001, static_cast<std::uint64_t>(v + 1));
+    Pose pose = pose_around(v, views);
+    sensor::DepthFrame frame = frame_at(pose, v);
     if (v == frozen) frame = last;
     last = frame;
     if (wrong.count(v)) pose.translation() += off;
     pipeline.observe(frame, pose);
   }
   return pipeline.result();
+}
+
+/// All warnings of a scan of some views, each changed before it is observed.
+template <typename Change>
+std::string warnings_after(int views, Change&& change) {
+  Pipeline pipeline(cell());
+  for (int v = 0; v < views; ++v) {
+    Pose pose = pose_around(v, std::max(views, 2));
+    sensor::DepthFrame frame = frame_at(pose, v);
+    change(frame, pose);
+    pipeline.observe(std::move(frame), pose);
+  }
+  std::string all;
+  for (const std::string& w : pipeline.result().warnings) all += w + "\n";
+  return all;
 }
 
 std::set<int> discarded(const ScanResult& result) {
@@ -66,6 +97,7 @@ TEST_CASE("views that are right are believed") {
   const ScanResult result = look_around(8, {}, Eigen::Vector3d::Zero());
   CHECK(discarded(result).empty());
   CHECK(discarded_views(result.views).empty());
+  CHECK(result.warnings.empty());
 }
 
 TEST_CASE("a view whose reported pose is 50 mm off is discarded, in whatever direction") {
@@ -111,6 +143,97 @@ TEST_CASE("a frame that comes again is discarded") {
   CHECK(discarded_views(result.views) ==
         "1 of 8 views was discarded: view 4 repeats the frame before (does the camera hang?)");
   check_found(result);
+}
+
+TEST_CASE("a camera that hangs ends the scan") {
+  Pipeline pipeline(cell());
+  const Pose pose = pose_around(0, 2);
+  const sensor::DepthFrame frame = frame_at(pose, 0);
+  for (int v = 0; v <= Pipeline::kMostRepeats; ++v) {
+    REQUIRE(pipeline.next_view(pipeline.workcell().start));
+    pipeline.observe(frame, pose);
+  }
+  CHECK_FALSE(pipeline.next_view(pipeline.workcell().start));
+  CHECK(pipeline.stop_reason() == StopReason::camera_hangs);
+  CHECK(to_string(pipeline.stop_reason()) == std::string("camera_hangs"));
+  pipeline.observe(frame_at(pose, 1), pose);  // it works again
+  CHECK(pipeline.next_view(pipeline.workcell().start));
+}
+
+TEST_CASE("where many views contradict the others, a warning says so, with the mistake if it is known") {
+  int v = 0;
+  const auto two_of_four = [&](sensor::DepthFrame&, Pose& pose) {
+    if (v++ % 3 == 1) pose.translation() += Eigen::Vector3d(0.05, 0.0, 0.0);
+  };
+  CHECK_THAT(warnings_after(6, two_of_four),
+             test::says("2 of 6 views contradict the others, so the places of the fruit may be wrong, too"));
+  const auto inverted = [](sensor::DepthFrame&, Pose& pose) { pose = pose.inverse(); };
+  CHECK_THAT(warnings_after(6, inverted), test::says("it seems that the poses are inverted"));
+}
+
+TEST_CASE("frames of another camera than the workcell's, and unusual intrinsics, are told") {
+  const auto longer = [](sensor::DepthFrame& frame, Pose&) { frame.intrinsics.fx *= 1.1; };
+  CHECK_THAT(warnings_after(2, longer), test::says("view 0: the frame has 400 x 300 pixels with a focal length of"));
+  CHECK_THAT(warnings_after(2, longer), test::says("(so in 2 views)"));
+  const auto transposed = [](sensor::DepthFrame& frame, Pose&) {
+    std::swap(frame.intrinsics.width, frame.intrinsics.height);
+  };
+  CHECK_THAT(warnings_after(1, transposed), test::says("is the image transposed?"));
+  const auto calibrated = [](sensor::DepthFrame& frame, Pose&) { frame.intrinsics.fx *= 1.005; };
+  CHECK(warnings_after(2, calibrated).empty());
+}
+
+TEST_CASE("a mask of the background is told, a depth image as masks is refused") {
+  const auto as_masks = [](auto&& value) {
+    return [value](sensor::DepthFrame& frame, Pose&) {
+      frame.detected = true;
+      for (const float z : frame.depth) frame.instances.push_back(static_cast<std::uint16_t>(value(z)));
+    };
+  };
+  CHECK_THAT(warnings_after(1, as_masks([](float) { return 1; })),
+             test::says("view 0: instance 1 of the masks covers 100 % of the image: is it the background?"));
+  CHECK_THROWS_WITH(warnings_after(1, as_masks([](float z) { return z > 0.0f ? std::lround(1e4f * z) : 0; })),
+                    test::says("observe: the array `instances` of view 0 holds") && test::says("a depth image?"));
+}
+
+TEST_CASE("a workcell in millimetres is refused, or told") {
+  Workcell far = cell();
+  far.tool0_T_optical.translation() = Eigen::Vector3d(30.0, 0.0, 50.0);
+  CHECK_THROWS_WITH(Pipeline(far), test::says("tool0_T_optical: the camera is 58.3 m from the flange: is it in mill"));
+  Workcell ranges = cell();
+  ranges.sensor.range_min = 100.0, ranges.sensor.range_max = 800.0;
+  CHECK_THROWS_WITH(Pipeline(ranges), test::says("sensor.range_min must be 10 m or less (is it in millimetres?)"));
+  ranges.sensor.range_min = 0.6, ranges.sensor.range_max = 4.0;
+  const auto told = Pipeline(ranges).warnings();
+  REQUIRE(told.size() == 1);
+  CHECK_THAT(told[0], test::says("measures from 0.6 m to 4 m, but views are taken from 0.27 m to 0.55 m"));
+  Workcell away = cell();
+  away.scan_volume.min.x() += 3.0, away.scan_volume.max.x() += 3.0;
+  Pipeline pipeline(away);
+  CHECK_FALSE(pipeline.next_view(away.start));
+  CHECK_THAT(why_no_fruit(pipeline.result()), test::says("no view was taken: the arm can reach no view"));
+}
+
+TEST_CASE("answers of an own reach are checked") {
+  const auto asked = [](const std::function<void(plan::ReachableView&)>& change) {
+    PipelineOptions options;
+    options.reach = [&change](const plan::ViewRequest& r, const Joints&) {
+      plan::ReachableView view;
+      view.world_T_optical = looking_at(r.target, r.direction, r.distance);
+      change(view);
+      return std::optional(view);
+    };
+    Pipeline pipeline(cell(), {}, std::move(options));
+    return pipeline.next_view(pipeline.workcell().start).has_value();
+  };
+  CHECK(asked([](plan::ReachableView&) {}));
+  CHECK_THROWS_WITH(asked([](plan::ReachableView& v) { v.world_T_optical.linear() *= 2.0; }),
+                    test::says("reach: world_T_optical of its answer is not a rigid pose"));
+  CHECK_THROWS_WITH(asked([](plan::ReachableView& v) { v.world_T_optical = Pose::Identity(); }),
+                    test::says("does not look at the requested target"));
+  CHECK_THROWS_WITH(asked([](plan::ReachableView& v) { v.move_time = -1.0; }), test::says("reach: move_time"));
+  CHECK_THROWS_WITH(asked([](plan::ReachableView& v) { v.joints = Joints::Constant(std::nan("")); }),
+                    test::says("reach: the joints of its answer are not finite"));
 }
 
 TEST_CASE("an arm that refuses everything ends the scan") {

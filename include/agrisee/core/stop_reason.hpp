@@ -12,7 +12,8 @@ enum class StopReason {
   no_reachable_view,  ///< the arm can reach no view of what is left, or refused too many (Pipeline::kMostRefusals)
   low_gain,           ///< the expected gain of the best reachable view is below the threshold
   max_views,          ///< the view budget is used up
-  nothing_seen        ///< the first views returned no point inside the scan volume
+  nothing_seen,       ///< the first views returned no point inside the scan volume
+  camera_hangs        ///< the last frames all equal the one before (Pipeline::kMostRepeats)
 };
 
 /// The name of a stop reason, as written to run.json.
@@ -30,6 +31,8 @@ inline const char* to_string(StopReason reason) {
       return "max_views";
     case StopReason::nothing_seen:
       return "nothing_seen";
+    case StopReason::camera_hangs:
+      return "camera_hangs";
   }
   return "unknown";
 }

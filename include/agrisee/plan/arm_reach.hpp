@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// Answers a planner's view requests for an arm of the UR family: inverse kinematics, joint limits, keep-out spaces and
-/// self-collision.
+/// self-collision. Checks the answers of other arms.
 #pragma once
 
 #include <agrisee/arm/mount.hpp>
@@ -18,5 +18,11 @@ arm::Mount mount_of(const Workcell& workcell);
 /// several solutions is chosen, and for the cost.
 /// @throws ParameterError when the workcell's mount is not valid
 Reach reach_of(const Workcell& workcell);
+
+/// A reach that checks the answers of another.
+/// @param reach of an arm that is not the workcell's
+/// @return throws InputError for an answer whose pose is not rigid, or does not look at the requested target to within
+///   0.1 m, whose joints are not finite, or whose move time is negative or not finite
+Reach checked(Reach reach);
 
 }  // namespace agrisee::plan

@@ -33,6 +33,7 @@ struct DepthCamera {
     check_parameter(std::isfinite(housing_depth) && housing_depth > 0.0, "sensor.housing_depth", "positive",
                     housing_depth);
     check_parameter(std::isfinite(range_min) && range_min >= 0.0, "sensor.range_min", "0 or more", range_min);
+    check_parameter(range_min <= 10.0, "sensor.range_min", "10 m or less (is it in millimetres?)", range_min);
     check_parameter(std::isfinite(range_max) && range_max > range_min, "sensor.range_max", "above range_min",
                     range_max);
     check_parameter(max_incidence > 0.0 && max_incidence <= 0.5 * kPi, "sensor.max_incidence", "in (0, pi/2]",

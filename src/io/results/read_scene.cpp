@@ -36,11 +36,7 @@ void read_robot(const YamlValue& robot, Workcell& cell, std::vector<std::string>
   if (robot.has("start")) cell.start = robot.at("start").numbers<6>();
   if (const std::string fault = cell.arm.limits.complaint(cell.start); !fault.empty())
     (robot.has("start") ? robot.at("start") : robot).fail(fault);
-  const double held = cell.tool0_T_optical.translation().norm();
-  constexpr double kFarthest = 3.0;  // m; no arm holds its camera farther ahead
-  if (held > kFarthest)
-    robot.at("tool").fail("the camera is " + format(held) +
-                          " m from the flange: is it in millimetres? Lengths have to be in metres");
+  if (const auto fault = fault_of_hand_eye(cell)) robot.at("tool").fail(*fault);
 }
 
 /// The published figures of a camera by its name.

@@ -1,0 +1,119 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "scan_doubts.hpp"
+
+#include <agrisee/sensor/detection_check.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+namespace agrisee {
+namespace {
+
+/// That a frame comes from another camera than the workcell's, if it does.
+std::optional<std::string> doubt_of_camera(const sensor::Intrinsics& frame, const sensor::Intrinsics& camera) {
+  constexpr double kOff = 0.01;  // share of the focal length; calibrations of one camera differ by less
+  const auto off = [](double a, double b) { return std::abs(a - b) > kOff * b; };
+  const auto text = [](const sensor::Intrinsics& k) {
+    return std::to_string(k.width) + " x " + std::to_string(k.height) + " pixels with a focal length of " +
+           number_text(k.fx, 4) + " and " + number_text(k.fy, 4);
+  };
+  if (frame.width == camera.width && frame.height == camera.height && !off(frame.fx, camera.fx) &&
+      !off(frame.fy, camera.fy))
+    return std::nullopt;
+  return "the frame has " + text(frame) + ", but the camera of the workcell has " + text(camera) +
+         ": which are right? Places and sizes follow from the frame's";
+}
+
+/// A sentence if our model of the arm puts the sensor elsewhere than the reported poses do.
+std::optional<std::string> doubt_of_joints(const std::vector<View>& views, const Workcell& workcell) {
+  constexpr double kFar = 0.05;  // m; more than arms and hand-eye transforms are off
+  std::size_t far = 0;
+  double farthest = 0.0;
+  for (const View& v : views) {
+    if (!v.joints) continue;
+    const Pose by_joints = optical_pose(workcell, *v.joints);
+    const double off = (by_joints.translation() - v.world_T_optical.translation()).norm();
+    far += off > kFar;
+    farthest = std::max(farthest, off);
+  }
+  if (far == 0) return std::nullopt;
+  return "by the joints of " + std::to_string(far) + " of " + std::to_string(views.size()) +
+         " views the sensor was up to " + metres(farthest) +
+         " away from the reported pose: are the joints those of the moment, in radians? Are the arm, its base and the "
+         "hand-eye transform right?";
+}
+
+/// A sentence if many views contradict the others, or none shows the volume: with the mistake, if changed poses agree.
+std::optional<std::string> doubt_of_poses(const std::vector<View>& views, const std::vector<fuse::ViewSample>& samples,
+                                          const Aabb& volume) {
+  constexpr std::size_t kFew = 2, kMany = 4;  // fewer views show no mistake; one of so many contradicts by chance
+  const auto contradict = static_cast<std::size_t>(std::count_if(
+      views.begin(), views.end(), [](const View& v) { return v.discard_reason == DiscardReason::contradicts_others; }));
+  const bool many = kMany * contradict > views.size();
+  const bool empty = std::none_of(views.begin(), views.end(), [](const View& v) { return v.points_in > 0; });
+  if (views.size() < kFew || (!many && !empty)) return std::nullopt;
+  const std::string mistake = fuse::check_poses(samples, volume).mistake;
+  if (many)
+    return std::to_string(contradict) + " of " + std::to_string(views.size()) +
+           " views contradict the others, so the places of the fruit may be wrong, too" +
+           (mistake.empty() ? "" : "; it seems that the poses " + mistake);
+  return mistake.empty() ? std::nullopt : std::optional("it seems that the poses " + mistake);
+}
+
+}  // namespace
+
+void ScanDoubts::Doubt::add(const std::optional<std::string>& text, std::size_t view) {
+  if (!text) return;
+  if (views++ == 0) first = "view " + std::to_string(view) + ": " + *text;
+}
+
+void ScanDoubts::look_at(const sensor::DepthFrame& frame, const Pose& world_T_optical, const Pose& reported,
+                         const sensor::Intrinsics& camera) {
+  const std::size_t view = samples_.size();
+  masks_.add(sensor::doubt_of_masks(frame), view);
+  intrinsics_.add(sensor::doubt_of(frame.intrinsics), view);
+  other_camera_.add(doubt_of_camera(frame.intrinsics, camera), view);
+  samples_.push_back(fuse::sample_of(frame, world_T_optical));
+  if (is_rigid(reported)) return;
+  ++rounded_poses_;
+  worst_rounding_ = std::max(worst_rounding_, rigid_error(reported));
+}
+
+std::vector<std::string> ScanDoubts::sentences(const std::vector<View>& views, const Workcell& workcell,
+                                               bool own_arm) const {
+  std::vector<std::string> all;
+  const auto add = [&](std::optional<std::string> text) {
+    if (text) all.push_back(std::move(*text));
+  };
+  add(doubt_of_poses(views, samples_, workcell.scan_volume));
+  if (own_arm) add(doubt_of_joints(views, workcell));
+  for (const Doubt* d : {&masks_, &intrinsics_, &other_camera_})
+    if (d->views > 0) all.push_back(d->first + (d->views > 1 ? " (so in " + std::to_string(d->views) + " views)" : ""));
+  if (rounded_poses_ > 0)
+    all.push_back("world_T_optical of " + std::to_string(rounded_poses_) + " of " + std::to_string(views.size()) +
+                  " views: the rotation matrix was off by up to " + number_text(worst_rounding_, 2) +
+                  " and has been made orthonormal");
+  return all;
+}
+
+void check_instances(const sensor::DepthFrame& frame, std::size_t view) {
+  if (frame.instances.empty()) return;
+  try {
+    sensor::check_masks(frame);
+  } catch (const InputError& e) {
+    throw InputError("observe: the array `instances` of view " + std::to_string(view) + " " + e.what());
+  }
+}
+
+std::vector<std::string> doubts_of(const Workcell& workcell, double distance_min, double distance_max) {
+  std::vector<std::string> all;
+  const sensor::DepthCamera& camera = workcell.sensor;
+  if (auto doubt = sensor::doubt_of(camera.intrinsics)) all.push_back(std::move(*doubt));
+  if (camera.range_min > distance_max || camera.range_max < distance_min)
+    all.push_back("the camera measures from " + metres(camera.range_min) + " to " + metres(camera.range_max) +
+                  ", but views are taken from " + metres(distance_min) + " to " + metres(distance_max) +
+                  " (gain.distance_min, gain.distance_max)");
+  return all;
+}
+
+}  // namespace agrisee
