@@ -17,7 +17,7 @@ class AgriseeConan(ConanFile):
     options = {"shared": [True, False], "fPIC": [True, False], "io": [True, False]}
     default_options = {"shared": False, "fPIC": True, "io": True}
     exports = "include/agrisee/version.hpp"
-    exports_sources = "CMakeLists.txt", "LICENSE", "cmake/*", "include/*", "src/*", "!*/node_modules/*"
+    exports_sources = "CMakeLists.txt", "LICENSE", "package.xml", "cmake/*", "include/*", "src/*", "!*/node_modules/*"
 
     def set_version(self):
         header = load(self, os.path.join(self.recipe_folder, "include/agrisee/version.hpp"))

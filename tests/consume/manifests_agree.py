@@ -4,6 +4,7 @@
 
 manifests_agree.py REPO VERSION. Conan itself is not needed: its recipe is run as far as it only states things.
 """
+import fnmatch
 import json
 import pathlib
 import re
@@ -68,6 +69,15 @@ recipe.recipe_folder = str(root)
 recipe.set_version()
 agree("conanfile.py, version", recipe.version, version)
 agree("conanfile.py, license", recipe.license, "BSD-3-Clause")
+# Conan builds and installs from a copy of what the recipe exports.
+rules = (root / "cmake/AgriseeInstall.cmake").read_text()
+installed = {path for paths in re.findall(r"install\((?:FILES|DIRECTORY)\s+(.+?)\s+DESTINATION", rules, re.S)
+             for path in paths.split() if not path.startswith("$")}
+agree("AgriseeInstall.cmake, installed files that the check finds", {"LICENSE", "package.xml"} <= installed, True)
+files = [f for path in installed for f in [root / path, *(root / path).rglob("*")] if f.is_file()]
+installed = {str(f.relative_to(root)) for f in files}
+exported = {f for f in installed if any(fnmatch.fnmatch(f, p) for p in recipe.exports_sources if not p.startswith("!"))}
+agree("conanfile.py, files that are installed but not exported", sorted(installed - exported), [])
 required = []
 recipe.options = types.SimpleNamespace(io=True)
 recipe.requires = lambda reference, **_: required.append(reference.split("/")[0])
