@@ -42,9 +42,11 @@ Pose pose_from_matrix(const Unaligned<4, 4>& matrix, const std::string& name, st
 
 Pose pose_from_xyz_quaternion(const Eigen::Vector3d& xyz, const Unaligned<4, 1>& xyzw, const std::string& name,
                               std::vector<std::string>* notes) {
+  if (!xyz.allFinite() || !xyzw.allFinite())
+    throw InputError(name + " is not a rigid transform: it holds NaN or infinity");
   const double error = std::abs(xyzw.norm() - 1.0);
   const std::string off = number_text(error, 2);
-  if (!(error <= kRigidTolerance) || !xyz.allFinite())
+  if (!(error <= kRigidTolerance))
     throw InputError(name + " is not a rigid transform: the length of its quaternion is off by " + off +
                      " (up to 0.001 is put right)");
   if (notes && error > 1e-6)

@@ -72,5 +72,7 @@ TEST_CASE("a pose from a quaternion") {
   REQUIRE(notes.size() == 1);
   CHECK_THAT(notes[0], test::says("tool: the length of its quaternion was off by 0.0005"));
   CHECK_THROWS_WITH(pose_from_xyz_quaternion({0, 0, 0}, 1.1 * q, "tool"), test::says("off by 0.1"));
-  CHECK_THROWS_AS(pose_from_xyz_quaternion({0, 0, std::nan("")}, q, "tool"), InputError);
+  const std::string not_finite = "tool is not a rigid transform: it holds NaN or infinity";
+  CHECK_THROWS_WITH(pose_from_xyz_quaternion({0, 0, std::nan("")}, q, "tool"), not_finite);
+  CHECK_THROWS_WITH(pose_from_xyz_quaternion({0, 0, 0}, std::nan("") * q, "tool"), not_finite);
 }

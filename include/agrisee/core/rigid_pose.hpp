@@ -41,7 +41,7 @@ Pose pose_from_matrix(const Unaligned<4, 4>& matrix, const std::string& name = "
 /// @param xyz translation (m)
 /// @param xyzw quaternion; its length may differ from 1 by kRigidTolerance
 /// @param name, notes as of made_rigid
-/// @throws InputError for another length
+/// @throws InputError for another length, or for NaN or infinity
 Pose pose_from_xyz_quaternion(const Eigen::Vector3d& xyz, const Unaligned<4, 1>& xyzw,
                               const std::string& name = "the pose", std::vector<std::string>* notes = nullptr);
 
