@@ -91,7 +91,7 @@ TEST_CASE("where the key at fault is not in the file, the line is that of what e
   CHECK_THAT(error_of("max_views: 9\nsplit:\n  bodies:\n    radius_min: 0.07\n"),
              test::says(".yaml:4: 'split.bodies.radius_max' must be from radius_min (0.07) to "));
   CHECK_THAT(error_of("gain:\n  distance_min: 0.5\n"),
-             test::says(".yaml:2: 'gain.distance' must be at least distance_min (0.5), got 0.38"));
+             test::says(".yaml:2: 'gain.distance' must be from distance_min (0.5) to distance_max (0.55), got 0.38"));
   Parameters bad;
   bad.max_views = 0;
   CHECK_THROWS_WITH(io::read_parameters(write("planner: see\n"), bad), test::says(".yaml: 'max_views' must be "));

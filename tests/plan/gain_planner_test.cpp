@@ -275,6 +275,14 @@ TEST_CASE("gain planner: parameters out of their range are refused") {
   p = {};
   p.expected.voxel = 0.0;
   CHECK_THROWS_AS(planner_of(p), ParameterError);
+  p = {};
+  p.distance = 380.0;
+  CHECK_THROWS_WITH(planner_of(p),
+                    "distance must be from distance_min (0.27) to distance_max (0.55), got 380: "
+                    "lengths are in metres; 380 mm are 0.38");
+  p = {};
+  p.distance_max = p.distance = p.distance_min;  // one distance alone
+  CHECK_NOTHROW(planner_of(p));
 }
 
 }  // namespace gain_planner_test

@@ -59,7 +59,8 @@ struct GainPlannerParameters {
   static void fields(P& p, F&& f) {
     f("candidates", p.candidates, Range::between(1, 1000000));
     f("spread", p.spread, Range::between(0.0, 1.0));
-    f("distance", p.distance, Range::at_least({p.distance_min, "distance_min"}));
+    f("distance", p.distance,
+      Range::between({p.distance_min, "distance_min"}, {p.distance_max, "distance_max"}).in_metres());
     f("distance_min", p.distance_min, Range::positive());
     f("distance_max", p.distance_max, Range::at_least({p.distance, "distance"}));
     f("dwell", p.dwell, Range::positive());
