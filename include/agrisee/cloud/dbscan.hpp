@@ -6,8 +6,8 @@
 /// neighbors, no lists. The time goes into distance tests, about three per neighbor. Core points are joined by
 /// union-find, which gives the textbook algorithm's answer.
 ///
-/// A neighbor is a point at distance <= eps, as in all searches of this library (Open3D and PCL take < eps, which
-/// differs only for distances of exactly eps). The point itself counts, as in Open3D.
+/// A neighbor is a point at distance <= eps, as KdTree and Grid search (Open3D, PCL and grow_regions take smaller
+/// distances only, which differs only for distances of exactly eps). The point itself counts, as in Open3D.
 #pragma once
 
 #include <agrisee/cloud/parameters.hpp>
