@@ -356,6 +356,8 @@ TEST_CASE("ICP of next to nothing, degenerate clouds and bad input") {
   refuses([](auto& p) { p.min_matches = 2; }, "min_matches");
   refuses([](auto& p) { p.max_translation = 0; }, "max_translation");
   refuses([](auto& p) { p.max_rotation = -1; }, "max_rotation");
+  refuses([](auto& p) { p.max_rotation = 5; }, "max_rotation");    // degrees
+  refuses([](auto& p) { p.pose_rotation = 5; }, "pose_rotation");  // degrees
   CHECK(robust_kernel("huber") == RobustKernel::huber);
   CHECK_THROWS_AS(robust_kernel("cauchy"), ParameterError);
 }

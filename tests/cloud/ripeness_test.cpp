@@ -80,6 +80,11 @@ TEST_CASE("colors that say nothing give no ripeness") {
   RipenessParameters wrong;
   wrong.pink = 0.05;
   CHECK_THROWS_AS(ripeness_of(tomato(50), 1.0, wrong), FieldError);
+  wrong = {};
+  wrong.hue_error = 8.0;
+  CHECK_THROWS_WITH(ripeness_of(tomato(50), 1.0, wrong),
+                    "hue_error must be above 0 and at most pi (3.14159265), got 8: angles are in radians; 8 degrees "
+                    "are 0.13962634");
 }
 
 TEST_CASE("light and lightness by hand") {

@@ -161,10 +161,10 @@ struct IcpParameters {
     f("degeneracy", p.degeneracy, Range::at_least(0.0).below(1.0));
     f("min_matches", p.min_matches, Range::at_least(6));
     f("max_translation", p.max_translation, Range::positive());
-    f("max_rotation", p.max_rotation, Range::positive());
+    f("max_rotation", p.max_rotation, Range::above(0.0).up_to({kPi, "pi"}).in_radians());
     f("independent", p.independent, Range::not_negative());
     f("pose_translation", p.pose_translation, Range::positive());
-    f("pose_rotation", p.pose_rotation, Range::positive().in_radians());
+    f("pose_rotation", p.pose_rotation, Range::above(0.0).up_to({kPi, "pi"}).in_radians());
     f("max_worse", p.max_worse, Range::between(0.0, 1.0));
   }
 };

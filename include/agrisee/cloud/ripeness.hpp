@@ -66,7 +66,7 @@ struct RipenessParameters {
   template <typename P, typename F>
   static void fields(P& p, F&& f) {
     f("ripe_hue", p.ripe_hue, Range::above(0.0).below({kPi, "pi"}).in_radians());
-    f("hue_error", p.hue_error, Range::positive());
+    f("hue_error", p.hue_error, Range::above(0.0).up_to({kPi, "pi"}).in_radians());
     f("min_chroma", p.min_chroma, Range::not_negative());
     f("trim", p.trim, Range::at_least(0.0).below(0.5));
     f("breakers", p.breakers, Range::between(0.0, 1.0));
