@@ -190,7 +190,7 @@ Eigen::Vector3f ray_direction(const sensor::Intrinsics& intrinsics, const Pose& 
 RayImage raycast(const TracedScene& scene, const sensor::Intrinsics& intrinsics, const Pose& world_T_optical,
                  double range_min, double range_max, int threads) {
   check_camera(intrinsics, world_T_optical);
-  check_parameter(range_min >= 0.0, "range_min", "0 or more", range_min);
+  check_parameter(range_min >= 0.0, "range_min", "zero or more", range_min);
   check_parameter(range_max >= range_min, "range_max", "range_min or more", range_max);
   RayImage image;
   image.range.assign(intrinsics.size(), 0.0f);

@@ -27,8 +27,8 @@ double FruitShape::radius(const Eigen::Vector3d& d) const {
 }
 
 Mesh fruit_mesh(const FruitShape& shape, int slices, int stacks) {
-  check_parameter(slices >= 3, "slices", ">= 3", slices);
-  check_parameter(stacks >= 2, "stacks", ">= 2", stacks);
+  check_parameter(slices >= 3, "slices", "3 or more", slices);
+  check_parameter(stacks >= 2, "stacks", "2 or more", stacks);
   Mesh mesh;
   const auto add = [&](const Eigen::Vector3d& d) { mesh.vertices.push_back((shape.radius(d) * d).cast<float>()); };
   add(Eigen::Vector3d::UnitZ());
@@ -60,7 +60,7 @@ Mesh fruit_mesh(const FruitShape& shape, int slices, int stacks) {
 }
 
 Mesh tube_mesh(const std::vector<Eigen::Vector3d>& path, double radius_begin, double radius_end, int sides) {
-  check_parameter(sides >= 3, "sides", ">= 3", sides);
+  check_parameter(sides >= 3, "sides", "3 or more", sides);
   std::vector<Eigen::Vector3d> p;
   for (const Eigen::Vector3d& q : path)
     if (p.empty() || (q - p.back()).norm() > 1e-9) p.push_back(q);

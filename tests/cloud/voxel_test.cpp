@@ -14,6 +14,7 @@ TEST_CASE("voxels hold the mean of their points") {
   CHECK(thin.points[0].x() == Approx(-0.1f));
   CHECK(thin.points[1].x() == Approx(0.2f));
   CHECK(members == std::vector<int>{1, 2, 1});
-  CHECK_THROWS_AS(average_in_voxels(cloud, 0.0), ParameterError);
+  CHECK_THROWS_WITH(average_in_voxels(cloud, 0.0), "leaf must be positive and finite, got 0");
+  CHECK_THROWS_WITH(average_in_voxels(cloud, 1e-310), "leaf must be so large that 1 / leaf is finite, got 1e-310");
   CHECK(average_in_voxels(Cloud{}, 1.0).empty());
 }

@@ -92,6 +92,24 @@ TEST_CASE("a range says what it contains") {
   CHECK(OneOf(kColors).text() == "red, green or blue");
 }
 
+TEST_CASE("a value out of its range is shown as a plain number") {
+  const auto message = [](const auto& value) {
+    try {
+      check_parameter(false, "size", "3 or more", value);
+    } catch (const ParameterError& e) {
+      return std::string(e.what());
+    }
+    return std::string();
+  };
+  CHECK(message(2) == "size must be 3 or more, got 2");
+  CHECK(message(std::size_t(0)) == "size must be 3 or more, got 0");
+  CHECK(message(-80.0) == "size must be 3 or more, got -80");
+  CHECK(message(0.25f) == "size must be 3 or more, got 0.25");
+  CHECK(message(1e-310) == "size must be 3 or more, got 1e-310");
+  CHECK(message(kNan) == "size must be 3 or more, got nan");
+  CHECK_NOTHROW(check_parameter(true, "size", "3 or more", 3));
+}
+
 TEST_CASE("a struct is checked field by field, and errors name the whole key") {
   CHECK(error_of([](Outer&) {}).empty());
   CHECK(error_of([](Outer& o) { o.count = 6; }) == "count must be from 1 to 5, got 6");

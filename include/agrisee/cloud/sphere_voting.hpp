@@ -309,7 +309,8 @@ template <typename S>
 std::vector<VotedCenter> vote_for_centers(const PointCloud<S>& cloud, double radius_min, double radius_max,
                                           double min_votes, const std::vector<char>& fresh = {}) {
   check_parameter(radius_min > 0, "radius_min", "positive", radius_min);
-  check_parameter(radius_max >= radius_min && std::isfinite(radius_max), "radius_max", ">= radius_min", radius_max);
+  check_parameter(radius_max >= radius_min && std::isfinite(radius_max), "radius_max", "radius_min or more and finite",
+                  radius_max);
   check_input(cloud.normals.size() == cloud.points.size(), "vote_for_centers: the cloud has no normals");
   check_input(fresh.empty() || fresh.size() == cloud.size(), "vote_for_centers: fresh needs one value a point");
   if (cloud.empty()) return {};

@@ -111,8 +111,8 @@ PointCloud<S> average_runs(const PointCloud<S>& cloud, const Order& order, std::
 /// @throws ParameterError if `leaf` is not finite, not positive or so small that 1 / `leaf` is not finite
 template <typename S>
 PointCloud<S> average_in_voxels(const PointCloud<S>& cloud, double leaf, std::vector<int>* members = nullptr) {
-  check_parameter(std::isfinite(leaf) && leaf > 0 && std::isfinite(1.0 / leaf), "leaf", "positive, more than 1e-308",
-                  leaf);
+  check_parameter(std::isfinite(leaf) && leaf > 0, "leaf", "positive and finite", leaf);
+  check_parameter(std::isfinite(1.0 / leaf), "leaf", "so large that 1 / leaf is finite", leaf);
   PointCloud<S> out;
   detail::by_cell(cloud.points, leaf, [&](const auto& order) { out = detail::average_runs(cloud, order, members); });
   return out;

@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// @file
-/// The exceptions that AgriSEE throws, two checks that throw them, and lengths as their messages show them.
+/// The exceptions that AgriSEE throws, two checks that throw them, and numbers as their messages show them.
 #pragma once
 
 #include <cmath>
 #include <cstdio>
 #include <stdexcept>
 #include <string>
+#include <type_traits>
 
 namespace agrisee {
 
@@ -35,22 +36,28 @@ struct Cancelled : Error {
   Cancelled() : Error("cancelled") {}
 };
 
-/// Throws ParameterError("<field> must be <rule>, got <value>") unless `ok`.
-template <typename T>
-void check_parameter(bool ok, const char* field, const char* rule, const T& value) {
-  if (!ok) throw ParameterError(std::string(field) + " must be " + rule + ", got " + std::to_string(value));
-}
-
-/// Throws InputError(message) unless `ok`.
-inline void check_input(bool ok, const char* message) {
-  if (!ok) throw InputError(message);
-}
-
 /// A number as messages show it, to at most 17 significant digits.
 inline std::string number_text(double value, int digits) {
   char text[32];
   std::snprintf(text, sizeof text, "%.*g", digits, value);
   return text;
+}
+
+/// Throws ParameterError("<field> must be <rule>, got <value>") unless `ok`. Rules say "3 or more", not ">= 3".
+template <typename T>
+void check_parameter(bool ok, const char* field, const char* rule, const T& value) {
+  if (ok) return;
+  std::string got;
+  if constexpr (std::is_floating_point_v<T>)
+    got = number_text(static_cast<double>(value), 9);
+  else
+    got = std::to_string(value);
+  throw ParameterError(std::string(field) + " must be " + rule + ", got " + got);
+}
+
+/// Throws InputError(message) unless `ok`.
+inline void check_input(bool ok, const char* message) {
+  if (!ok) throw InputError(message);
 }
 
 /// A length (m) as messages show it: "0.0125 m".

@@ -70,10 +70,10 @@ inline std::optional<std::string> doubt_of(const Intrinsics& k) {
 /// @param fov_y full opening angle over the height (rad)
 /// @throws ParameterError for sizes below one pixel or angles outside (0, pi)
 inline Intrinsics intrinsics_from_fov(int width, int height, double fov_x, double fov_y) {
-  check_parameter(width >= 1, "sensor width", ">= 1", width);
-  check_parameter(height >= 1, "sensor height", ">= 1", height);
-  check_parameter(fov_x > 0 && fov_x < kPi, "horizontal field of view", "in (0, pi)", fov_x);
-  check_parameter(fov_y > 0 && fov_y < kPi, "vertical field of view", "in (0, pi)", fov_y);
+  check_parameter(width >= 1, "sensor width", "1 or more", width);
+  check_parameter(height >= 1, "sensor height", "1 or more", height);
+  check_parameter(fov_x > 0 && fov_x < kPi, "horizontal field of view", "above 0 and below pi", fov_x);
+  check_parameter(fov_y > 0 && fov_y < kPi, "vertical field of view", "above 0 and below pi", fov_y);
   Intrinsics k;
   k.width = width;
   k.height = height;

@@ -15,8 +15,8 @@ namespace agrisee::sensor {
 /// @throws ParameterError for intrinsics without pixels
 template <typename C>
 DepthFrame frame_from_points(const C& points, const Intrinsics& intrinsics) {
-  check_parameter(intrinsics.width >= 1, "sensor width", ">= 1", intrinsics.width);
-  check_parameter(intrinsics.height >= 1, "sensor height", ">= 1", intrinsics.height);
+  check_parameter(intrinsics.width >= 1, "sensor width", "1 or more", intrinsics.width);
+  check_parameter(intrinsics.height >= 1, "sensor height", "1 or more", intrinsics.height);
   DepthFrame frame;
   frame.intrinsics = intrinsics;
   frame.depth.assign(intrinsics.size(), 0.0f);

@@ -46,7 +46,7 @@ std::pair<double, double> range_of(std::vector<float> depths) {
 
 DepthPicture depth_picture(const sensor::DepthFrame& frame, int longest_side) {
   sensor::check(frame);
-  check_parameter(longest_side >= 1, "longest_side", ">= 1", longest_side);
+  check_parameter(longest_side >= 1, "longest_side", "1 or more", longest_side);
   const sensor::Intrinsics& k = frame.intrinsics;
   const int block = (std::max(k.width, k.height) - 1) / longest_side + 1;
   DepthPicture picture;

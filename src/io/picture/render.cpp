@@ -286,8 +286,8 @@ void check(const ScanResult& result) {
 }  // namespace
 
 Image render(const ScanResult& result, const Workcell& workcell, int width, int height) {
-  check_parameter(width >= 640, "picture width", ">= 640", width);
-  check_parameter(height >= 360, "picture height", ">= 360", height);
+  check_parameter(width >= 640, "picture width", "640 or more", width);
+  check_parameter(height >= 360, "picture height", "360 or more", height);
   check(result);
   Canvas canvas(width, height);
   const Layout layout = layout_of(canvas, result.fruits);
