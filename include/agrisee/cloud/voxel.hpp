@@ -73,7 +73,7 @@ void by_cell(const std::vector<Vector3<S>>& points, double leaf, F&& f) {
 /// The mean point of each run of equal keys; see average_in_voxels.
 template <typename S, typename Order>
 PointCloud<S> average_runs(const PointCloud<S>& cloud, const Order& order, std::vector<int>* members) {
-  const bool with_normals = cloud.normals.size() == cloud.points.size();
+  const bool with_normals = !cloud.normals.empty();
   std::size_t occupied = order.empty() ? 0 : 1;
   for (std::size_t j = 1; j < order.size(); ++j) occupied += order[j].key != order[j - 1].key ? 1u : 0u;
   PointCloud<S> out;
@@ -104,15 +104,18 @@ PointCloud<S> average_runs(const PointCloud<S>& cloud, const Order& order, std::
 }  // namespace detail
 
 /// The mean point of every cell that holds finite points, in the order of the cells by z, then y, then x. If the cloud
-/// has normals, they are averaged and scaled to unit length (zero if they cancel out); views are dropped.
+/// has normals, they are averaged and scaled to unit length (zero if they cancel out). Views, colors and instances are
+/// left out: where you need them, take those of the point nearest to each mean.
 /// @param cloud points (m)
 /// @param leaf edge length of the cells (m)
 /// @param members if given, receives the number of points behind each mean
-/// @throws ParameterError if `leaf` is not finite, not positive or so small that 1 / `leaf` is not finite
+/// @throws ParameterError if `leaf` is not finite, not positive or so small that 1 / `leaf` is not finite; InputError
+///   as check_lengths
 template <typename S>
 PointCloud<S> average_in_voxels(const PointCloud<S>& cloud, double leaf, std::vector<int>* members = nullptr) {
   check_parameter(std::isfinite(leaf) && leaf > 0, "leaf", "positive and finite", leaf);
   check_parameter(std::isfinite(1.0 / leaf), "leaf", "so large that 1 / leaf is finite", leaf);
+  check_lengths(cloud);
   PointCloud<S> out;
   detail::by_cell(cloud.points, leaf, [&](const auto& order) { out = detail::average_runs(cloud, order, members); });
   return out;
