@@ -531,7 +531,9 @@ TEST_CASE("picking: bad input by name") {
   refused([](auto& p) { p.contact = 0.2; });
   refused([](auto& p) { p.gripper_radius = kNan; });
   refused([](auto& p) { p.directions = 0; });
+  refused([](auto& p) { p.directions = 100001; });
   refused([](auto& p) { p.rolls = 0; });
+  refused([](auto& p) { p.rolls = 3601; });
   refused([](auto& p) { p.steps = 0; });
   refused([](auto& p) { p.max_joint_step = 0.0; });
   refused([](auto& p) { p.pedicel_angle = 3.0; });

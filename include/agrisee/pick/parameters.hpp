@@ -46,8 +46,8 @@ struct PickingParameters {
     f("gripper_radius", p.gripper_radius, Range::not_negative());
     f("tool_length", p.tool_length, Range::not_negative());
     f("pedicel_angle", p.pedicel_angle, Range::between(0.0, {0.5 * kPi, "pi/2"}).in_radians());
-    f("directions", p.directions, Range::at_least(6));
-    f("rolls", p.rolls, Range::at_least(1));
+    f("directions", p.directions, Range::between(6, 100000));
+    f("rolls", p.rolls, Range::between(1, 3600));
     f("steps", p.steps, Range::at_least(1));
     f("max_joint_step", p.max_joint_step, Range::positive());
     f("depth_tie", p.depth_tie, Range::not_negative());
