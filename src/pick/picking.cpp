@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <set>
 #include <tuple>
 
 namespace agrisee::pick {
@@ -31,6 +32,10 @@ void check_scene(const std::vector<Fruit>& fruits, const PickingScene& scene) {
   check_input(scene.robot.allFinite() && scene.joints.allFinite(),
               "plan_picking: the robot's position or the joints are not finite");
   check_input(scene.seen.empty() || scene.seen.size() == fruits.size(), "plan_picking: `seen` does not fit the fruit");
+  std::set<int> ids;
+  for (const Fruit& fruit : fruits)
+    if (!ids.insert(fruit.id).second)
+      throw InputError("plan_picking: two fruits have the id " + std::to_string(fruit.id));
 }
 
 /// The fruit in an order that does not depend on the caller's, and the keep-out spaces that apply to each.

@@ -358,6 +358,12 @@ TEST_CASE("a result that is not finite or does not fit together is not written")
   refuse("labels", [](ScanResult& r) { r.labels.pop_back(); });
   refuse("normals", [](ScanResult& r) { r.cloud.normals.pop_back(); });
   refuse("views of points", [](ScanResult& r) { r.raw.views.pop_back(); });
+  refuse("ids", [](ScanResult& r) { r.fruits[1].id = r.fruits[0].id; });
+  std::vector<Fruit> same = some_result().fruits;
+  same[1].id = same[0].id = 7;
+  CHECK_THROWS_WITH(io::write_fruits(folder / "fruits.json", same), "fruits: two have the id 7");
+  CHECK_THROWS_WITH(io::write_fruits_csv(folder / "fruits.csv", same), "fruits: two have the id 7");
+  CHECK(folder.files() == 0);
   io::RunInfo info = some_info();
   info.parameters_json = "{";
   CHECK_THROWS_AS(io::write_result(folder.path(), some_result(), info), InputError);

@@ -516,6 +516,8 @@ TEST_CASE("picking: bad input by name") {
   bad = good;
   bad[0].body->radii.z() = 0.0;
   CHECK_THROWS_AS(plan_picking(bad, scene()), InputError);
+  bad = {fruit(3, {0.0, 0.5, 0.2}), fruit(3, {0.2, 0.5, 0.2})};
+  CHECK_THROWS_WITH(plan_picking(bad, scene()), "plan_picking: two fruits have the id 3");
   PickingScene s = scene();
   s.joints[2] = kNan;
   CHECK_THROWS_AS(plan_picking(good, s), InputError);

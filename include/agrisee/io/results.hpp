@@ -68,16 +68,17 @@ void write_views(const std::filesystem::path& path, const std::vector<View>& vie
 ///   `pre_grasp_position_world` (m), `pre_grasp_orientation_world` (of the tool, z along the approach direction) and,
 ///   if the arm is known, `pre_grasp_joints` (rad).
 /// - Where they are known: `truss` (see FoundTruss) and `ripeness` (see Ripeness).
-/// @throws InputError for a fruit that is not finite  @throws FileError when it cannot be written
+/// @throws InputError for a fruit that is not finite or two with the same id
+/// @throws FileError when it cannot be written
 void write_fruits(const std::filesystem::path& path, const std::vector<Fruit>& fruits);
 
-/// The text that write_fruits writes. @throws InputError for a fruit that is not finite
+/// The text that write_fruits writes. @throws InputError as write_fruits does
 std::string fruits_to_json(const std::vector<Fruit>& fruits);
 
 /// Write fruits.csv: the values of fruits.json as a table with a row per fruit. Missing values, such as those of a body
 /// or picking plan that does not exist, are empty. Only the upper triangle of the covariance is written; the ids in
 /// `picking_after` are separated by spaces.
-/// @throws FileError when it cannot be written
+/// @throws InputError for two fruits with the same id  @throws FileError when it cannot be written
 void write_fruits_csv(const std::filesystem::path& path, const std::vector<Fruit>& fruits);
 
 /// Write run.json: how the scan was made, why it stopped, and how many views and points it has (docs/formats.md).
@@ -89,7 +90,8 @@ void write_run(const std::filesystem::path& path, const ScanResult& result, cons
 
 /// Write all files of a result into `folder`, which is created if necessary. run.json is written last, so a folder with
 /// run.json holds a complete result.
-/// @throws InputError for a result that is not finite or whose labels are not one per point; then nothing is written
+/// @throws InputError for a result that is not finite, whose labels are not one per point, or of which two fruits have
+///   the same id; then nothing is written
 /// @throws FileError when a file cannot be written
 void write_result(const std::filesystem::path& folder, const ScanResult& result, const RunInfo& info);
 

@@ -52,8 +52,8 @@ OrientedEllipsoid occupied(const Fruit& fruit);
 ///   an arm and the reason is `not_tested`
 /// @param parameters see their struct
 /// @return one entry per fruit, in the order of `fruits`
-/// @throws InputError when a fruit, the robot's position or a joint is not finite, or when `scene.seen` is neither
-///   empty nor has one entry per fruit; ParameterError
+/// @throws InputError when a fruit, the robot's position or a joint is not finite, when two fruits have the same id, or
+///   when `scene.seen` is neither empty nor has one entry per fruit; ParameterError
 std::vector<Picking> plan_picking(const std::vector<Fruit>& fruits, const PickingScene& scene,
                                   const ReachApproach& reach = {}, const PickingParameters& parameters = {});
 

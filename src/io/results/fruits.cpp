@@ -223,6 +223,13 @@ Ripeness ripeness_of(const JsonValue& value) {
   return out;
 }
 
+/// @throws InputError for two fruits with the same id, which read_fruits refuses
+void check_ids(const std::vector<Fruit>& fruits) {
+  std::set<int> ids;
+  for (const Fruit& fruit : fruits)
+    if (!ids.insert(fruit.id).second) throw InputError("fruits: two have the id " + std::to_string(fruit.id));
+}
+
 }  // namespace
 
 Json ripeness_json(const Ripeness& ripeness) {
@@ -239,12 +246,14 @@ Json ripeness_json(const Ripeness& ripeness) {
 }
 
 std::string fruits_text(const std::vector<Fruit>& fruits) {
+  check_ids(fruits);
   Json list = Json::array();
   for (const Fruit& fruit : fruits) list.push_back(to_json(fruit));
   return dump(list);
 }
 
 std::string fruits_csv_text(const std::vector<Fruit>& fruits) {
+  check_ids(fruits);
   CsvWriter csv;
   const bool ripeness = any_ripeness(fruits);
   add_head(csv, ripeness);
