@@ -48,7 +48,7 @@ void add_ripeness(ScanResult& result, const RipenessParameters& parameters) {
       colors.insert(colors.end(), own.begin(), own.end());
       seen += share_seen(result.fruits[static_cast<std::size_t>(id - 1)]) / static_cast<double>(t.fruits.size());
     }
-    t.ripeness = ripeness_of(colors, seen, parameters);
+    t.ripeness = ripeness_of(colors, std::min(1.0, seen), parameters);  // a sum of shares may be rounded up
   }
 }
 

@@ -73,6 +73,7 @@ std::optional<RipenessClass> ripeness_named(std::string_view name) {
 }
 
 RipenessClass class_of(double ripe_share, const RipenessParameters& parameters) {
+  check_input(!std::isnan(ripe_share), "class_of: the ripe share is NaN");
   const auto from = class_limits(parameters);
   std::size_t c = 0;
   while (c + 1 < kRipenessClasses && ripe_share > from[c + 1]) ++c;
@@ -101,6 +102,8 @@ Eigen::Vector3d to_lab(const Rgb& color) {
 
 std::optional<Ripeness> ripeness_of(const std::vector<Rgb>& colors, double seen, const RipenessParameters& parameters) {
   parameters.check();
+  if (!(seen >= 0.0 && seen <= 1.0))
+    throw InputError("ripeness_of: the share that was seen must be from 0 to 1, got " + number_text(seen, 9));
   constexpr std::size_t kFewest = 8;
   constexpr double kPatches = 12.0;
   if (colors.size() < kFewest) return std::nullopt;
@@ -116,14 +119,14 @@ std::optional<Ripeness> ripeness_of(const std::vector<Rgb>& colors, double seen,
   for (const Eigen::Vector3d& c : lab) out.lab += c / static_cast<double>(lab.size());
   out.points = hues.size();
   out.hue = hue_of(out.lab);
-  const double patches = std::max(1.0, kPatches * std::clamp(seen, 0.0, 1.0));
+  const double patches = std::max(1.0, kPatches * seen);
   double spread = 0.0;
   for (const double hue : hues) spread += std::pow(std::remainder(hue - out.hue, kTwoPi), 2);
   spread /= static_cast<double>(hues.size());
   const double common = 0.5 * parameters.hue_error;
   out.hue_error = std::sqrt(common * common + spread / patches);
   out.ripe_share = share_below(hues, 0.0, parameters);
-  const double unseen = std::sqrt(out.ripe_share * (1.0 - out.ripe_share) / patches * (1.0 - std::min(1.0, seen)));
+  const double unseen = std::sqrt(out.ripe_share * (1.0 - out.ripe_share) / patches * (1.0 - seen));
   const double shifted = 0.5 * (share_below(hues, -common, parameters) - share_below(hues, common, parameters));
   out.ripe_share_error = std::hypot(unseen, shifted);
   grade(out, parameters);

@@ -182,8 +182,7 @@ TEST_CASE("errors of the hue and of the share, by hand") {
                                                {1.0, 0.0},
                                                {0.25, std::sqrt(0.25 / 3.0 * 0.75)},
                                                {0.0, 0.5},
-                                               {0.05, std::sqrt(0.25 * 0.95)},
-                                               {2.0, 0.0}};
+                                               {0.05, std::sqrt(0.25 * 0.95)}};
   for (const auto& [seen, unseen] : kUnseen) {
     CAPTURE(seen);
     const auto r = ripeness_of(std::vector<Rgb>(20, kRed), seen, parameters);
@@ -203,8 +202,15 @@ TEST_CASE("errors of the hue and of the share, by hand") {
   const double spread = 0.5 * (std::pow(red - mean, 2) + std::pow(green - mean, 2));
   CHECK(r->hue == Approx(mean));
   CHECK(r->hue_error == Approx(std::sqrt(std::pow(deg(4), 2) + spread / 6.0)));
-  CHECK(ripeness_of(tomato(50), 2.0)->hue_error ==
-        ripeness_of(tomato(50), 1.0)->hue_error);  // no more than all is seen
+}
+
+TEST_CASE("shares that are none are refused") {
+  CHECK_THROWS_WITH(ripeness_of(tomato(50), 1.5), "ripeness_of: the share that was seen must be from 0 to 1, got 1.5");
+  for (const double seen : {-0.1, 40.0, std::numeric_limits<double>::quiet_NaN()}) {
+    CHECK_THROWS_AS(ripeness_of(tomato(50), seen), InputError);
+    CHECK_THROWS_AS(ripeness_of({}, seen), InputError);
+  }
+  CHECK_THROWS_AS(class_of(std::numeric_limits<double>::quiet_NaN()), InputError);
 }
 
 TEST_CASE("a class without any doubt has the probability one") {

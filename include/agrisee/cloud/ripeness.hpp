@@ -87,6 +87,7 @@ double hue_of(const Eigen::Vector3d& lab);
 double linear_light(double channel);
 
 /// The class of a fruit of which this share (0..1) of the surface is ripe.
+/// @throws InputError for NaN
 RipenessClass class_of(double ripe_share, const RipenessParameters& parameters = {});
 
 /// The ripeness of a surface with these colors.
@@ -98,7 +99,7 @@ RipenessClass class_of(double ripe_share, const RipenessParameters& parameters =
 /// @param colors of points spread evenly over the part of the surface that was seen
 /// @param seen   share (0..1) of the surface that was seen
 /// @return empty if there are fewer than 8 colors, or none with a hue
-/// @throws FieldError
+/// @throws InputError unless `seen` is from 0 to 1; FieldError
 std::optional<Ripeness> ripeness_of(const std::vector<Rgb>& colors, double seen,
                                     const RipenessParameters& parameters = {});
 
