@@ -217,4 +217,15 @@ TEST_CASE("normals of next to nothing, and bad input") {
   CHECK(cases::rejects("max_angle", [&] { orient_normals_consistently(none, none, {9, 0.01, 3.0}); }));
   CHECK_THROWS_AS(orient_normals_consistently(P(2, {0, 0, 1}), none), InputError);
   CHECK_THROWS_AS(estimate_normals(none, {}, KdTree(P(2, {0, 0, 1}))), InputError);
+
+  const float nan = std::nanf("");
+  const P cloud = {{nan, 0, 0}, {0, 0, 1}, {0, 0.001f, 1}, {0.001f, 0, 1}};
+  CHECK(estimate_normals(cloud, {}, KdTree(cloud)) == estimate_normals(cloud));
+  P other = cloud;
+  for (auto& p : other) p.x() += 0.5f;  // of the same size
+  CHECK_THROWS_WITH(estimate_normals(cloud, {}, KdTree(other)), "the search was built over another cloud");
+  CHECK_THROWS_WITH(estimate_normals(cloud, {}, Grid(other, 0.01f)), "the search was built over another cloud");
+  const P nothing(4, {nan, nan, nan});
+  CHECK_THROWS_AS(estimate_normals(cloud, {}, KdTree(nothing)), InputError);
+  CHECK(estimate_normals(nothing, {}, KdTree(nothing)) == P(4, {0, 0, 0}));
 }

@@ -27,6 +27,19 @@ Vector3<S> normal_of(const Moments& moments, S* curvature) {
   return axis.cast<S>();
 }
 
+/// Check that the first finite point of a cloud is where the search has a point: it is not if the search was built over
+/// another cloud of the same size.
+/// @throws InputError
+template <typename C, typename Search>
+void check_search_over(const C& cloud, const Search& search) {
+  std::size_t first = 0;
+  while (first < agrisee::size(cloud) && !is_finite(point(cloud, first))) ++first;
+  if (first == agrisee::size(cloud)) return;
+  Neighbors<scalar_t<C>> nearest;
+  search.knn(point(cloud, first), 1, nearest);
+  check_input(!nearest.empty() && nearest.front().distance == 0, "the search was built over another cloud");
+}
+
 }  // namespace detail
 
 /// Estimate the normal of each point. It is unknown if the point is not finite, has fewer than three neighbors, or all
@@ -37,7 +50,9 @@ Vector3<S> normal_of(const Moments& moments, S* curvature) {
 /// @param threads the result does not depend on it
 /// @param curvatures if given, receives one surface variation per point (0 to 1/3; 0 if the normal is unknown)
 /// @return one unit normal per point, of arbitrary sign; zero if it is unknown
-/// @throws ParameterError for a bad parameter, InputError if the search is over a cloud of another size
+/// @throws ParameterError for a bad parameter, InputError if the search is over a cloud of another size, or has no
+/// point
+///   where the first finite point of `cloud` is
 template <typename C, typename Search>
 std::vector<Vector3<scalar_t<C>>> estimate_normals(const C& cloud, const NormalParameters& parameters,
                                                    const Search& search, int threads = 1,
@@ -46,6 +61,7 @@ std::vector<Vector3<scalar_t<C>>> estimate_normals(const C& cloud, const NormalP
   parameters.check();
   const std::size_t n = agrisee::size(cloud);
   check_input(search.size() == n, "the search and the cloud differ in size");
+  detail::check_search_over(cloud, search);
   std::vector<Vector3<S>> normals(n, Vector3<S>::Zero());
   if (curvatures) curvatures->assign(n, S(0));
   parallel_chunks(n, threads, 512, [&](std::size_t begin, std::size_t end) {
