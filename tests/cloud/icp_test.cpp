@@ -3,6 +3,7 @@
 #include <agrisee/neighbors/kdtree.hpp>
 
 #include "cloud/cloud_cases.hpp"
+#include "support/says.hpp"
 
 using namespace agrisee;
 
@@ -75,6 +76,30 @@ TEST_CASE("ICP finds a small motion, whatever the kernel and the distance") {
     CHECK(points.accepted);
     CHECK(error(points, kSmall) < 6e-4);  // points slide over points less easily
   }
+}
+
+TEMPLATE_TEST_CASE("ICP takes the normals that clouds hold", "", float, double) {
+  const auto target = truss<TestType>(3000, 1, 6, 0.0);
+  const auto source = moved(kSmall, truss<TestType>(800, 2, 6, 0.0, true));
+  const IcpResult expected = align(source, target), result = register_cloud(source, target);
+  CHECK(result.accepted);
+  CHECK(result.target_T_source.matrix() == expected.target_T_source.matrix());
+  CHECK(result.matches == expected.matches);
+  IcpParameters parameters;
+  parameters.max_iterations = 3;
+  CHECK(register_cloud(source, target, parameters, kSmall.inverse(), 2).iterations <= 3);
+
+  PointCloud<TestType> bare;
+  bare.points = source.points;
+  CHECK_THROWS_WITH(register_cloud(bare, target), test::says("the normals of the source"));
+  CHECK_THROWS_WITH(register_cloud(source, bare), test::says("the normals of the target"));
+  parameters.point_to_point = true;
+  CHECK(register_cloud(bare, bare, parameters).matches == bare.size());
+  bare.normals.resize(3);
+  CHECK_THROWS_AS(register_cloud(bare, target), InputError);
+  CHECK_THROWS_AS(register_cloud(source, bare), InputError);
+  CHECK_FALSE(register_cloud(PointCloud<TestType>(), target).accepted);
+  CHECK_FALSE(register_cloud(source, PointCloud<TestType>()).accepted);
 }
 
 TEST_CASE("ICP of a cloud with its own copy is exact") {

@@ -16,6 +16,7 @@
 
 #include <agrisee/cloud/icp_problem.hpp>
 #include <agrisee/cloud/parameters.hpp>
+#include <agrisee/core/cloud.hpp>
 #include <agrisee/core/median.hpp>
 #include <agrisee/core/pose.hpp>
 #include <agrisee/geometry/aabb.hpp>
@@ -216,6 +217,25 @@ IcpResult register_cloud(const Source& source, const std::vector<Vector3<scalar_
   using S = scalar_t<Target>;
   return register_cloud(source, source_normals, target, target_normals, parameters,
                         Grid<S>(target, detail::icp_cell(target, parameters, threads), threads), initial, threads);
+}
+
+/// Register `source` to `target` by the normals that both clouds hold. For point to point they may hold none; normals
+/// of both, if there are any, still have to agree.
+/// @param source points (m) to be aligned with the target, with normals
+/// @param target points (m) that stay where they are, with normals
+/// @param parameters, initial, threads as above
+/// @throws ParameterError for a bad parameter; InputError if an array of a cloud has a wrong length (check_lengths), if
+///   normals are missing or `initial` is not rigid; Cancelled
+template <typename S>
+IcpResult register_cloud(const PointCloud<S>& source, const PointCloud<S>& target, const IcpParameters& parameters = {},
+                         const Pose& initial = Pose::Identity(), int threads = 1) {
+  check_lengths(source);
+  check_lengths(target);
+  check_input(parameters.point_to_point || source.empty() || !source.normals.empty(),
+              "ICP needs the normals of the source: estimate them, or set point_to_point");
+  check_input(parameters.point_to_point || target.empty() || !target.normals.empty(),
+              "ICP needs the normals of the target: estimate them, or set point_to_point");
+  return register_cloud(source, source.normals, target, target.normals, parameters, initial, threads);
 }
 
 }  // namespace agrisee
