@@ -44,7 +44,7 @@ double share_below(const std::vector<double>& hues, double shift, const Ripeness
   return sum / static_cast<double>(hues.size());
 }
 
-/// Where each class begins, and where the last one ends.
+/// Above which share each class begins, and where the last one ends.
 std::array<double, kRipenessClasses + 1> class_limits(const RipenessParameters& p) {
   return {-1e9, p.breakers, p.turning, p.pink, p.light_red, p.red, 1e9};
 }

@@ -53,11 +53,11 @@ struct RipenessParameters {
   double min_chroma = 8.0;    ///< surface with less chroma (CIELAB) has no hue and is left out of the share
   double trim = 0.15;         ///< share of the points, the brightest (highlights) and again the darkest (shade), that
                               ///< is left out of the mean color
-  double breakers = 0.01;     ///< ripe share from which a fruit is of the class breakers
-  double turning = 0.10;      ///< ripe share from which it is turning
-  double pink = 0.30;         ///< ripe share from which it is pink
-  double light_red = 0.60;    ///< ripe share from which it is light red
-  double red = 0.90;          ///< ripe share from which it is red
+  double breakers = 0.01;     ///< ripe share above which a fruit is of the class breakers
+  double turning = 0.10;      ///< ripe share above which it is turning
+  double pink = 0.30;         ///< ripe share above which it is pink
+  double light_red = 0.60;    ///< ripe share above which it is light red
+  double red = 0.90;          ///< ripe share above which it is red
 
   /// @throws FieldError for the first field that is out of its range
   void check() const { check_fields(*this); }
@@ -86,7 +86,8 @@ double hue_of(const Eigen::Vector3d& lab);
 /// Linear light (0..1) of a channel of sRGB (0..1), IEC 61966-2-1.
 double linear_light(double channel);
 
-/// The class of a fruit of which this share (0..1) of the surface is ripe.
+/// The class of a fruit of which this share (0..1) of the surface is ripe. A share that is just a limit, such as
+/// `turning`, still belongs to the class below it.
 /// @throws InputError for NaN
 RipenessClass class_of(double ripe_share, const RipenessParameters& parameters = {});
 
