@@ -12,9 +12,11 @@ int main() {
   agrisee::CloudOrigin origin;
   origin.viewpoint = Eigen::Vector3d(0.0, 0.0, 0.2);  // where they were seen from
   const agrisee::ScanResult result = agrisee::process(cloud, {}, origin);
-  for (const agrisee::Fruit& fruit : result.fruits)
-    std::cout << "fruit " << fruit.id << " at " << fruit.body->center.transpose() << ", radius "
-              << fruit.body->radii.mean() << ", found by " << fruit.found_by << "\n";
+  for (const agrisee::Fruit& fruit : result.fruits) {
+    std::cout << "fruit " << fruit.id << " at " << fruit.position().transpose();
+    if (fruit.body) std::cout << ", radius " << fruit.body->radii.mean();  // Parameters::paper() fits none
+    std::cout << ", found by " << fruit.found_by << "\n";
+  }
   return result.fruits.size() == 2 ? 0 : 1;
 }
 
