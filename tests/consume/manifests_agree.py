@@ -22,6 +22,7 @@ LIBRARIES = [  # vcpkg, Conan, rosdep
     ("stb", "stb", "libstb-dev"),
     ("zlib", "zlib", "zlib"),
     ("cli11", None, "cli11"),
+    ("sqlite3", None, None),
     ("catch2", None, "catch2"),
 ]
 
