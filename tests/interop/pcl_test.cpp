@@ -43,6 +43,15 @@ ScanResult as_documented(const pcl::PointCloud<pcl::PointXYZ>& pcl_cloud) {
   return result;
 }
 
+/// As docs/interop.md has it.
+ScanResult with_colors(const pcl::PointCloud<pcl::PointXYZRGB>& pcl_cloud, const CloudOrigin& origin) {
+  agrisee::Cloud cloud = agrisee::finite_points(pcl_cloud);
+  for (const pcl::PointXYZRGB& p : pcl_cloud)  // a color for each point that is left
+    if (agrisee::is_finite(p.getVector3fMap())) cloud.colors.push_back({p.r, p.g, p.b});
+  const agrisee::ScanResult result = agrisee::process(cloud, {}, origin);
+  return result;
+}
+
 }  // namespace
 
 TEST_CASE("PCL clouds of every point type give the same fruit as our own") {
@@ -57,6 +66,19 @@ TEST_CASE("PCL clouds of every point type give the same fruit as our own") {
   test::check_same(process(converted<pcl::PointXYZRGB>(own), {}, test::from_origin()), expected);
   test::check_same(process(converted<pcl::PointNormal>(own), {}, test::from_origin()), expected);  // normals unknown
   test::check_same(process(converted<OwnPoint>(own), {}, test::from_origin()), expected);
+}
+
+TEST_CASE("colors of PCL clouds count once they are added") {
+  auto theirs = converted<pcl::PointXYZRGB>(test::two_fruit());
+  for (auto& p : theirs) p.r = 200, p.g = 30, p.b = 20;
+  CHECK(process(theirs, {}, test::from_origin()).raw.colors.empty());
+  const ScanResult result = with_colors(theirs, test::from_origin());
+  CHECK(result.raw.colors.size() == result.raw.size());
+  REQUIRE(result.fruits.size() == 2);
+  for (const Fruit& fruit : result.fruits) {
+    REQUIRE(fruit.ripeness);
+    CHECK(fruit.ripeness->grade == RipenessClass::red);
+  }
 }
 
 TEST_CASE("stages read PCL clouds where they lie") {
