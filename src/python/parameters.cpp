@@ -202,7 +202,7 @@ Parameters from_yaml(const py::object& source) {
   const auto text = source.cast<std::string>();
   if (text.find('\n') == std::string::npos && text.find(": ") == std::string::npos) return io::read_parameters(text);
   try {
-    return io::parameters_from_json(text, "YAML");  // JSON is YAML, and it is read as such
+    return io::parameters_from_yaml(text, "YAML");  // JSON is YAML, and it is read as such
   } catch (const FileError& e) {
     throw ParameterError(e.what());
   }

@@ -65,6 +65,20 @@ TEST_CASE("mistakes are named with file, line and key") {
   CHECK_THROWS_AS(io::read_parameters("no_such_file.yaml"), FileError);
 }
 
+TEST_CASE("parameters from texts") {
+  Parameters p;
+  p.max_views = 7;
+  CHECK(io::parameters_from_json(io::parameters_to_json(p), "job").max_views == 7);
+  CHECK(io::parameters_from_yaml(io::parameters_to_yaml(p), "job").max_views == 7);
+  CHECK(io::parameters_from_yaml("", "job").max_views == Parameters().max_views);
+  CHECK_THROWS_WITH(io::parameters_from_json("{", "job"), test::says("job: not JSON, at byte "));
+  CHECK_THROWS_WITH(io::parameters_from_json("max_views: 7", "job"), test::says("job: not JSON"));
+  CHECK_THROWS_WITH(io::parameters_from_json("", "job"), test::says("job: is empty"));
+  CHECK_THROWS_WITH(io::parameters_from_json("{\"max_views\": 0}", "job"),
+                    test::says("job:1: 'max_views' must be at least 1, got 0"));
+  CHECK_THROWS_WITH(io::parameters_from_yaml("a: [", "job"), test::says("not YAML"));
+}
+
 TEST_CASE("values out of their range are named with file, line and the whole key") {
   const auto refused = [](const std::string& text, const std::string& message) {
     CHECK_THAT(error_of(text), test::says(".yaml" + message));

@@ -21,10 +21,16 @@ std::string parameters_to_yaml(const Parameters& parameters);
 /// The parameters as a JSON object.
 std::string parameters_to_json(const Parameters& parameters);
 
-/// Parameters from such a JSON object.
+/// Parameters from a YAML text, as read_parameters reads them from a file.
+/// @param text such as parameters_to_yaml returns
+/// @param path what messages call the source of the text
+/// @throws FileError as read_parameters does
+Parameters parameters_from_yaml(const std::string& text, const std::string& path);
+
+/// Parameters from a JSON object.
 /// @param text as parameters_to_json returns it
 /// @param path the file that the text is from, for messages
-/// @throws FileError as read_parameters does
+/// @throws FileError for a text that is not JSON, else as read_parameters does
 Parameters parameters_from_json(const std::string& text, const std::string& path);
 
 }  // namespace agrisee::io

@@ -45,10 +45,12 @@ Json parse_json(std::string_view text) {
 
 Json load_json(const std::filesystem::path& path) { return load_json(path, read_bytes(path)); }
 
-Json load_json(const std::filesystem::path& path, const Bytes& bytes) {
-  if (bytes.size == 0) fail(path, "is empty");
+Json load_json(const std::filesystem::path& path, const Bytes& bytes) { return parse_json(path, bytes.view()); }
+
+Json parse_json(const std::filesystem::path& path, std::string_view text) {
+  if (text.empty()) fail(path, "is empty");
   try {
-    return parse_json(bytes.view());
+    return parse_json(text);
   } catch (const nlohmann::json::parse_error& e) {
     fail(path, "not JSON, at byte " + std::to_string(e.byte));
   } catch (const nlohmann::json::exception& e) {

@@ -22,6 +22,9 @@ using Json = nlohmann::ordered_json;
 /// @throws InputError for a text that is nested deeper than 64 levels
 Json parse_json(std::string_view text);
 
+/// The same for a text from a file. @throws FileError, which names the file, when it is not JSON
+Json parse_json(const std::filesystem::path& path, std::string_view text);
+
 /// Read and parse a JSON file. @throws FileError when it cannot be read or is not JSON
 Json load_json(const std::filesystem::path& path);
 /// The same for the bytes of a file that was read already. @param path for messages

@@ -5,6 +5,7 @@
 #include <set>
 #include <type_traits>
 
+#include "io/formats/json_value.hpp"
 #include "io/formats/text.hpp"
 #include "io/formats/yaml_map.hpp"
 
@@ -139,7 +140,12 @@ Parameters read_parameters(const std::string& path, const Parameters& base) {
   return parameters_of(path, load_yaml(path, true), base);
 }
 
+Parameters parameters_from_yaml(const std::string& text, const std::string& path) {
+  return parameters_of(path, parse_yaml(path, text, true), {});
+}
+
 Parameters parameters_from_json(const std::string& text, const std::string& path) {
+  parse_json(path, text);
   return parameters_of(path, parse_yaml(path, text), {});  // JSON is YAML
 }
 
