@@ -65,6 +65,15 @@ TEST_CASE("mistakes are named with file, line and key") {
   CHECK_THROWS_AS(io::read_parameters("no_such_file.yaml"), FileError);
 }
 
+TEST_CASE("a key with dots is answered with how to write it") {
+  CHECK_THAT(error_of("gain.min_gain: 0.003\n"),
+             test::says(".yaml:1: unknown key 'gain.min_gain'; write gain: {min_gain: ...}"));
+  CHECK_THAT(error_of("split:\n  bodies.fit.noise: 1\n"),
+             test::says(".yaml:2: unknown key 'split.bodies.fit.noise'; write bodies: {fit: {noise: ...}}"));
+  for (const std::string name : {"foo.bar", "gain.", ".gain", "."})
+    CHECK_THAT(error_of("'" + name + "': 1\n"), !test::says("write"));
+}
+
 TEST_CASE("parameters from texts") {
   Parameters p;
   p.max_views = 7;

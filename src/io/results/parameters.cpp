@@ -60,6 +60,25 @@ std::string place(const std::string& path, const YAML::Node& node) {
   return mark.is_null() ? path : path + ":" + std::to_string(mark.line + 1);
 }
 
+/// A hint for a key with dots, as messages and documents write it, if it begins with a key that is known:
+/// "; write gain: {min_gain: ...}".
+std::string how_to_nest(const std::string& name, const std::set<std::string>& known) {
+  if (!known.count(name.substr(0, name.find('.'))) || name.back() == '.') return "";
+  std::string nested, closing;
+  for (std::size_t begin = 0, dot = 0; (dot = name.find('.', begin)) != std::string::npos; begin = dot + 1) {
+    nested += name.substr(begin, dot - begin) + ": {";
+    closing += "}";
+  }
+  if (nested.empty()) return "";
+  return "; write " + nested + name.substr(name.rfind('.') + 1) + ": ..." + closing;
+}
+
+/// What the author of an unknown key may have meant; empty if nothing is like it.
+std::string hint(const std::string& name, const std::set<std::string>& known) {
+  const std::string nested = how_to_nest(name, known);
+  return nested.empty() ? did_you_mean(name, {known.begin(), known.end()}) : nested;
+}
+
 /// Sets every field of a struct that a map names. Ranges are not tested here.
 struct YamlReader {
   const std::string& path;
@@ -105,8 +124,7 @@ struct YamlReader {
       if (!seen.insert(name).second)
         throw FileError(place(path, entry.first) + ": '" + prefix + name + "' is given twice");
       if (!keys.count(name))
-        throw FileError(place(path, entry.first) + ": unknown key '" + prefix + name + "'" +
-                        did_you_mean(name, {keys.begin(), keys.end()}));
+        throw FileError(place(path, entry.first) + ": unknown key '" + prefix + name + "'" + hint(name, keys));
     }
   }
 };
