@@ -51,8 +51,7 @@ void check_search_over(const C& cloud, const Search& search) {
 /// @param curvatures if given, receives one surface variation per point (0 to 1/3; 0 if the normal is unknown)
 /// @return one unit normal per point, of arbitrary sign; zero if it is unknown
 /// @throws ParameterError for a bad parameter, InputError if the search is over a cloud of another size, or has no
-/// point
-///   where the first finite point of `cloud` is
+///   point where the first finite point of `cloud` is
 template <typename C, typename Search>
 std::vector<Vector3<scalar_t<C>>> estimate_normals(const C& cloud, const NormalParameters& parameters,
                                                    const Search& search, int threads = 1,
