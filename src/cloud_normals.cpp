@@ -135,6 +135,11 @@ double noise_within(const Cloud& cloud, double radius, const BodyParameters& bod
                         std::sqrt(bodies.radius_min * bodies.radius_max));
 }
 
+double point_noise(const Cloud& cloud, const Parameters& parameters) {
+  const double spacing = parameters.adaptive_normals ? estimate_spacing(cloud) : 0.0;
+  return spacing > 0.0 ? noise_within(cloud, parameters.normal_reach * spacing, parameters.split.bodies) : 0.0;
+}
+
 CloudNoise provide_normals(Cloud& cloud, const Parameters& parameters, const CloudOrigin& origin, int threads) {
   CloudNoise noise;
   if (cloud.normals.empty())

@@ -16,6 +16,10 @@ struct CloudNoise {
 /// Standard deviation (m) of the points about their own surface, from neighborhoods of a certain radius (m).
 double noise_within(const Cloud& cloud, double radius, const BodyParameters& bodies);
 
+/// Standard deviation (m) of the points about their own surface, from the neighborhoods in which normals are estimated;
+/// 0 if `adaptive_normals` is off.
+double point_noise(const Cloud& cloud, const Parameters& parameters);
+
 /// Give every point of a cloud a normal: turned to where the point was seen from; where that is not known, so that
 /// neighbors agree.
 /// @return the cloud's noise; zeros if half of the normals, or more, came with the cloud, or if `adaptive_normals` is

@@ -267,6 +267,8 @@ ScanResult process(Cloud&& cloud, const Parameters& parameters, const CloudOrigi
   BodyParameters& bodies = fitted.split.bodies;
   constexpr double kAlike = 5.0;  // errors of neighbors are alike, so a body that they carry is off by more than one's
   bodies.fit.sensor_noise = std::max(bodies.fit.sensor_noise, kAlike * noise.points);
+  const bool unknown = !(noise.points > 0.0) && has_one_viewpoint(origin);  // its normals came with the cloud
+  bodies.point_noise = std::max(bodies.point_noise, unknown ? point_noise(result.cloud, parameters) : noise.points);
   bodies.normal_noise = std::max(bodies.normal_noise, 1.2 * noise.normals);
   Split found = timed(t.segment, [&] {
     std::vector<fuse::DetectedView> views = origin.detected;

@@ -199,6 +199,44 @@ TEST_CASE("the spread of normals that the sensor accounts for does not speak aga
   CHECK(fruit_probability(v, fit, noisy) == Approx(fruit_probability(rest, fit, BodyParameters())));
 }
 
+TEST_CASE("of the misfit of a body, noise explains what variances leave, up to a limit") {
+  BodyParameters noisy;
+  const auto explained = [&](double rms, double noise) {
+    noisy.point_noise = noise;
+    return explained_misfit(fit_of(rms), noisy);
+  };
+  CHECK(explained(0.0012, 0.0) == 0.0);
+  CHECK(explained(0.0012, 0.0006) == Approx((0.0012 - std::sqrt(0.0012 * 0.0012 - 0.0006 * 0.0006)) / kRadius));
+  CHECK(explained(0.0005, 0.001) == Approx(0.0005 / kRadius));                   // all of it
+  CHECK(explained(0.00135, 0.00135) == Approx(0.02));                            // the most that counts
+  CHECK(explained(0.0018, 0.05) == Approx(explained(0.0018, 0.045 * kRadius)));  // more noise explains no more
+  CHECK(explained(0.1, 0.001) == 0.0);  // so far off that noise changes nothing
+}
+
+TEST_CASE("a body of a single view is settled by both verdicts, noise and sight lines") {
+  Verdict v = verdict_of(cap(1.0));
+  v.seen_on = 1.0;
+  v.clutter = 1.5;
+  const EllipsoidFit fit = fit_of(0.0012);
+  BodyParameters parameters;
+  const double now = fruit_probability(v, fit, parameters, 0.3);
+  const auto odds = [&](double won, const Verdict& last) {
+    const double p = settled_probability(won, last, fit, parameters, 0.3);
+    return std::log(p / (1.0 - p));
+  };
+  const auto log_odds = [](double p) { return std::log(p / (1.0 - p)); };
+  CHECK(odds(0.2, v) == Approx(0.5 * (log_odds(0.2) + log_odds(now)) - 0.1));
+  CHECK(odds(0.9, v) > odds(0.2, v));
+  parameters.point_noise = 0.0006;
+  CHECK(odds(0.2, v) == Approx(0.5 * (log_odds(0.2) + log_odds(now)) - 0.1 + 75.0 * explained_misfit(fit, parameters)));
+  Verdict through = v;
+  through.seen_through = 0.1 * v.coverage;
+  CHECK(odds(0.2, through) < odds(0.2, v) - 1.0);
+  CHECK(std::isfinite(odds(1.0, v)));
+  v.support = 0;
+  CHECK(settled_probability(0.9, v, fit, parameters, 0.3) == 0.0);
+}
+
 TEST_CASE("where the sensor's errors are larger than the tolerance they widen it, up to a limit") {
   BodyParameters parameters;
   const double usual = parameters.near(0.035);

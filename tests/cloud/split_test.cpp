@@ -2,6 +2,7 @@
 // Who gets which point, by hand.
 #include <agrisee/cloud/split.hpp>
 
+#include <algorithm>
 #include <numeric>
 
 #include "catch.hpp"
@@ -118,6 +119,30 @@ TEST_CASE("in a single view points count as fewer, and the size of the other fru
   };
   CHECK(variance(true, 150) / variance(false, 150) == Approx(150.0 / 60.0).epsilon(0.01));
   CHECK(variance(true, 40) == Approx(variance(false, 40)).epsilon(0.001));
+}
+
+TEST_CASE("in a single view the last verdict decides: a doubtful body that it believes stays, another goes") {
+  const Cloud cloud = rough_front(0.0002);
+  const auto settled = [&](double won, double seen_on, bool by_mask = false) {
+    Split out;
+    out.found = {ball()};
+    out.found[0].confidence = won;
+    out.found[0].by_mask = by_mask;
+    out.bodies.taken = 1;
+    detail::settle(
+        cloud, BodyParameters(), {}, [&](const Ellipsoid&) { return seen_on; }, out);
+    CHECK(out.bodies.taken == out.found.size());
+    CHECK(out.bodies.doubtful == 1 - out.found.size());
+    CHECK(std::count(out.labels.begin(), out.labels.end(), 1) > (out.found.empty() ? -1 : 1000));
+    return out;
+  };
+  const Split kept = settled(0.1, 1.0);
+  REQUIRE(kept.found.size() == 1);
+  CHECK(kept.found[0].confidence > 0.5);
+  const Split gone = settled(0.1, 0.02);
+  CHECK(gone.found.empty());
+  CHECK(std::count(gone.labels.begin(), gone.labels.end(), 0) == static_cast<int>(cloud.size()));
+  CHECK(settled(0.6, 0.02, true).found.size() == 1);  // masks have decided
 }
 
 TEST_CASE("a region belongs to a body that has 60 percent of its points") {

@@ -84,8 +84,8 @@ class Competition {
         continue;
       }
       ++counts_.taken;
-      found.push_back(
-          {best->fit, *best->found_by, best->verdict.coverage, best->confidence, best->mask_log_odds.has_value()});
+      found.push_back({best->fit, *best->found_by, best->verdict.coverage, best->confidence,
+                       best->mask_log_odds.has_value(), best->prior});
       take_points(best->fit.body);
       judge_anew(best->fit.body);
     }
@@ -108,7 +108,8 @@ class Competition {
       assess(e);
     }
     decide(found);
-    const std::vector<KnownSize> sizes = sizes_of(found);  // for the last fit of each
+    constexpr double kLikely = 0.5;                                 // a fruit, rather than not
+    const std::vector<KnownSize> sizes = sizes_of(found, kLikely);  // for the last fit of each
     for (FoundBody& f : found) f.fit.size_prior = size_prior(sizes, f.fit.body);
   }
 
@@ -147,9 +148,11 @@ class Competition {
     double prior = 0.0;                        // log-odds by the masks
   };
 
-  static std::vector<KnownSize> sizes_of(const std::vector<FoundBody>& found) {
+  /// The sizes of the bodies with at least some confidence.
+  static std::vector<KnownSize> sizes_of(const std::vector<FoundBody>& found, double least = 0.0) {
     std::vector<KnownSize> sizes;
-    for (const FoundBody& f : found) sizes.push_back({f.fit.body, f.confidence});
+    for (const FoundBody& f : found)
+      if (f.confidence >= least) sizes.push_back({f.fit.body, f.confidence});
     return sizes;
   }
 

@@ -29,6 +29,7 @@ struct FoundBody {
   double coverage = 0.0;    ///< share of its surface covered by its points
   double confidence = 0.0;  ///< probability that it is a fruit, see detail::fruit_probability
   bool by_mask = false;     ///< `fit` is that of a mask's outline, because few points were seen
+  double prior = 0.0;       ///< log-odds by the masks and by the sizes of the other fruit, part of `confidence`
 };
 
 }  // namespace agrisee

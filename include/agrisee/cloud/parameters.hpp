@@ -210,6 +210,7 @@ struct BodyParameters {
   double min_coverage = 0.08;     ///< least share of the surface that is covered by points, minus contradictions
   double min_roundness = 0.35;    ///< least ratio of the smallest to the largest curvature of its points
   double min_confidence = 0.5;    ///< least probability that it is a fruit (detail::fruit_probability)
+  double point_noise = 0.0;       ///< standard deviation of a point from its surface due to the sensor alone (m)
   double normal_noise = 0.0;      ///< standard deviation of the angle of a normal due to the sensor alone (rad)
   double alike = 0.7;             ///< how much it counts that the fruit of a single cloud are alike in size (0..1)
   /// Several views: log-odds against a fruit for each unit of roundness below 0.5 (stumps, pipes), and for each 0.67
@@ -246,6 +247,7 @@ struct BodyParameters {
     f("min_coverage", p.min_coverage, Range::above(0.0).below(1.0));
     f("min_roundness", p.min_roundness, Range::between(0.0, 1.0));
     f("min_confidence", p.min_confidence, Range::between(0.0, 1.0));
+    f("point_noise", p.point_noise, Range::not_negative().in_metres());
     f("normal_noise", p.normal_noise, Range::not_negative().in_radians());
     f("alike", p.alike, Range::between(0.0, 1.0));
     f("ridge", p.ridge, Range::not_negative());

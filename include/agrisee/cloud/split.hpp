@@ -5,7 +5,8 @@
 ///
 /// With the two stages alone, each region or cluster becomes a label. With bodies, the regions, the clusters and the
 /// centers found by voting are proposals; the bodies that explain the cloud best win, and each point gets the label of
-/// the body on which it lies. Metres, any frame.
+/// the body on which it lies. In a single view without masks doubtful bodies may win, too; what they are is settled
+/// after their last fit. Metres, any frame.
 #pragma once
 
 #include <agrisee/cloud/bodies.hpp>
@@ -115,6 +116,31 @@ void refit(const PointCloud<S>& cloud, const BodyParameters& bodies, Split& out)
   }
 }
 
+/// In a single view, bodies with this share of the required confidence may win points; what they are is settled after
+/// their last fit.
+constexpr double kShareToWin = 0.06;
+
+/// Judge the bodies of a single view once more, by their last fits. Those with too little confidence lose their points.
+template <typename S>
+void settle(const PointCloud<S>& cloud, const BodyParameters& bodies, const SeenThrough& seen_through,
+            const SeenOn& seen_on, Split& out) {
+  const Grid<S> grid(cloud, static_cast<S>(bodies.cell()));
+  const std::vector<char> none(cloud.size(), 0);
+  const auto is_doubtful = [&](FoundBody& f) {
+    if (!f.by_mask) {
+      const Verdict v = judge(cloud, grid, none, f.fit.body, bodies, seen_through, seen_on);
+      f.confidence = settled_probability(f.confidence, v, f.fit, bodies, f.prior);
+    }
+    return f.confidence < bodies.min_confidence;
+  };
+  const auto end = std::remove_if(out.found.begin(), out.found.end(), is_doubtful);
+  const auto doubtful = static_cast<std::size_t>(out.found.end() - end);
+  out.found.erase(end, out.found.end());
+  out.bodies.taken -= doubtful;
+  out.bodies.doubtful += doubtful;
+  out.labels = assign_to_bodies(cloud, out.found, bodies);
+}
+
 /// The body to which at least 60 % of the points of each region belong, by the region's label; 0 if there is none.
 inline std::vector<std::size_t> owners_of_regions(const Labels& labels, std::size_t bodies, const Labels& regions,
                                                   int region_count) {
@@ -174,12 +200,16 @@ void split_by_bodies(const PointCloud<S>& cloud, const Segments& segments, const
   const Grid<S> grid(cloud, static_cast<S>(stages.growing.radius), threads);
   propose_voted(cloud, cloud, {}, grid, stages, parameters, candidates);
   for (const MaskBody& m : masks.bodies) candidates.push_back({m.fit.body, "mask", nullptr, m.fit, m.log_odds});
-  out.found = find_bodies(cloud, candidates, bodies, seen_through, &out.bodies, masks, seen_on);
+  const bool settles = seen_on && !masks.log_odds;  // masks know better than a second look at the points
+  BodyParameters winners = bodies;
+  if (settles) winners.min_confidence *= kShareToWin;
+  out.found = find_bodies(cloud, candidates, winners, seen_through, &out.bodies, masks, seen_on);
   out.bodies.too_small += not_proposed.too_small;
   out.bodies.too_large += not_proposed.too_large;
   out.bodies.inside_out += not_proposed.inside_out;
   out.labels = assign_to_bodies(cloud, out.found, bodies);
   refit(cloud, bodies, out);
+  if (settles) settle(cloud, bodies, seen_through, seen_on, out);
   extend_labels(out.labels, cloud, out.found, out.regions, out.regions_found, bodies);
 
   std::vector<std::size_t> sizes(segments.members.size() + 1, 0);

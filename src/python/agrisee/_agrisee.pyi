@@ -514,6 +514,7 @@ class SplitBodiesParameters:
     min_coverage: float
     min_roundness: float
     min_confidence: float
+    point_noise: float
     normal_noise: float
     alike: float
     ridge: float
