@@ -87,16 +87,18 @@ void check_distance(const Cloud& cloud, const std::vector<Eigen::Vector3d>& sens
   }
 }
 
-/// The points that were measured: not those whose coordinates are not finite, nor those at the origin or at a sensor,
-/// where cameras put pixels without return.
+/// The points that were measured: not those whose coordinates are not finite, nor those at a sensor or, if there are
+/// several, at the origin, where cameras put pixels without return.
 Indices measured_indices(const Cloud& cloud, const CloudOrigin& origin, std::vector<std::string>& warnings) {
   constexpr float kNear = 0.001f;  // m; no sensor measures as near
-  std::vector<Eigen::Vector3f> places = {Eigen::Vector3f::Zero()};
-  if (origin.viewpoint) places.push_back(origin.viewpoint->cast<float>());
-  for (const Eigen::Vector3d& sensor : origin.sensors) places.push_back(sensor.cast<float>());
+  std::vector<Eigen::Vector3f> sensors;
+  if (origin.viewpoint) sensors.push_back(origin.viewpoint->cast<float>());
+  for (const Eigen::Vector3d& sensor : origin.sensors) sensors.push_back(sensor.cast<float>());
+  const auto is_zero = [](const Eigen::Vector3f& p) { return p.isZero(0.0f); };
+  const bool zeros = std::count_if(cloud.points.begin(), cloud.points.end(), is_zero) > 1;
   const auto no_return = [&](const Eigen::Vector3f& p) {
-    return std::any_of(places.begin(), places.end(),
-                       [&](const Eigen::Vector3f& place) { return (p - place).squaredNorm() < kNear * kNear; });
+    const auto at = [&](const Eigen::Vector3f& sensor) { return (p - sensor).squaredNorm() < kNear * kNear; };
+    return (zeros && is_zero(p)) || std::any_of(sensors.begin(), sensors.end(), at);
   };
   Indices kept;
   kept.reserve(cloud.size());
