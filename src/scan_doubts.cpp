@@ -52,12 +52,13 @@ std::optional<std::string> doubt_of_poses(const std::vector<View>& views, const 
   const bool many = kMany * contradict > views.size();
   const bool empty = std::none_of(views.begin(), views.end(), [](const View& v) { return v.points_in > 0; });
   if (views.size() < kFew || (!many && !empty)) return std::nullopt;
-  const std::string mistake = fuse::check_poses(samples, volume).mistake;
+  std::string text = fuse::check_poses(samples, volume).mistake;
+  if (!text.empty()) text = "it seems that the poses " + text;
   if (many)
-    return std::to_string(contradict) + " of " + std::to_string(views.size()) +
+    text = std::to_string(contradict) + " of " + std::to_string(views.size()) +
            " views contradict the others, so the places of the fruit may be wrong, too" +
-           (mistake.empty() ? "" : "; it seems that the poses " + mistake);
-  return mistake.empty() ? std::nullopt : std::optional("it seems that the poses " + mistake);
+           (text.empty() ? "" : "; " + text);
+  return text.empty() ? std::nullopt : std::optional(text);
 }
 
 }  // namespace
