@@ -219,15 +219,18 @@ inline double explained_misfit(const EllipsoidFit& fit, const BodyParameters& pa
 /// The probability (0 to 1) that a body of a single view is a fruit, when it has its points and its last fit.
 ///
 /// Its log-odds are the mean of those by which it won the points, and those of the verdict on the last fit. Misfit that
-/// the sensor's noise explains does not count against it; sight lines through it count more, as all are of one frame.
-/// The weights were fitted to 3,200 bodies: in 540 simulated views (L515 and Azure Kinect, shade and sun, 0.4 to 1.2 m)
-/// and in three real frames. See docs/segmentation.md for what they bring.
+/// the sensor's noise explains does not count against it, but a body counts less the more its size is within the noise:
+/// anything small looks round then. Sight lines through it count more, as all are of one frame. The weights were fitted
+/// to 3,200 bodies: in 540 simulated views (L515 and Azure Kinect, shade and sun, 0.4 to 1.2 m) and in three real
+/// frames; that of the noise to 3,800 in 460 more views (also D405, 0.3 to 0.8 m). See docs/segmentation.md for what
+/// they bring.
 /// @param won probability by which the body won its points
 /// @param v verdict on the last fit by all points, taken or not
 /// @param prior as of fruit_probability
 inline double settled_probability(double won, const Verdict& v, const EllipsoidFit& fit,
                                   const BodyParameters& parameters, double prior) {
   constexpr double kExplained = 75.0, kThrough = 12.0, kOffset = -0.1;
+  constexpr double kBlurred = 20.0, kSharp = 0.055;  // noise up to this share of the radius does not count
   const double now = fruit_probability(v, fit, parameters, prior);
   if (!(now > 0.0)) return 0.0;
   const auto log_odds = [](double p) {
@@ -236,8 +239,10 @@ inline double settled_probability(double won, const Verdict& v, const EllipsoidF
     return std::log(q / (1.0 - q));
   };
   const double through = v.seen_through / (v.coverage + v.seen_through);
-  return 1.0 / (1.0 + std::exp(-(0.5 * (log_odds(won) + log_odds(now)) +
-                                 kExplained * explained_misfit(fit, parameters) - kThrough * through + kOffset)));
+  const double blurred = std::max(0.0, parameters.point_noise / fit.body.mean_radius() - kSharp);
+  return 1.0 /
+         (1.0 + std::exp(-(0.5 * (log_odds(won) + log_odds(now)) + kExplained * explained_misfit(fit, parameters) -
+                           kThrough * through - kBlurred * blurred + kOffset)));
 }
 
 }  // namespace agrisee::detail
