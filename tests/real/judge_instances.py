@@ -34,6 +34,13 @@ def read_ply(path):
     return [tuple(row[c] for c in columns) for row in record.iter_unpack(body[: count * record.size])]
 
 
+def clearly_visible(row):
+    """Whether the mask of a labelled fruit covers at least 0.7 of the ellipse of its callipers."""
+    mask = float(row["mask_equiv_diameter_mm"])
+    diameter = float(row["caliper_diameter_mm"] or mask)
+    return mask * mask >= 0.7 * diameter * float(row["caliper_height_mm"] or diameter)
+
+
 def main():
     labelled, callipers, folder = sys.argv[1:4]
     folder = pathlib.Path(folder)
@@ -60,18 +67,21 @@ def main():
             claims[i][p[3]] += 1
     fruits = json.loads((folder / "fruits.json").read_text())
     fruits = {f["id"]: f for f in (fruits["fruits"] if isinstance(fruits, dict) else fruits)}
-    errors, found, total = [], set(), 0
-    print("label      points  share  diameter (mm): callipers  found  error")
+    errors, found, total, visible = [], set(), 0, []
+    print("label      points  in sight share  diameter (mm): callipers  found  error")
     for row in csv.DictReader(open(callipers)):
         label, total = int(row["instance"]), total + 1
         points = sum(votes[label].values())
         named = [(n, i) for i, n in votes[label].items() if i > 0]
         n, i = max(named, default=(0, 0))
-        text = f"{row['label']:10} {points:6}"
+        clear = clearly_visible(row)
+        text = f"{row['label']:10} {points:6}  {'visible' if clear else 'hidden '}"
         if i == 0 or 3 * n < points or claims[i].most_common(1)[0][0] != label:
             print(f"{text}  missed")
+            visible += [False] * clear
             continue
         found.add(i)
+        visible += [True] * clear
         a, b, c = fruits[i]["radii"]
         size = 2e3 * (a * b * c) ** (1 / 3)
         text += f"  {100 * n // points:3} %"
@@ -83,7 +93,8 @@ def main():
             print(f"{text}  {'-':>24}  {size:5.1f}")
     mean = sum(map(abs, errors)) / max(1, len(errors))
     bias = sum(errors) / max(1, len(errors))
-    print(f"found {len(found)} of {total}, diameter error {mean:.1f} mm in the mean (signed {bias:+.1f}); "
+    print(f"found {len(found)} of {total}, {sum(visible)} of {len(visible)} clearly visible; "
+          f"diameter error {mean:.1f} mm in the mean (signed {bias:+.1f}); "
           f"{len(fruits) - len(found)} bodies that are no labelled fruit")
 
 

@@ -227,8 +227,9 @@ def main():
                           arguments.data / "fruits.csv" if arguments.use in ("boxes", "both") else None)
     found, depths = match(fruits, masks, width, depth)
     by_id = {f["id"]: f for f in fruits}
+    rows = list(csv.DictReader(open(arguments.data / "fruits.csv")))
     errors, behind = {"NO": [], "YES": []}, 0
-    for row in csv.DictReader(open(arguments.data / "fruits.csv")):
+    for row in rows:
         label = int(row["label"])
         true = max(float(row["calliper_diameter_mm"]), float(row["calliper_height_mm"]))
         if label not in found:
@@ -247,7 +248,9 @@ def main():
         return sum(map(abs, values)) / max(1, len(values))
 
     both = errors["NO"] + errors["YES"]
-    print(f"measured {len(found)} of {len(masks.true)}; diameter off by {mean(errors['NO']):.2f} mm visible, "
+    visible = [int(row["label"]) for row in rows if row["occluded"] == "NO"]
+    print(f"measured {len(found)} of {len(masks.true)}, {sum(v in found for v in visible)} of {len(visible)} visible; "
+          f"diameter off by {mean(errors['NO']):.2f} mm visible, "
           f"{mean(errors['YES']):.2f} mm occluded, {mean(both):.2f} mm all (signed {sum(both) / max(1, len(both)):+.2f}); "
           f"{behind} behind; {len(fruits)} bodies, {len(fruits) - len(found)} without a label; {seconds:.2f} s")
     if masks.missing:
