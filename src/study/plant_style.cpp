@@ -12,7 +12,7 @@ namespace agrisee::study {
 namespace {
 
 /// In the order of kPlantKinds.
-std::array<PlantStyle, 6> all_styles() {
+std::array<PlantStyle, 7> all_styles() {
   PlantStyle tomato;
 
   PlantStyle cherry = tomato;
@@ -66,7 +66,15 @@ std::array<PlantStyle, 6> all_styles() {
   strawberry.pedicel_radius = 0.0014;
   strawberry.leaf = {3, 3, false, 0.85, 0.062, 0.82, 0.14};
 
-  return {tomato, cherry, pepper, beefsteak, pear, strawberry};
+  PlantStyle apple = pear;
+  apple.kind = "apple";
+  apple.total = 7;
+  apple.shoulder = 0.039;
+  apple.tip = 0.030;
+  apple.stem_radius = 0.011;
+  apple.leaf = {5, 9, true, 0.2, 0.062, 0.66, 0.06};
+
+  return {tomato, cherry, pepper, beefsteak, pear, strawberry, apple};
 }
 
 /// The traits of the round fruit: tomatoes of all sizes.
@@ -107,7 +115,7 @@ double half_width_of(FruitShape shape) {
 }  // namespace
 
 const PlantStyle& plant_style(const std::string& kind) {
-  static const std::array<PlantStyle, 6> styles = all_styles();
+  static const std::array<PlantStyle, 7> styles = all_styles();
   for (const PlantStyle& style : styles)
     if (kind == style.kind) return style;
   throw FieldError("kind", "must be " + OneOf(kPlantKinds).text() + ", got " + kind);
@@ -146,6 +154,15 @@ FruitShape draw_cultivar(const PlantStyle& style, Rng& rng) {
     s.dimple_width = 0.2;
     s.blossom_depth = 0.05;
     s.blossom_width = 0.2;
+  } else if (kind == "apple") {
+    s.lobes = 5;
+    s.lobe_amplitude = rng.uniform(0.004, 0.02);
+    s.taper = rng.uniform(0.04, 0.16);
+    s.polar = rng.uniform(0.86, 1.02);
+    s.dimple_depth = rng.uniform(0.12, 0.2);
+    s.dimple_width = rng.uniform(0.3, 0.4);
+    s.blossom_depth = rng.uniform(0.05, 0.1);
+    s.blossom_width = rng.uniform(0.25, 0.35);
   } else if (kind == "strawberry") {
     s.lobes = 3;
     s.lobe_amplitude = rng.uniform(0.01, 0.03);

@@ -214,6 +214,7 @@ TEST_CASE("the kinds have their shapes") {
     CHECK(fruit.radii[2] < 0.85 * fruit.radii[1]);
     CHECK(std::abs(fruit.axes.col(2).dot(*fruit.growth_axis)) > 0.97);
   }
+  for (const TrueFruit& fruit : truth_of("apple")) CHECK(fruit.radii[2] > 0.8 * fruit.radii[0]);  // nearly round
   for (const char* kind : {"pear", "strawberry"})  // long: the longest axis is the growth axis
     for (const TrueFruit& fruit : truth_of(kind)) {
       CHECK(fruit.radii[0] > 1.05 * fruit.radii[1]);

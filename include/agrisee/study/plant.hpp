@@ -15,14 +15,15 @@
 namespace agrisee::study {
 
 /// The kinds of plants. `tomato`, `cherry` and `beefsteak` have trusses of tomatoes, `pepper` has bell peppers with
-/// three or four lobes.
-constexpr std::array<const char*, 6> kPlantKinds = {"tomato", "cherry", "pepper", "beefsteak", "pear", "strawberry"};
+/// three or four lobes. `pear` and `apple` are upright branches with the fruit around them.
+constexpr std::array<const char*, 7> kPlantKinds = {"tomato", "cherry",     "pepper", "beefsteak",
+                                                    "pear",   "strawberry", "apple"};
 
 /// Describes the plant to generate. The defaults are those of a tomato plant, see of().
 struct PlantParameters {
   std::string kind = "tomato";     ///< one of kPlantKinds
   int total = 7;                   ///< number of fruit on all trusses together
-  int trusses = 1;                 ///< number of trusses, which hang side by side; for peppers and pears, of main stems
+  int trusses = 1;                 ///< number of trusses side by side; of main stems if these bear the fruit
   std::uint64_t seed = 1;          ///< equal parameters with equal seeds give equal plants
   double radius_shoulder = 0.036;  ///< half width of the first and largest fruit of a truss (m)
   double radius_tip = 0.010;       ///< half width of its last and smallest fruit (m)
@@ -78,9 +79,9 @@ struct Plant {
 ///
 /// The fruit shrink from the shoulder of a truss to its tip. Their ids ascend from top to bottom, truss by truss. No
 /// two fruit interpenetrate by more than 1 mm; no leaf passes through a fruit, a stem, another leaf or another object.
-/// Leaves are closed blades 0.4 mm thick. Tomatoes have compound leaves of 5, 7 or 9 leaflets, peppers and pears shoots
-/// of 5 to 9 leaves, strawberries leaves of three leaflets. Leaves are added before the fruit until they hide
-/// `foliage` of the surface that shows without them, to within 0.04.
+/// Leaves are closed blades 0.4 mm thick. Tomatoes have compound leaves of 5, 7 or 9 leaflets, peppers, pears and
+/// apples shoots of 5 to 9 leaves, strawberries leaves of three leaflets. Leaves are added before the fruit until they
+/// hide `foliage` of the surface that shows without them, to within 0.04.
 /// @throws ParameterError if a parameter is out of range, or if no such plant was found
 Plant make_plant(const PlantParameters& parameters);
 
