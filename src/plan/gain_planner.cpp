@@ -36,8 +36,10 @@ GainPlanner::GainPlanner(const sensor::DepthCamera& sensor, const Aabb& volume, 
 void GainPlanner::observe(const Progress& progress) {
   model_.update(progress, split_, free_space_);
   ranked_.clear();
-  refused_.clear();
+  left_out_.clear();
   refused_first_ = 0;
+  if (last_) left_out_.push_back(*last_);  // taken just now: from the same place it shows the same
+  last_.reset();
 }
 
 std::optional<ReachableView> GainPlanner::next(const Progress& progress, const Joints& current, const Reach& reach) {
@@ -64,7 +66,8 @@ std::optional<ReachableView> GainPlanner::next(const Progress& progress, const J
 }
 
 void GainPlanner::refused() {
-  if (last_) refused_.push_back(*last_);
+  if (last_) left_out_.push_back(*last_);
+  last_.reset();
   ++refused_first_;
 }
 
@@ -121,6 +124,7 @@ std::optional<StopReason> GainPlanner::rank(const Joints& current, const Reach& 
   for (const Scored& s : ranked_)
     for (std::uint32_t i : s.shown) can_be_seen[i] = 1;
   completeness_ = model_.completeness(can_be_seen);
+  leave_out();
   if (ranked_.empty()) return StopReason::no_reachable_view;
   sort_ranked();
   refine(current, reach);
@@ -144,16 +148,21 @@ void GainPlanner::refine(const Joints& current, const Reach& reach) {
       const double angle = kPi / 3.0 * k;
       ViewRequest around = middle;
       around.direction = (middle.direction + step * (std::cos(angle) * a + std::sin(angle) * b)).normalized();
+      if (is_left_out(around)) continue;
       if (const auto view = reach(around, current)) consider(around, *view, current);
     }
   }
 }
 
 void GainPlanner::rank_again(const Joints& current) {
-  const auto refused = [&](const Scored& s) { return was_refused(s.request); };
-  ranked_.erase(std::remove_if(ranked_.begin(), ranked_.end(), refused), ranked_.end());
+  leave_out();
   for (Scored& s : ranked_) s.score = s.view.gain / (parameters_.dwell + joint_distance(s.view, current));
   sort_ranked();
+}
+
+void GainPlanner::leave_out() {
+  const auto left_out = [&](const Scored& s) { return is_left_out(s.request); };
+  ranked_.erase(std::remove_if(ranked_.begin(), ranked_.end(), left_out), ranked_.end());
 }
 
 void GainPlanner::sort_ranked() {
@@ -162,7 +171,6 @@ void GainPlanner::sort_ranked() {
 
 void GainPlanner::consider(const ViewRequest& request, const ReachableView& view, const Joints& current) {
   throw_if_cancelled();
-  if (was_refused(request)) return;
   ranked_.emplace_back();
   ranked_.back().request = request;
   rate(ranked_.back(), view, current);
@@ -179,8 +187,8 @@ void GainPlanner::rate(Scored& scored, const ReachableView& view, const Joints& 
   scored.score = scored.view.gain / (parameters_.dwell + joint_distance(view, current));
 }
 
-bool GainPlanner::was_refused(const ViewRequest& request) const {
-  return std::any_of(refused_.begin(), refused_.end(), [&](const ViewRequest& r) {
+bool GainPlanner::is_left_out(const ViewRequest& request) const {
+  return std::any_of(left_out_.begin(), left_out_.end(), [&](const ViewRequest& r) {
     return r.direction.dot(request.direction) > 0.9999 && (r.target - request.target).norm() < 0.01 &&
            std::abs(r.distance - request.distance) < 0.01;
   });

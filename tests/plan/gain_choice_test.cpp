@@ -120,7 +120,7 @@ TEST_CASE("gain choice: the best are rated anew as the arm reaches them from its
   game.planner->observe(game.row.scan.progress());
   game.script.views[0] = Row::view(0, 8, 0.0);  // now the arm has found a better way
   CHECK(game.next() == 0);
-  CHECK(game.ranking() == Ranking{8, 6});
+  CHECK(game.ranking() == Ranking{8});  // without the one that was just taken
 }
 
 TEST_CASE("gain choice: the chosen view is the one the arm answered last, if it answered") {
@@ -160,6 +160,16 @@ TEST_CASE("gain choice: a refused view is not returned again until the next view
   CHECK(game.next() == 1);
   CHECK(game.next() == 1);  // asked twice, the same answer
   CHECK(game.ranking() == Ranking{8, 6, 4});
+}
+
+TEST_CASE("gain choice: the view just taken is not taken again at once, but later") {
+  Game game(12, {Row::view(0, 4), Row::view(0, 8), Row::view(0, 6)});
+  for (const int expected : {1, 2, 1, 2}) {
+    CHECK(game.next() == expected);
+    game.planner->observe(game.row.scan.progress());  // nothing new: all views promise what they did
+  }
+  CHECK(game.next() == 1);
+  CHECK(game.ranking() == Ranking{8, 4});
 }
 
 TEST_CASE("gain choice: after a refusal the others are compared from where the arm is") {

@@ -69,12 +69,14 @@ class GainPlanner : public Planner {
   void refine(const Joints& current, const Reach& reach);
   /// After a refusal: drop the refused view from `ranked_` and score the others from the present joints.
   void rank_again(const Joints& current);
+  /// Drop the views of `left_out_` from `ranked_`.
+  void leave_out();
   void sort_ranked();
-  /// Add a view to `ranked_`, unless it was refused.
+  /// Add a view to `ranked_`.
   void consider(const ViewRequest& request, const ReachableView& view, const Joints& current);
   /// Set a view and compute what it shows, its gain and its score.
   void rate(Scored& scored, const ReachableView& view, const Joints& current) const;
-  bool was_refused(const ViewRequest& request) const;
+  bool is_left_out(const ViewRequest& request) const;
   /// The smallest promised gain (m2) that is worth a view.
   double least_gain() const;
 
@@ -87,10 +89,10 @@ class GainPlanner : public Planner {
   Eigen::Vector3d robot_;
   ExpectedSurface model_;
   std::vector<Candidate> candidates_;
-  Aabb extent_;                       // of the fruit when the candidates were made
-  std::vector<Scored> ranked_;        // views worth taking after the last frame, best first; empty until they are rated
-  std::vector<ViewRequest> refused_;  // since the last frame
-  std::optional<ViewRequest> last_;   // request behind the view last returned
+  Aabb extent_;                 // of the fruit when the candidates were made
+  std::vector<Scored> ranked_;  // views worth taking after the last frame, best first; empty until they are rated
+  std::vector<ViewRequest> left_out_;  // the last one taken, and those refused since
+  std::optional<ViewRequest> last_;    // behind the view last returned, unless it was refused
   std::optional<Completeness> completeness_;
   int refused_first_ = 0;  // views refused since the last frame; the front view skips as many
   StopReason reason_ = StopReason::not_stopped;
