@@ -24,7 +24,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// How a line of the answer is meant: `missing` is only left out, `note` is unusual, `wrong` makes a scan impossible.
+/// How a line of the answer is meant: `missing` is only left out, `note` is unusual, `wrong` is a mistake.
 enum class Level { ok, missing, note, wrong };
 
 /// Prints findings, and remembers whether any is wrong.
@@ -237,7 +237,8 @@ void add_doctor(CLI::App& app, Run& run) {
   auto scene = std::make_shared<std::string>();
   command->add_option("scene", *scene, "scene file (YAML) of the workcell to check, or a folder with scene.yaml");
   command->footer(
-      "WRONG marks what makes a scan impossible; the exit code is then 2. NOTE marks what is unusual.\n"
+      "WRONG marks a mistake, with which a scan fails or finds little; the exit code is then 2. NOTE marks what is "
+      "unusual.\n"
       "Example:\n  agrisee doctor truss/scene.yaml");
   command->callback([scene, &run] { run = [scene] { return run_doctor(*scene); }; });
 }

@@ -33,6 +33,9 @@ struct EvaluateOptions {
 
 ScanResult read_result(const fs::path& folder) {
   if (!fs::is_directory(folder)) throw FileError(folder.string() + ": is not a result folder");
+  if (!fs::exists(folder / "cloud.ply") && fs::exists(folder / "scan.json"))
+    throw FileError(folder.string() + ": is an unfinished scan; finish it with agrisee scan --resume " +
+                    folder.string());
   ScanResult result;
   const io::CloudFile cloud = io::read_cloud(folder / "cloud.ply", io::NonFinite::keep);
   if (cloud.instance.size() != cloud.cloud.size())

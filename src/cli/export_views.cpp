@@ -25,7 +25,7 @@ namespace {
 namespace fs = std::filesystem;
 
 struct ExportOptions {
-  std::string result, output;
+  std::string result, output, scene;
   bool npy = false, force = false;
 };
 
@@ -59,15 +59,34 @@ fs::path image_name(const char* folder, std::size_t i, const char* extension) {
   return fs::path(folder) / name;
 }
 
+/// Removes the images that an earlier call left in a folder: 0000.png, 0001.npy and so on.
+void remove_images(const fs::path& folder) {
+  std::error_code error;
+  std::vector<fs::path> old;
+  for (fs::directory_iterator i(folder, error), end; !error && i != end; i.increment(error)) {
+    const std::string number = i->path().stem().string(), extension = i->path().extension().string();
+    if (number.size() >= 4 && io::to_integer(number) && (extension == ".png" || extension == ".npy"))
+      old.push_back(i->path());
+  }
+  for (const fs::path& path : old) fs::remove(path, error);
+}
+
 /// Reads the frames of a scan with the colors and masks that it simulated, which the records leave out.
 class ScanFrames {
  public:
-  explicit ScanFrames(const fs::path& folder) : folder_(folder), task_(io::read_scan_task(folder / "scan.json")) {
-    scene_ = io::read_scene(task_.scene);
+  /// @param scene where the scene is now; empty: where it was
+  ScanFrames(const fs::path& folder, const std::string& scene)
+      : folder_(folder), task_(io::read_scan_task(folder / "scan.json")) {
+    const std::string path = scene.empty() ? task_.scene : scene;
+    if (scene.empty() && !fs::exists(path))
+      throw FileError(path + ": no such file; name the scene of the scan with --scene");
+    scene_ = io::read_scene(path);
     images_ = images_of(task_);
+    if (!images_.any() && scene.empty()) return;
+    if (content_of(path, scene_) != task_.content)
+      throw FileError(path + ": is not the scene of the scan" +
+                      (images_.any() ? ", so its colors and masks cannot be made again" : ""));
     if (!images_.any()) return;
-    if (content_of(task_.scene, scene_) != task_.content)
-      throw FileError(task_.scene + ": is not the scene of the scan, so its colors and masks cannot be made again");
     traced_ = std::make_unique<study::TracedScene>(scene_.scene, threads_of(0));
   }
   const Workcell& workcell() const { return scene_.workcell; }
@@ -103,7 +122,7 @@ int run_export(const ExportOptions& options) {
   check_kind(options.result, Kind::scan);
   if (!fs::exists(from / "scan.json"))
     throw FileError(options.result + ": is not the result of a scan: there is no " + (from / "scan.json").string());
-  const ScanFrames frames(from);
+  const ScanFrames frames(from, options.scene);
   const RecordNumbers numbers = record_numbers(from);
   if (numbers.present.empty()) throw FileError(options.result + ": holds no recorded view");
   for (const std::size_t i : numbers.present) frames.record(i);  // nothing is written if one is damaged
@@ -112,8 +131,11 @@ int run_export(const ExportOptions& options) {
   recorded.workcell.sensor.range_min = 0.0;
   recorded.workcell.sensor.range_max = 1e6;  // the images hold only what was in range
   recorded.depth_scale = options.npy ? 1.0 : kScale;
-  if (!options.force && fs::exists(to / "views.yaml"))
-    throw UsageError(options.output + ": already holds recorded views; use --force to overwrite them");
+  if (fs::exists(to / "views.yaml")) {
+    if (!options.force)
+      throw UsageError(options.output + ": already holds recorded views; use --force to overwrite them");
+    for (const char* folder : {"depth", "color", "masks"}) remove_images(to / folder);
+  }
   make_folder((to / "depth").string());
   if (frames.images().any()) make_folder((to / "color").string());
   if (frames.images().detector) make_folder((to / "masks").string());
@@ -147,6 +169,7 @@ void add_export_views(CLI::App& app, Run& run) {
   auto options = std::make_shared<ExportOptions>();
   command->add_option("result", options->result, "result folder of a scan")->required();
   command->add_option("-o,--output", options->output, "folder for views.yaml and the images")->required();
+  command->add_option("--scene", options->scene, "scene of the scan, if its file was moved");
   command->add_flag("--npy", options->npy, "write depth as NPY with floats (exact), not as PNG in steps of 0.1 mm");
   command->add_flag("--force", options->force, "overwrite recorded views");
   command->footer(

@@ -29,6 +29,8 @@ struct PlantOptions {
 study::PlantParameters parameters_of(const PlantOptions& options) {
   study::PlantParameters parameters = options.plant;
   const study::PlantParameters usual = study::PlantParameters::of(parameters.kind);
+  if (!options.radius.empty() && options.radius[0] < options.radius[1])
+    throw UsageError("--radius: takes the half width of the largest fruit first, then that of the smallest");
   parameters.total = options.total.value_or(usual.total);
   parameters.radius_shoulder = options.radius.empty() ? usual.radius_shoulder : options.radius[0];
   parameters.radius_tip = options.radius.empty() ? usual.radius_tip : options.radius[1];

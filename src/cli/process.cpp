@@ -158,12 +158,17 @@ Cloud points_of(const sensor::DepthFrame& frame) {
   return cloud;
 }
 
-/// That the scale of the depths may be wrong, if no fruit was found and most bodies are of no expected size.
-std::optional<std::string> doubt_of_scale(const ScanResult& result, double median_depth) {
+/// That the scale of the depths may be wrong, if no fruit was found and the scale was not given, or most bodies are of
+/// no expected size.
+std::optional<std::string> doubt_of_scale(const ScanResult& result, double median_depth, bool given) {
   const BodyCounts& n = result.bodies;
-  if (!result.fruits.empty() || 2 * (n.too_large + n.too_small) <= n.rejected()) return std::nullopt;
-  return "most surfaces are too " + std::string(n.too_large > n.too_small ? "large" : "small") +
-         " for fruit, and the median depth is " + metres(median_depth) + ": is --depth-scale right?";
+  if (!result.fruits.empty()) return std::nullopt;
+  const std::string depth = "the median depth is " + metres(median_depth);
+  if (2 * (n.too_large + n.too_small) > n.rejected())
+    return "most surfaces are too " + std::string(n.too_large > n.too_small ? "large" : "small") + " for fruit, and " +
+           depth + ": is --depth-scale right?";
+  if (given) return std::nullopt;
+  return depth + " at the default --depth-scale: is that right?";
 }
 
 /// Process a single depth image; the frame of the result is the camera's optical frame.
@@ -185,7 +190,7 @@ Processed process_frame(const ProcessOptions& options, const Parameters& paramet
   } catch (const InputError& e) {
     throw FileError(options.depth + ": " + e.what());
   }
-  for (const auto& text : {doubt, masks, doubt_of_scale(out.result, median_depth)})
+  for (const auto& text : {doubt, masks, doubt_of_scale(out.result, median_depth, options.depth_scale > 0.0)})
     if (text) out.result.warnings.push_back(*text);
   return out;
 }

@@ -52,7 +52,8 @@ std::string headline(const Group& group) {
          with_paper(views) + " views and " + with_paper(seconds) + " s of computing time; " +
          (rmse.mean ? "the centroids repeat to " + fixed(1e3 * *rmse.mean, 2) + " (" +
                           fixed(1e3 * *paper_rmse().mean, 2) + ") mm.\n"
-                    : "no fruit was located in two trials.\n");
+          : group.scans() > group.rows.size() ? "no fruit was located in two trials.\n"
+                                              : "how well centroids repeat takes two trials to tell.\n");
 }
 
 /// The row of [1] in a table of these figures; `first` are the cells before them.

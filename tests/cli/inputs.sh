@@ -12,6 +12,8 @@ case $3 in
     expect 0 '' export-views r -o png
     expect 1 'force' export-views r -o png && expect 0 '' export-views r -o png --force
     expect 0 '^6/6 views: [0-9]+ points in the scan volume, ' process exact/views.yaml -o a && expect 0 '' process png -o b
+    expect 0 '' export-views r -o png --npy --force && [ ! -e png/depth/0000.png ] || fail "images of the call before"
+    expect 0 '' export-views r -o png --force && [ ! -e png/depth/0000.npy ] && expect 0 '' process png -o b --force
     grep -qE '^4 fruit, [0-9]+ points from 6 views, ' out.txt || fail "summary: $(head -1 out.txt)"
     cmp r/cloud.ply a/cloud.ply || fail "the exact frames give another cloud than the scan"
     cmp r/cloud_raw.ply a/cloud_raw.ply || fail "the exact frames give another merged cloud than the scan"
@@ -206,6 +208,14 @@ PY
     expect 2 'p: is not the result of a scan, but a result of .agrisee process., .*no frames' export-views p -o d
     expect 2 't: is not the result of a scan, but a scene' export-views t -o d && expect 2 'v: is not the .*, but a list' export-views v -o d
     expect 2 'bare: is not the result of a scan: there is no bare/scan.json' export-views bare -o d
+    small_truss other --total 2 --hidden 0 --seed 2 && mv t moved
+    expect 2 't/scene.yaml: no such file; name the scene of the scan with --scene' export-views r -o d
+    expect 2 'other/scene.yaml: is not the scene of the scan' export-views r --scene other/scene.yaml -o d
+    expect 0 '' export-views r --scene moved/scene.yaml -o w && cmp v/depth/0000.png w/depth/0000.png || fail "a moved scene"
+    expect 0 'the median depth is .* at the default --depth-scale: is that right' \
+      process --depth v/depth/0000.png --intrinsics 365,368,255,191 -o far
+    mv moved t && cp -r r open && rm open/cloud.ply
+    expect 2 'open: is an unfinished scan; finish it with agrisee scan --resume open' evaluate t open
     expect 2 'gone.yaml: no such file' scan gone.yaml -o d && expect 2 'gone.ply: no such file' process gone.ply -o d
     [ ! -e d ] || fail "a wrong input wrote something"
     expect 0 '' evaluate t r && grep -q '^  id  as    IoU   seen  recall  recall_obs ' out.txt || fail "evaluate: $(cat out.txt)"
