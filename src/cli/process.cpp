@@ -282,6 +282,7 @@ void add_image_options(CLI::App& command, ProcessOptions& options) {
                   "(default: none)")
       ->delimiter(',')
       ->expected(4, 8)
+      ->option_text("FLOAT x 4, 5 or 8")
       ->needs(depth);
   command
       .add_option("--depth-scale", options.depth_scale,
