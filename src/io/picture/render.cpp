@@ -13,6 +13,7 @@ namespace agrisee::io {
 namespace {
 
 const Color kPaper(0.985f, 0.988f, 0.992f);
+const Color kPanelTop(0.955f, 0.965f, 0.976f), kPanelBottom(0.845f, 0.868f, 0.895f);
 const Color kAxisColors[3] = {Color(0.86f, 0.15f, 0.15f), Color(0.13f, 0.62f, 0.22f), Color(0.14f, 0.33f, 0.86f)};
 const Color kUnlabelled(0.60f, 0.63f, 0.58f);
 
@@ -57,6 +58,7 @@ void draw_frame(Panel& panel, const Pose& pose, double length, float width) {
 Rectangle draw_caption(Canvas& canvas, const Panel& panel, const std::string& text, float size) {
   const Viewport& v = panel.viewport();
   const Eigen::Vector2f at(static_cast<float>(v.x) + 2.0f * size, static_cast<float>(v.y) + 2.6f * size);
+  canvas.text(at, 0.85f * size, text, kPanelTop, 0.5f);  // a rim, so that it can be read on leaves
   canvas.text(at, 0.85f * size, text, kFaint);
   return {at - Eigen::Vector2f(0.0f, size), at + Eigen::Vector2f(Canvas::text_width(0.85f * size, text), 0.4f * size)};
 }
@@ -293,7 +295,7 @@ Image render(const ScanResult& result, const Workcell& workcell, int width, int 
   const Layout layout = layout_of(canvas, result.fruits);
   canvas.fill(0, 0, canvas.width(), canvas.height(), kPaper, kPaper);
   for (const Viewport& v : {layout.left, layout.right})
-    canvas.fill(v.x, v.y, v.x + v.width, v.y + v.height, Color(0.955f, 0.965f, 0.976f), Color(0.845f, 0.868f, 0.895f));
+    canvas.fill(v.x, v.y, v.x + v.width, v.y + v.height, kPanelTop, kPanelBottom);
   const Splats splats = splats_of(result);
   const Framing framing = frame(result, workcell);
   draw_front(canvas, layout, result, workcell, splats, framing);
