@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <agrisee/core/error.hpp>
+#include <agrisee/core/log_odds.hpp>
 #include <agrisee/core/median.hpp>
 #include <agrisee/core/rigid_pose.hpp>
 #include <agrisee/fuse/masks.hpp>
@@ -93,8 +94,7 @@ std::optional<ExpectedRadius> usual_radius(const std::vector<Proposal>& proposal
 double score_odds(const MaskImage& image, std::uint16_t instance, const MaskParameters& parameters) {
   const auto found = image.found.find(instance);
   const double score = found == image.found.end() ? 1.0 : found->second.score;
-  const double p = std::clamp(score, 1.0 - parameters.max_score, parameters.max_score);
-  const double odds = parameters.trust * std::log(p / (1.0 - p));
+  const double odds = parameters.trust * log_odds(score, 1.0 - parameters.max_score);
   return found == image.found.end() || found->second.fruit ? odds : -odds;
 }
 

@@ -6,6 +6,7 @@
 #include <agrisee/cloud/fit.hpp>
 #include <agrisee/cloud/parameters.hpp>
 #include <agrisee/cloud/seen_through.hpp>
+#include <agrisee/core/log_odds.hpp>
 #include <agrisee/geometry/direction_bins.hpp>
 #include <agrisee/geometry/pca.hpp>
 #include <agrisee/neighbors/grid.hpp>
@@ -43,6 +44,8 @@ struct Verdict {
   std::size_t support = 0;     ///< points on the surface
   std::optional<double> seen_on = {};  ///< see SeenOn; empty if not known
   double score() const { return coverage - 2.0 * inside - 1.5 * seen_through; }
+  /// Sight lines through the surface, as a share of these and of what is covered.
+  double through_share() const { return seen_through / (coverage + seen_through); }
   /// How far the roundness is below that of nearly all fruit, as several views show it.
   double flatness() const { return std::max(0.0, 0.5 - roundness); }
 };
@@ -193,18 +196,17 @@ inline double fruit_probability(const Verdict& v, const EllipsoidFit& fit, const
   // 0.42 times the largest expected radius; in a single view scraps of leaves are small, too.
   const double larger = v.seen_on ? 1.0 : std::max(1.0, kUsual * parameters.radius_max / radius);
   const double points = std::min(larger * larger * static_cast<double>(v.support), kMostPoints);
-  const double through = v.seen_through / (v.coverage + v.seen_through);
   const double spread =
       std::sqrt(std::max(0.0, v.normal_spread * v.normal_spread - parameters.normal_noise * parameters.normal_noise));
   const double evidence = 3.95 - 14.4 * spread - 2.32 * std::log1p(v.clutter) -
                           29.4 * std::min(fit.rms / radius, kMostMisfit) + 1.05 * std::log(points / 50.0) +
-                          1.55 * std::min(v.roundness, kRoundEnough) - 3.69 * through - 5.65 * v.inside / v.coverage +
-                          1.7 * std::min(radius / parameters.radius_max, kLarge);
+                          1.55 * std::min(v.roundness, kRoundEnough) - 3.69 * v.through_share() -
+                          5.65 * v.inside / v.coverage + 1.7 * std::min(radius / parameters.radius_max, kLarge);
   // Several views see that a stump is a cylinder, and that a box has corners. One does not.
   const double view = v.seen_on ? kSingleView + kSeenOn * std::log(*v.seen_on)
                                 : -parameters.ridge * (v.flatness() + kCornered * std::max(0.0, spread - kWidest));
   const double beyond = std::max(0.0, fit.body.mean_semi_axis() / parameters.radius_max - 1.0);
-  return 1.0 / (1.0 + std::exp(-(evidence + view - kBeyond * beyond + prior)));
+  return from_log_odds(evidence + view - kBeyond * beyond + prior);
 }
 
 /// By how much the sensor's noise explains the misfit of a body to its points, as a share of the radius.
@@ -233,16 +235,9 @@ inline double settled_probability(double won, const Verdict& v, const EllipsoidF
   constexpr double kBlurred = 20.0, kSharp = 0.055;  // noise up to this share of the radius does not count
   const double now = fruit_probability(v, fit, parameters, prior);
   if (!(now > 0.0)) return 0.0;
-  const auto log_odds = [](double p) {
-    constexpr double kSure = 1e-6;
-    const double q = std::clamp(p, kSure, 1.0 - kSure);
-    return std::log(q / (1.0 - q));
-  };
-  const double through = v.seen_through / (v.coverage + v.seen_through);
   const double blurred = std::max(0.0, parameters.point_noise / fit.body.mean_radius() - kSharp);
-  return 1.0 /
-         (1.0 + std::exp(-(0.5 * (log_odds(won) + log_odds(now)) + kExplained * explained_misfit(fit, parameters) -
-                           kThrough * through - kBlurred * blurred + kOffset)));
+  return from_log_odds(0.5 * (log_odds(won) + log_odds(now)) + kExplained * explained_misfit(fit, parameters) -
+                       kThrough * v.through_share() - kBlurred * blurred + kOffset);
 }
 
 }  // namespace agrisee::detail

@@ -11,6 +11,7 @@
 #include <agrisee/cloud/mask_evidence.hpp>
 #include <agrisee/cloud/parameters.hpp>
 #include <agrisee/cloud/seen_through.hpp>
+#include <agrisee/core/log_odds.hpp>
 #include <agrisee/neighbors/grid.hpp>
 
 #include <algorithm>
@@ -275,7 +276,7 @@ class Competition {
     e.verdict = judge(cloud_, grid_, taken_, e.fit.body, parameters_, seen_through_, seen_on_);
     e.confidence = fruit_probability(e.verdict, e.fit, parameters_, e.prior);
     if (e.mask_log_odds) {  // little of it may show: the depths under the masks have decided
-      e.confidence = 1.0 / (1.0 + std::exp(against_masks(e.fit.body, e.verdict) - *e.mask_log_odds));
+      e.confidence = from_log_odds(*e.mask_log_odds - against_masks(e.fit.body, e.verdict));
       e.alive = right_size && e.confidence >= parameters_.min_confidence;
       return e.alive ? nullptr : &BodyCounts::doubtful;
     }
