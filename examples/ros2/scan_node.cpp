@@ -54,7 +54,8 @@ class Ros2 {
 
   double now() const { return node_.now().seconds(); }
   rclcpp::Time stamp() const { return node_.now(); }
-  static double seconds(const Stamp& stamp) { return rclcpp::Time(stamp).seconds(); }
+  /// Of any stamp, as messages of a foreign clock have them: rclcpp::Time refuses negative ones.
+  static double seconds(const Stamp& stamp) { return stamp.sec + 1e-9 * stamp.nanosec; }
   static rclcpp::Duration duration(double seconds) { return rclcpp::Duration::from_seconds(seconds); }
   Pose world_T(const std::string& frame, const Stamp& stamp, double earlier) const {
     try {

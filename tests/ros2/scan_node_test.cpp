@@ -132,6 +132,9 @@ TEST_CASE("a frame waits for its colors and labels and is taken with them") {
   robot.go();
   robot.look();
   const auto color = robot.image("bgr8", 3), labels = robot.image("16UC1", 2);
+  auto foreign = color;
+  foreign.header.stamp.sec = -5;  // rclcpp::Time would throw
+  robot.color.say(foreign);
   CHECK(robot.status_says("moving, 0 views"));
   robot.color.say(color);
   CHECK(robot.status_says("moving, 0 views"));
@@ -197,7 +200,15 @@ TEST_CASE("what cannot be used is left out with a message") {
   early.header.stamp = rclcpp::Time(std::int64_t{1000});  // of a clock that has just begun
   robot.lost = false;
   robot.depth.say(early);
+  early.header.stamp.sec = -5;  // rclcpp::Time would throw
+  robot.depth.say(early);
+  sensor_msgs::msg::JointState state;
+  state.header.stamp.sec = -5;
+  state.name.assign(robot::kJointNames.begin(), robot::kJointNames.end());
+  state.position.assign(6, 0.0);
+  robot.joint_states.say(state);
   CHECK(robot.status_says("moving, 0 views"));
+  robot.tell_joints();
   robot.look();
   CHECK(robot.status_says("moving, 1 views"));
 }

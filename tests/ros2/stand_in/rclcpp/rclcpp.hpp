@@ -115,7 +115,9 @@ class Time {
     if (nanoseconds < 0) throw std::runtime_error("a negative time");
   }
   Time(const builtin_interfaces::msg::Time& message)
-      : nanoseconds_(message.sec * std::int64_t{1000000000} + message.nanosec) {}
+      : nanoseconds_(message.sec * std::int64_t{1000000000} + message.nanosec) {
+    if (message.sec < 0) throw std::runtime_error("cannot store a negative time point in rclcpp::Time");
+  }
   double seconds() const { return 1e-9 * static_cast<double>(nanoseconds_); }
   std::int64_t nanoseconds() const { return nanoseconds_; }
   operator builtin_interfaces::msg::Time() const {
