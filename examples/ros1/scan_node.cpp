@@ -79,7 +79,7 @@ class ScanNode {
   using Core = NodeCore<Ros1>;
 
   ScanNode() : private_("~"), setup_(read(private_)), ros_(private_, setup_.node.world_frame), core_(ros_, setup_) {
-    Core::outputs(
+    NodeOutputs<Ros1>::list(
         [&](const char* topic, const auto& message, bool latched) { ros_.advertise(topic, message, latched); });
     // One frame is kept: while a view is planned, those that come are old by the time it is done.
     info_in_ = node_.subscribe("depth/camera_info", 1, &Core::take_info, &core_);

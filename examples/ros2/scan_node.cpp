@@ -108,7 +108,7 @@ class ScanNode : public rclcpp_lifecycle::LifecycleNode {
       forget();
       return CallbackReturn::FAILURE;
     }
-    Core::outputs([&](const char* topic, const auto& message, bool latched) {  //
+    NodeOutputs<Ros2>::list([&](const char* topic, const auto& message, bool latched) {  //
       ros_->advertise(topic, message, latched);
     });
     return CallbackReturn::SUCCESS;

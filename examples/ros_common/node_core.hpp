@@ -4,9 +4,7 @@
 
 #include <agrisee/io/scene.hpp>
 
-#include "joint_names.hpp"
-#include "messages.hpp"
-#include "node_parameters.hpp"
+#include "node_outputs.hpp"
 
 namespace agrisee::robot {
 
@@ -32,7 +30,7 @@ struct Answer {
 ///   Duration duration(seconds)            as messages have it
 ///   Pose world_T(frame, stamp, earlier)   the pose of a frame in `world_frame`, `earlier` seconds before a stamp;
 ///                                         throws PoseUnknown
-///   void publish(topic, message)          under one of the names that outputs() lists
+///   void publish(topic, message)          under one of the names that NodeOutputs lists
 ///   std::size_t listeners(topic)          how many subscribers a topic has
 ///   void info(text), void warn(text)      a line for people
 ///   void left_out(text)                   the same for a message that is not used, at most once a second
@@ -49,23 +47,8 @@ class NodeCore {
         own_(setup.node),
         session_(io::read_scene(own_.workcell).workcell, setup.pipeline, own_.arrival,
                  static_cast<std::uint64_t>(own_.seed), own_.threads),
-        matcher_(own_.channels) {}
-
-  /// f(topic, message, latched) for everything that is published; the message only tells its type. Joint goals are not
-  /// latched: whoever connects late must not be sent off by an old one.
-  template <typename F>
-  static void outputs(F&& f) {
-    f("joint_goal", typename Ros::JointTrajectory(), false);
-    f("chosen_view", typename Ros::PoseStamped(), true);
-    f("candidate_views", typename Ros::PoseArray(), true);
-    f("view_markers", typename Ros::MarkerArray(), true);
-    f("cloud", typename Ros::PointCloud2(), true);
-    f("fruits", typename Ros::PoseArray(), true);
-    f("bodies", typename Ros::PoseArray(), true);
-    f("fruit_markers", typename Ros::MarkerArray(), true);
-    f("pre_grasps", typename Ros::PoseArray(), true);
-    f("status", typename Ros::String(), true);
-  }
+        matcher_(own_.channels),
+        outputs_(ros, own_) {}
 
   /// f(name, call) for every service; serve(call) does what the service is for.
   template <typename F>
@@ -158,17 +141,10 @@ class NodeCore {
     });
   }
 
-  /// Everything that is known now. The joint goal goes first: the arm moves while the rest is computed; the status
-  /// last.
+  /// Everything that is known now.
   void publish() {
     matcher_.forget_depths();  // they were of the last view
-    publish_goal();
-    publish_views();
-    publish_result(session_.pipeline().result());
-    typename Ros::String status;
-    status.data = session_.status();
-    ros_.publish("status", status);
-    ros_.info(status.data);
+    outputs_.publish(session_);
   }
 
   const NodeParameters& parameters() const { return own_; }
@@ -180,7 +156,6 @@ class NodeCore {
     CameraInfoPtr info;
     Pose world_T_optical;
   };
-  using Header = decltype(Ros::PoseStamped::header);
 
   Answer answer(bool done, const char* success, const char* refusal) {
     if (done) publish();
@@ -218,69 +193,13 @@ class NodeCore {
     }
   }
 
-  Header header() const {
-    Header h;
-    h.stamp = ros_.stamp();
-    h.frame_id = own_.world_frame;
-    return h;
-  }
-
-  void publish_poses(const char* topic, const std::vector<Pose>& poses) {
-    ros_.publish(topic, pose_array<typename Ros::PoseArray>(header(), poses));
-  }
-
-  void publish_views() {
-    const Pipeline& pipeline = session_.pipeline();
-    const auto candidates = session_.goal() ? pipeline.candidates() : std::vector<plan::ReachableView>{};
-    std::vector<Pose> poses;
-    for (const auto& c : candidates) poses.push_back(c.world_T_optical);
-    publish_poses("candidate_views", poses);
-    if (session_.goal()) {
-      typename Ros::PoseStamped chosen;
-      chosen.header = header();
-      chosen.pose = pose_message<decltype(chosen.pose)>(session_.goal()->world_T_optical);
-      ros_.publish("chosen_view", chosen);
-    }
-    MarkerMaker<typename Ros::MarkerArray> markers(header());
-    markers.views(pipeline.views(), candidates, session_.goal(), pipeline.workcell().sensor.intrinsics);
-    ros_.publish("view_markers", markers.take());
-  }
-
-  void publish_result(const ScanResult& result) {
-    typename Ros::PointCloud2 cloud;
-    cloud.header = header();
-    fill_cloud(cloud, result.cloud, result.labels);
-    ros_.publish("cloud", cloud);
-    const ResultPoses poses = result_poses(result.fruits);
-    publish_poses("fruits", poses.fruits);
-    publish_poses("bodies", poses.bodies);
-    publish_poses("pre_grasps", poses.pre_grasps);
-    MarkerMaker<typename Ros::MarkerArray> markers(header());
-    markers.fruits(result.fruits);
-    ros_.publish("fruit_markers", markers.take());
-  }
-
-  /// The joints of a new view; nothing at all, by which controllers hold, when a scan was stopped, reset or is done.
-  void publish_goal() {
-    typename Ros::JointTrajectory goal;
-    goal.joint_names.assign(kJointNames.begin(), kJointNames.end());
-    if (const auto& view = session_.goal()) {
-      if (session_.goals() == goals_published_ || !view->joints) return;
-      goals_published_ = session_.goals();
-      goal.points.resize(1);
-      goal.points[0].positions.assign(view->joints->data(), view->joints->data() + 6);
-      goal.points[0].time_from_start = ros_.duration(std::max(view->move_time, 0.1) / own_.speed);
-    }
-    ros_.publish("joint_goal", goal);
-  }
-
   Ros& ros_;
   NodeParameters own_;
   ScanSession session_;
   FrameMatcher<Depth, ImagePtr> matcher_;
   CameraInfoPtr info_;
   bool joints_heard_ = false;
-  std::size_t goals_published_ = 0;
+  NodeOutputs<Ros> outputs_;
 };
 
 }  // namespace agrisee::robot

@@ -100,7 +100,7 @@ def test_launch():
     assert remapped['labels/image'] == '/yolo/labels'
     source = (ROS2 / 'scan_node.cpp').read_text(encoding='utf-8')
     for topic in remapped:
-        assert f'"{topic.replace("~/", "")}"' in source + (EXAMPLES / 'ros_common/node_core.hpp').read_text(encoding='utf-8'), topic
+        assert f'"{topic.replace("~/", "")}"' in source + (EXAMPLES / 'ros_common/node_outputs.hpp').read_text(encoding='utf-8'), topic
     cmake = (ROS2 / 'CMakeLists.txt').read_text(encoding='utf-8')
     assert f'EXECUTABLE {node["executable"]})' in cmake and f'project({node["package"]} ' in cmake
     assert f'LifecycleNode("{node["name"]}", options)' in source
@@ -111,8 +111,8 @@ def test_launch():
 
 
 def test_rviz():
-    core = (EXAMPLES / 'ros_common/node_core.hpp').read_text(encoding='utf-8')
-    latched = re.findall(r'f\("(\w+)", typename Ros::\w+\(\), true\);', core)
+    outputs = (EXAMPLES / 'ros_common/node_outputs.hpp').read_text(encoding='utf-8')
+    latched = re.findall(r'f\("(\w+)", typename Ros::\w+\(\), true\);', outputs)
     assert len(latched) == 9, latched
     displays = yaml.safe_load((ROS2 / 'rviz/agrisee.rviz').read_text(encoding='utf-8'))['Visualization Manager']['Displays']
     shown = [d['Topic'] for d in displays if 'Topic' in d]
