@@ -35,6 +35,7 @@ class Ros1 {
   using String = std_msgs::String;
   using ImagePtr = sensor_msgs::ImageConstPtr;
   using CameraInfoPtr = sensor_msgs::CameraInfoConstPtr;
+  static constexpr bool kEmptyHolds = true;
 
   Ros1(ros::NodeHandle& handle, std::string world_frame)
       : handle_(handle), world_frame_(std::move(world_frame)), listener_(buffer_) {}
@@ -57,6 +58,7 @@ class Ros1 {
       throw PoseUnknown(e.what());
     }
   }
+  static const JointState* waiting_joints() { return nullptr; }  // not needed to hold
   template <typename Message>
   void publish(const char* topic, const Message& message) {
     publishers_.at(topic).publish(message);

@@ -41,6 +41,7 @@ class Ros2 {
   using ImagePtr = Image::ConstSharedPtr;
   using CameraInfoPtr = CameraInfo::ConstSharedPtr;
   using Stamp = builtin_interfaces::msg::Time;
+  static constexpr bool kEmptyHolds = false;
 
   Ros2(rclcpp_lifecycle::LifecycleNode& node, std::string world_frame)
       : node_(node), world_frame_(std::move(world_frame)), buffer_(node.get_clock()), listener_(buffer_) {}
@@ -50,6 +51,19 @@ class Ros2 {
     rclcpp::QoS qos(1);
     if (latched) qos.transient_local();
     publishers_[topic] = node_.create_publisher<Message>("~/" + topic, qos);
+  }
+
+  /// Hands joint states to a callback.
+  template <typename Callback>
+  void listen_to_joints(const rclcpp::QoS& qos, Callback callback) {
+    joints_in_ = node_.create_subscription<JointState>("joint_states", qos, std::move(callback));
+  }
+  void stop_listening() { joints_in_.reset(); }
+  std::optional<JointState> waiting_joints() const {
+    JointState message;
+    rclcpp::MessageInfo info;
+    if (!joints_in_ || !joints_in_->take(message, info)) return std::nullopt;
+    return message;
   }
 
   double now() const { return node_.now().seconds(); }
@@ -83,6 +97,7 @@ class Ros2 {
   std::map<std::string, rclcpp::PublisherBase::SharedPtr> publishers_;
   tf2_ros::Buffer buffer_;
   tf2_ros::TransformListener listener_;
+  rclcpp::Subscription<JointState>::SharedPtr joints_in_;
 };
 
 /// Parameters are read when it is configured. While it is active it listens and serves; deactivated, it stops the scan
@@ -156,10 +171,9 @@ class ScanNode : public rclcpp_lifecycle::LifecycleNode {
         create_subscription<Ros2::CameraInfo>("depth/camera_info", newest,
                                               [this](Ros2::CameraInfoPtr m) { core_->take_info(m); }),
         create_subscription<Ros2::Image>("depth/image", newest, [this](ImagePtr m) { core_->take_image(m); }),
-        create_subscription<Ros2::PointCloud2>("points", newest,
-                                               [this](Ros2::PointCloud2::ConstSharedPtr m) { core_->take_points(*m); }),
-        create_subscription<Ros2::JointState>("joint_states", newest,
-                                              [this](Ros2::JointState::ConstSharedPtr m) { core_->take_joints(*m); })};
+        create_subscription<Ros2::PointCloud2>(
+            "points", newest, [this](Ros2::PointCloud2::ConstSharedPtr m) { core_->take_points(*m); })};
+    ros_->listen_to_joints(newest, [this](Ros2::JointState::ConstSharedPtr m) { core_->take_joints(*m); });
     if (channels.color)
       subscriptions_.push_back(
           create_subscription<Ros2::Image>("color/image", some, [this](ImagePtr m) { core_->take_color(m); }));
@@ -174,6 +188,7 @@ class ScanNode : public rclcpp_lifecycle::LifecycleNode {
     active_ = false;
     timer_.reset();
     subscriptions_.clear();
+    if (ros_) ros_->stop_listening();
   }
 
   void forget() {

@@ -32,6 +32,9 @@ struct Answer {
 ///                                         throws PoseUnknown
 ///   void publish(topic, message)          under one of the names that NodeOutputs lists
 ///   std::size_t listeners(topic)          how many subscribers a topic has
+///   bool kEmptyHolds                      whether every trajectory controller holds when it gets one without points
+///   waiting_joints()                      the newest joint states that came and were not handed over yet, for an arm
+///                                         that is told to hold; false in a condition if there are none
 ///   void info(text), void warn(text)      a line for people
 ///   void left_out(text)                   the same for a message that is not used, at most once a second
 template <typename Ros>
@@ -144,6 +147,8 @@ class NodeCore {
   /// Everything that is known now.
   void publish() {
     matcher_.forget_depths();  // they were of the last view
+    // While a view was planned, none were taken: those that are known are of an arm that has moved since.
+    if (const auto joints = ros_.waiting_joints()) take_joints(*joints);
     outputs_.publish(session_);
   }
 

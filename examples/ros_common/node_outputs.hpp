@@ -2,7 +2,7 @@
 // What a scan node publishes, for both generations of ROS; `Ros` as NodeCore has it.
 #pragma once
 
-#include "joint_names.hpp"
+#include "arm_goals.hpp"
 #include "messages.hpp"
 #include "node_parameters.hpp"
 
@@ -13,7 +13,7 @@ template <typename Ros>
 class NodeOutputs {
  public:
   /// Both are kept by reference.
-  NodeOutputs(Ros& ros, const NodeParameters& parameters) : ros_(ros), own_(parameters) {}
+  NodeOutputs(Ros& ros, const NodeParameters& parameters) : ros_(ros), own_(parameters), arm_(ros, parameters.speed) {}
 
   /// f(topic, message, latched) for everything that is published; the message only tells its type. Joint goals are not
   /// latched: whoever connects late must not be sent off by an old one.
@@ -34,7 +34,7 @@ class NodeOutputs {
   /// Everything that a session knows now. The joint goal goes first: the arm moves while the rest is computed; the
   /// status last.
   void publish(const ScanSession& session) {
-    publish_goal(session);
+    arm_.publish(session);
     publish_views(session);
     publish_result(session.pipeline().result());
     typename Ros::String status;
@@ -88,23 +88,9 @@ class NodeOutputs {
     ros_.publish("fruit_markers", markers.take());
   }
 
-  /// The joints of a new view; nothing at all, by which controllers hold, when a scan was stopped, reset or is done.
-  void publish_goal(const ScanSession& session) {
-    typename Ros::JointTrajectory goal;
-    goal.joint_names.assign(kJointNames.begin(), kJointNames.end());
-    if (const auto& view = session.goal()) {
-      if (session.goals() == goals_published_ || !view->joints) return;
-      goals_published_ = session.goals();
-      goal.points.resize(1);
-      goal.points[0].positions.assign(view->joints->data(), view->joints->data() + 6);
-      goal.points[0].time_from_start = ros_.duration(std::max(view->move_time, 0.1) / own_.speed);
-    }
-    ros_.publish("joint_goal", goal);
-  }
-
   Ros& ros_;
   const NodeParameters& own_;
-  std::size_t goals_published_ = 0;
+  ArmGoals<Ros> arm_;
 };
 
 }  // namespace agrisee::robot

@@ -143,6 +143,10 @@ class ScanSession {
   const std::optional<plan::ReachableView>& goal() const { return goal_; }
   std::size_t goals() const { return goals_; }
   int refused() const { return refused_; }
+  /// Where the arm stood last (rad), and when; without a stamp nobody told, and it is the last view's or the
+  /// workcell's.
+  const Joints& joints() const { return joints_; }
+  const std::optional<double>& joints_stamp() const { return joints_stamp_; }
   const Pipeline& pipeline() const { return *pipeline_; }
 
   /// One line for people.

@@ -134,12 +134,24 @@ class Robot {
     return pose;
   }
   void tell_joints() {
+    std::copy_n(joint_goal.last->points.at(0).positions.begin(), 6, joints.data());
+    tell_joints(joints);
+  }
+  void tell_joints(const Joints& at) {
     sensor_msgs::msg::JointState state;
     state.header.stamp = stamp();
     state.name.assign(robot::kJointNames.rbegin(), robot::kJointNames.rend());
-    state.position = joint_goal.last->points.at(0).positions;
+    state.position.assign(at.data(), at.data() + 6);
     std::reverse(state.position.begin(), state.position.end());
     joint_states.say(state);
+  }
+  /// Whether the last that the arm heard was to stand still at some joints.
+  bool held_at(const Joints& at) const {
+    if (!joint_goal.last || joint_goal.last->points.size() != 1) return false;
+    const auto& point = joint_goal.last->points[0];
+    const double seconds = point.time_from_start.sec + 1e-9 * point.time_from_start.nanosec;
+    return std::equal(point.positions.begin(), point.positions.end(), at.data(), at.data() + 6) &&
+           point.velocities == std::vector<double>(6, 0.0) && seconds > 0.0 && seconds <= 0.5;
   }
   sensor_msgs::msg::CameraInfo camera_info() const {
     sensor_msgs::msg::CameraInfo out;
@@ -193,7 +205,8 @@ class Robot {
   static builtin_interfaces::msg::Time stamp() { return rclcpp::Time(stand_in::graph().now); }
 
   std::shared_ptr<rclcpp_lifecycle::LifecycleNode> node;
-  bool lost = false;  ///< tf does not know the sensor's pose
+  Joints joints = Workcell().start;  ///< of the last goal that it went to (rad)
+  bool lost = false;                 ///< tf does not know the sensor's pose
   Ear<trajectory_msgs::msg::JointTrajectory> joint_goal{"/agrisee/joint_goal"};
   Ear<geometry_msgs::msg::PoseStamped> chosen{"/agrisee/chosen_view", latched()};
   Ear<std_msgs::msg::String> status{"/agrisee/status", latched()};

@@ -30,7 +30,7 @@ TEST_CASE("the node leads a scan from the service to the fruit, by images or by 
     }
     CHECK(robot.status_says("done, "));
     CHECK(goals >= 2);
-    CHECK(robot.joint_goal.last->points.empty());  // the arm holds
+    CHECK(robot.held_at(robot.joints));
     REQUIRE(robot.fruits.last->poses.size() == 2);
     CHECK(robot.fruits.last->header.frame_id == "world");
     for (const auto& pose : robot.fruits.last->poses) {
@@ -67,7 +67,7 @@ TEST_CASE("services stop, reset and skip views, and refuse what makes no sense")
   robot.look();
   REQUIRE(robot.call("stop").success);
   CHECK(robot.status_says("paused, 1 views"));
-  CHECK(robot.joint_goal.last->points.empty());
+  CHECK(robot.held_at(robot.joints));
   robot.look();  // nobody asked for it
   CHECK(robot.status_says("paused, 1 views"));
   REQUIRE(robot.call("start").success);
@@ -84,7 +84,7 @@ TEST_CASE("a node that is deactivated holds the arm, keeps what was seen and goe
   robot.look();
   REQUIRE(robot.status_says("moving, 1 views"));
   REQUIRE(robot.node->deactivate().label() == "inactive");
-  CHECK(robot.joint_goal.last->points.empty());
+  CHECK(robot.held_at(robot.joints));
   CHECK(robot.depth.listeners() == 0);
   const int heard = robot.status.count;
   stand_in::fire_timers();
@@ -94,8 +94,47 @@ TEST_CASE("a node that is deactivated holds the arm, keeps what was seen and goe
   CHECK(robot.status_says("paused, 1 views"));
   REQUIRE(robot.call("start").success);
   CHECK(robot.status_says("moving, 1 views"));
+  const Joints under_way = robot.joints.array() + 0.1;
+  robot.tell_joints(under_way);
   REQUIRE(robot.node->shutdown().label() == "finalized");
+  CHECK(robot.held_at(under_way));
+}
+
+TEST_CASE("an arm that was not sent anywhere is left alone") {
+  Robot robot;
+  REQUIRE(robot.bring_up() == "active");
+  robot.call("reset");
+  REQUIRE(robot.node->deactivate().label() == "inactive");
+  REQUIRE(robot.node->activate().label() == "active");
+  CHECK(robot.joint_goal.count == 0);
+  robot.call("start");
+  robot.go();
+  robot.call("stop");
+  CHECK(robot.joint_goal.count == 2);
+  robot.call("reset");
+  CHECK(robot.joint_goal.count == 2);  // it holds already
+}
+
+TEST_CASE("an arm holds where it is, not where it was before the node was busy") {
+  Robot robot;
+  REQUIRE(robot.bring_up() == "active");
+  robot.call("start");
+  robot.go();
+  stand_in::graph().busy = true;
+  const Joints under_way = robot.joints.array() + 0.2;
+  robot.tell_joints(robot.joints.array() + 0.1);
+  Robot::pass(1.0);
+  robot.tell_joints(under_way);
+  robot.call("stop");
+  stand_in::hand_over();
+  CHECK(robot.held_at(under_way));
+  CHECK_FALSE(Robot::said("[warn]"));
+  // Who does not know where it is does not send it back.
+  robot.call("start");
+  Robot::pass(1.0);
+  robot.call("stop");
   CHECK(robot.joint_goal.last->points.empty());
+  CHECK(Robot::said("[warn] No joint states of the last 0.2 s"));
 }
 
 TEST_CASE("topics have the quality of service that sensors and late listeners need") {

@@ -3,12 +3,13 @@
 // and tf2_ros that examples/ros2 uses, in one process, without threads, time or transport. What compiles and runs with
 // it need not do so with ROS 2: only names, arguments and the behavior that is documented for ROS 2 were followed.
 //
-// This file: what a test sees. Messages are handed over at once, time stands until the test moves it, timers go off and
-// transforms change when the test says so.
+// This file: what a test sees. Messages are handed over at once, unless the executor is busy; time stands until the
+// test moves it, timers go off and transforms change when the test says so.
 #pragma once
 
 #include <any>
 #include <cstdint>
+#include <deque>
 #include <functional>
 #include <map>
 #include <memory>
@@ -29,6 +30,7 @@ struct Reader {
   Qos qos;
   std::type_index type;
   std::function<void(std::shared_ptr<const void>)> take;
+  std::deque<std::shared_ptr<const void>> waiting;  ///< as many as the quality of service keeps
 };
 struct Writer {
   Qos qos;
@@ -48,6 +50,7 @@ struct Graph {
   std::map<std::string, std::function<std::shared_ptr<void>(const std::any& options)>> components;
   std::vector<std::string> log;
   std::int64_t now = 0;  ///< nanoseconds
+  bool busy = false;     ///< the executor is: messages wait until hand_over()
   /// The transform of two frames at a time (ns), as std::any of a TransformStamped; throws what tf2 throws.
   std::function<std::any(const std::string& target, const std::string& source, std::int64_t at)> transform;
 };
@@ -73,9 +76,11 @@ inline std::string resolved(const std::string& node, const std::string& name) {
 template <typename Message>
 std::shared_ptr<Reader> subscribe(const std::string& topic, Qos qos,
                                   std::function<void(std::shared_ptr<const Message>)> callback) {
-  auto reader = std::make_shared<Reader>(Reader{qos, typeid(Message), [callback](std::shared_ptr<const void> message) {
-                                                  callback(std::static_pointer_cast<const Message>(message));
-                                                }});
+  auto reader = std::make_shared<Reader>(Reader{
+      qos,
+      typeid(Message),
+      [callback](std::shared_ptr<const void> message) { callback(std::static_pointer_cast<const Message>(message)); },
+      {}});
   Topic& all = graph().topics[topic];
   all.readers.push_back(reader);
   for (const auto& weak : all.writers)
@@ -105,7 +110,23 @@ template <typename Message>
 void publish(const std::string& topic, const std::shared_ptr<Writer>& writer, const Message& message) {
   const auto copy = std::make_shared<const Message>(message);
   if (writer->qos.transient_local) writer->last = copy;
-  for (const auto& reader : readers(topic, *writer)) reader->take(copy);
+  for (const auto& reader : readers(topic, *writer)) {
+    if (!graph().busy) {
+      reader->take(copy);
+      continue;
+    }
+    reader->waiting.push_back(copy);
+    if (reader->waiting.size() > reader->qos.depth) reader->waiting.pop_front();
+  }
+}
+
+/// The executor is free again: hand over what waits.
+inline void hand_over() {
+  graph().busy = false;
+  for (auto& entry : graph().topics)
+    for (const auto& weak : entry.second.readers)
+      if (const auto reader = weak.lock())
+        for (; !reader->waiting.empty(); reader->waiting.pop_front()) reader->take(reader->waiting.front());
 }
 
 /// Let every timer that still exists go off once.

@@ -158,6 +158,18 @@ struct SubscriptionBase {
   using SharedPtr = std::shared_ptr<SubscriptionBase>;
   std::shared_ptr<stand_in::Reader> reader;
 };
+struct MessageInfo {};
+template <typename Message>
+struct Subscription : SubscriptionBase {
+  using SharedPtr = std::shared_ptr<Subscription>;
+  /// Takes a message that waits before the executor does.
+  bool take(Message& message, MessageInfo&) {
+    if (reader->waiting.empty()) return false;
+    message = *std::static_pointer_cast<const Message>(reader->waiting.front());
+    reader->waiting.pop_front();
+    return true;
+  }
+};
 struct TimerBase {
   using SharedPtr = std::shared_ptr<TimerBase>;
   std::shared_ptr<std::function<void()>> callback;

@@ -79,9 +79,9 @@ class LifecycleNode : public node_interfaces::LifecycleNodeInterface {
     return made;
   }
   template <typename Message, typename Callback>
-  rclcpp::SubscriptionBase::SharedPtr create_subscription(const std::string& name, const rclcpp::QoS& qos,
-                                                          Callback callback) {
-    auto made = std::make_shared<rclcpp::SubscriptionBase>();
+  std::shared_ptr<rclcpp::Subscription<Message>> create_subscription(const std::string& name, const rclcpp::QoS& qos,
+                                                                     Callback callback) {
+    auto made = std::make_shared<rclcpp::Subscription<Message>>();
     made->reader = stand_in::subscribe<Message>(stand_in::resolved(name_, name), qos.qos, callback);
     return made;
   }
