@@ -15,12 +15,12 @@ class NodeOutputs {
   /// Both are kept by reference.
   NodeOutputs(Ros& ros, const NodeParameters& parameters) : ros_(ros), own_(parameters), arm_(ros, parameters.speed) {}
 
-  /// f(topic, message, latched) for everything that is published; the message only tells its type. Joint goals are not
-  /// latched: whoever connects late must not be sent off by an old one.
+  /// f(topic, message, latched) for everything that is published; the message only tells its type. Joint goals and
+  /// chosen views are not latched: whoever connects late must not be sent off by an old one.
   template <typename F>
   static void list(F&& f) {
     f("joint_goal", typename Ros::JointTrajectory(), false);
-    f("chosen_view", typename Ros::PoseStamped(), true);
+    f("chosen_view", typename Ros::PoseStamped(), false);
     f("candidate_views", typename Ros::PoseArray(), true);
     f("view_markers", typename Ros::MarkerArray(), true);
     f("cloud", typename Ros::PointCloud2(), true);

@@ -208,7 +208,7 @@ class Robot {
   Joints joints = Workcell().start;  ///< of the last goal that it went to (rad)
   bool lost = false;                 ///< tf does not know the sensor's pose
   Ear<trajectory_msgs::msg::JointTrajectory> joint_goal{"/agrisee/joint_goal"};
-  Ear<geometry_msgs::msg::PoseStamped> chosen{"/agrisee/chosen_view", latched()};
+  Ear<geometry_msgs::msg::PoseStamped> chosen{"/agrisee/chosen_view"};
   Ear<std_msgs::msg::String> status{"/agrisee/status", latched()};
   Ear<geometry_msgs::msg::PoseArray> fruits{"/agrisee/fruits", latched()};
   Mouth<sensor_msgs::msg::CameraInfo> info{"/depth/camera_info"};

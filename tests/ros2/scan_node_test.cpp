@@ -42,12 +42,14 @@ TEST_CASE("the node leads a scan from the service to the fruit, by images or by 
     const Ear<sensor_msgs::msg::PointCloud2> cloud("/agrisee/cloud", latched());
     const Ear<visualization_msgs::msg::MarkerArray> markers("/agrisee/fruit_markers", latched());
     const Ear<trajectory_msgs::msg::JointTrajectory> goal("/agrisee/joint_goal");
+    const Ear<geometry_msgs::msg::PoseStamped> chosen("/agrisee/chosen_view", latched());
     REQUIRE(cloud.last);
     CHECK(cloud.last->fields.back().name == "instance");
     CHECK(interop::PointCloud2View(*cloud.last).size() > 500);
     REQUIRE(markers.last);
     CHECK(markers.last->markers.size() > 2);
     CHECK(goal.count == 0);
+    CHECK(chosen.count == 0);
     CHECK_FALSE(Robot::said("Left out"));
   }
 }
@@ -157,7 +159,8 @@ TEST_CASE("topics have the quality of service that sensors and late listeners ne
     REQUIRE(writer);
     CHECK(writer->qos.reliable);
     CHECK(writer->qos.depth == 1);
-    CHECK(writer->qos.transient_local == (std::string(topic) != "joint_goal"));
+    const bool passing = std::string(topic) == "joint_goal" || std::string(topic) == "chosen_view";
+    CHECK(writer->qos.transient_local == !passing);
   }
   const auto& images = stand_in::graph().topics.at("/depth/image").readers;
   REQUIRE(images.back().lock());
