@@ -49,6 +49,7 @@ class Ros1 {
   double now() const { return stamp().toSec(); }
   ros::Time stamp() const { return ros::Time::now(); }
   static double seconds(const ros::Time& stamp) { return stamp.toSec(); }
+  static std::uint32_t nanoseconds(const ros::Time& stamp) { return stamp.nsec; }
   static ros::Duration duration(double seconds) { return ros::Duration(seconds); }
   Pose world_T(const std::string& frame, const ros::Time& stamp, double earlier) const {
     try {

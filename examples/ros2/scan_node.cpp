@@ -70,6 +70,7 @@ class Ros2 {
   rclcpp::Time stamp() const { return node_.now(); }
   /// Of any stamp, as messages of a foreign clock have them: rclcpp::Time refuses negative ones.
   static double seconds(const Stamp& stamp) { return stamp.sec + 1e-9 * stamp.nanosec; }
+  static std::uint32_t nanoseconds(const Stamp& stamp) { return stamp.nanosec; }
   static rclcpp::Duration duration(double seconds) { return rclcpp::Duration::from_seconds(seconds); }
   Pose world_T(const std::string& frame, const Stamp& stamp, double earlier) const {
     try {

@@ -27,6 +27,7 @@ struct Answer {
 ///   double now()                          time of the sensor's clock (s)
 ///   Stamp stamp()                         the same as messages have it
 ///   double seconds(stamp)                 a message's stamp (s)
+///   std::uint32_t nanoseconds(stamp)      those beyond the stamp's whole seconds
 ///   Duration duration(seconds)            as messages have it
 ///   Pose world_T(frame, stamp, earlier)   the pose of a frame in `world_frame`, `earlier` seconds before a stamp;
 ///                                         throws PoseUnknown
@@ -51,7 +52,7 @@ class NodeCore {
         session_(io::read_scene(own_.workcell).workcell, setup.pipeline, own_.arrival,
                  static_cast<std::uint64_t>(own_.seed), own_.threads),
         matcher_(own_.channels),
-        outputs_(ros, own_) {}
+        outputs_(ros, setup) {}
 
   /// f(name, call) for every service; serve(call) does what the service is for.
   template <typename F>

@@ -4,7 +4,7 @@
 
 #include "arm_goals.hpp"
 #include "messages.hpp"
-#include "node_parameters.hpp"
+#include "result_writer.hpp"
 
 namespace agrisee::robot {
 
@@ -12,8 +12,9 @@ namespace agrisee::robot {
 template <typename Ros>
 class NodeOutputs {
  public:
-  /// Both are kept by reference.
-  NodeOutputs(Ros& ros, const NodeParameters& parameters) : ros_(ros), own_(parameters), arm_(ros, parameters.speed) {}
+  /// @throws FileError when the folder `output` cannot be made
+  NodeOutputs(Ros& ros, const NodeSetup& setup)
+      : ros_(ros), world_frame_(setup.node.world_frame), arm_(ros, setup.node.speed), files_(setup) {}
 
   /// f(topic, message, latched) for everything that is published; the message only tells its type. Joint goals and
   /// chosen views are not latched: whoever connects late must not be sent off by an old one.
@@ -28,15 +29,21 @@ class NodeOutputs {
     f("bodies", typename Ros::PoseArray(), true);
     f("fruit_markers", typename Ros::MarkerArray(), true);
     f("pre_grasps", typename Ros::PoseArray(), true);
+    f("fruits_json", typename Ros::String(), true);
     f("status", typename Ros::String(), true);
   }
 
-  /// Everything that a session knows now. The joint goal goes first: the arm moves while the rest is computed; the
-  /// status last.
+  /// Everything that a session knows now, with one stamp. The joint goal goes first: the arm moves while the rest is
+  /// computed; then the files, if there are any; the status last.
   void publish(const ScanSession& session) {
     arm_.publish(session);
-    publish_views(session);
-    publish_result(session.pipeline().result());
+    Header header;
+    header.stamp = ros_.stamp();
+    header.frame_id = world_frame_;
+    publish_views(session, header);
+    const ScanResult result = session.pipeline().result();
+    publish_result(result, header);
+    write(session, result);
     typename Ros::String status;
     status.data = session.status();
     ros_.publish("status", status);
@@ -46,51 +53,59 @@ class NodeOutputs {
  private:
   using Header = decltype(Ros::PoseStamped::header);
 
-  Header header() const {
-    Header h;
-    h.stamp = ros_.stamp();
-    h.frame_id = own_.world_frame;
-    return h;
+  void publish_poses(const char* topic, const Header& header, const std::vector<Pose>& poses) {
+    ros_.publish(topic, pose_array<typename Ros::PoseArray>(header, poses));
   }
 
-  void publish_poses(const char* topic, const std::vector<Pose>& poses) {
-    ros_.publish(topic, pose_array<typename Ros::PoseArray>(header(), poses));
-  }
-
-  void publish_views(const ScanSession& session) {
+  void publish_views(const ScanSession& session, const Header& header) {
     const Pipeline& pipeline = session.pipeline();
     const auto candidates = session.goal() ? pipeline.candidates() : std::vector<plan::ReachableView>{};
     std::vector<Pose> poses;
     for (const auto& c : candidates) poses.push_back(c.world_T_optical);
-    publish_poses("candidate_views", poses);
+    publish_poses("candidate_views", header, poses);
     if (session.goal()) {
       typename Ros::PoseStamped chosen;
-      chosen.header = header();
+      chosen.header = header;
       chosen.pose = pose_message<decltype(chosen.pose)>(session.goal()->world_T_optical);
       ros_.publish("chosen_view", chosen);
     }
-    MarkerMaker<typename Ros::MarkerArray> markers(header());
+    MarkerMaker<typename Ros::MarkerArray> markers(header);
     markers.views(pipeline.views(), candidates, session.goal(), pipeline.workcell().sensor.intrinsics);
     ros_.publish("view_markers", markers.take());
   }
 
-  void publish_result(const ScanResult& result) {
+  void publish_result(const ScanResult& result, const Header& header) {
     typename Ros::PointCloud2 cloud;
-    cloud.header = header();
+    cloud.header = header;
     fill_cloud(cloud, result.cloud, result.labels);
     ros_.publish("cloud", cloud);
     const ResultPoses poses = result_poses(result.fruits);
-    publish_poses("fruits", poses.fruits);
-    publish_poses("bodies", poses.bodies);
-    publish_poses("pre_grasps", poses.pre_grasps);
-    MarkerMaker<typename Ros::MarkerArray> markers(header());
+    publish_poses("fruits", header, poses.fruits);
+    publish_poses("bodies", header, poses.bodies);
+    publish_poses("pre_grasps", header, poses.pre_grasps);
+    MarkerMaker<typename Ros::MarkerArray> markers(header);
     markers.fruits(result.fruits);
     ros_.publish("fruit_markers", markers.take());
+    typename Ros::String json;
+    json.data = R"({"stamp": {"sec": )" + std::to_string(header.stamp.sec) + R"(, "nanosec": )" +
+                std::to_string(Ros::nanoseconds(header.stamp)) + R"(}, "fruits": )" +
+                io::fruits_to_json(result.fruits) + "}";
+    ros_.publish("fruits_json", json);
+  }
+
+  void write(const ScanSession& session, const ScanResult& result) {
+    try {
+      const auto folder = files_.write(session, result);
+      if (!folder.empty()) ros_.info("The result is in " + folder.string());
+    } catch (const Error& e) {
+      ros_.warn(std::string("The result is not written: ") + e.what());
+    }
   }
 
   Ros& ros_;
-  const NodeParameters& own_;
+  std::string world_frame_;
   ArmGoals<Ros> arm_;
+  ResultWriter files_;
 };
 
 }  // namespace agrisee::robot

@@ -142,6 +142,8 @@ class ScanSession {
   /// The view to move to; empty unless moving. With every new one `goals()` grows.
   const std::optional<plan::ReachableView>& goal() const { return goal_; }
   std::size_t goals() const { return goals_; }
+  /// Which scan this is, from 1; start() after the end and reset() begin another.
+  std::size_t scans() const { return scans_; }
   int refused() const { return refused_; }
   /// Where the arm stood last (rad), and when; without a stamp nobody told, and it is the last view's or the
   /// workcell's.
@@ -169,6 +171,7 @@ class ScanSession {
     pipeline_ = std::make_unique<Pipeline>(workcell_, parameters_, std::move(options));
     if (!joints_stamp_) joints_ = workcell_.start;
     goal_.reset();
+    ++scans_;
     refused_ = 0;
     state_ = SessionState::idle;
   }
@@ -188,7 +191,7 @@ class ScanSession {
   std::unique_ptr<Pipeline> pipeline_;
   SessionState state_ = SessionState::idle;
   std::optional<plan::ReachableView> goal_;
-  std::size_t goals_ = 0;
+  std::size_t goals_ = 0, scans_ = 0;
   double asked_at_ = 0.0;
   Joints joints_ = Joints::Zero();
   std::optional<double> joints_stamp_;

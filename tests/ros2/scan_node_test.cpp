@@ -139,34 +139,6 @@ TEST_CASE("an arm holds where it is, not where it was before the node was busy")
   CHECK(Robot::said("[warn] No joint states of the last 0.2 s"));
 }
 
-TEST_CASE("topics have the quality of service that sensors and late listeners need") {
-  Robot robot({{"channels.color", true}});
-  REQUIRE(robot.bring_up() == "active");
-  // Best effort is heard, as is a driver that is reliable.
-  CHECK(robot.depth.listeners() == 1);
-  CHECK(Mouth<sensor_msgs::msg::Image>("/depth/image", rclcpp::QoS(5)).listeners() == 1);
-  CHECK(robot.info.listeners() == 1);
-  CHECK(robot.points.listeners() == 1);
-  CHECK(robot.joint_states.listeners() == 1);
-  CHECK(robot.color.listeners() == 1);
-  CHECK(robot.labels.listeners() == 0);  // not asked for
-  for (const char* topic : {"joint_goal", "chosen_view", "candidate_views", "view_markers", "cloud", "fruits", "bodies",
-                            "fruit_markers", "pre_grasps", "status"}) {
-    INFO(topic);
-    const auto& writers = stand_in::graph().topics.at(std::string("/agrisee/") + topic).writers;
-    REQUIRE_FALSE(writers.empty());
-    const auto writer = writers.back().lock();
-    REQUIRE(writer);
-    CHECK(writer->qos.reliable);
-    CHECK(writer->qos.depth == 1);
-    const bool passing = std::string(topic) == "joint_goal" || std::string(topic) == "chosen_view";
-    CHECK(writer->qos.transient_local == !passing);
-  }
-  const auto& images = stand_in::graph().topics.at("/depth/image").readers;
-  REQUIRE(images.back().lock());
-  CHECK(images.back().lock()->qos.depth == 1);
-}
-
 TEST_CASE("a frame waits for its colors and labels and is taken with them") {
   Robot robot({{"channels.color", true}, {"channels.labels", true}, {"channels.score", 0.9}});
   REQUIRE(robot.bring_up() == "active");
@@ -201,27 +173,6 @@ TEST_CASE("a frame waits for its colors and labels and is taken with them") {
   }
   CHECK(robot.status_says("moving, 2 views"));
   CHECK(Robot::said("the frame goes without"));
-}
-
-TEST_CASE("fruit whose colors are seen have a ripeness") {
-  Robot robot({{"channels.color", true}, {"channels.labels", true}});
-  const Ear<visualization_msgs::msg::MarkerArray> markers("/agrisee/fruit_markers", latched());
-  REQUIRE(robot.bring_up() == "active");
-  robot.call("start");
-  while (robot.status_says("moving")) {
-    robot.go();
-    auto color = robot.image("bgr8", 3);
-    for (std::size_t i = 0; i < color.data.size(); ++i) color.data[i] = std::array<std::uint8_t, 3>{35, 40, 190}[i % 3];
-    robot.color.say(color);
-    robot.labels.say(robot.labels_of_fruit());
-    robot.look();
-  }
-  CHECK(robot.status_says("done, "));
-  REQUIRE(robot.fruits.last->poses.size() == 2);
-  std::vector<std::string> texts;
-  for (const auto& marker : markers.last->markers)
-    if (marker.ns == "ids") texts.push_back(marker.text);
-  CHECK(texts == std::vector<std::string>{"1, red", "2, red"});
 }
 
 TEST_CASE("what cannot be used is left out with a message") {
@@ -292,6 +243,7 @@ TEST_CASE("bad parameters keep the node unconfigured and are named") {
   };
   refused({{"workcell", ""}}, "parameter 'workcell' has to name a scene file");
   refused({{"workcell", "/nowhere/cell.yaml"}}, "/nowhere/cell.yaml");
+  refused({{"output", "/dev/null/results"}}, "/dev/null/results: cannot be created");
   refused({{"max_view", 3}}, "unknown parameter 'max_view'");
   refused({{"arrival.setle", 3.0}}, "unknown parameter 'arrival.setle'");
   refused({{"max_views", 3.5}}, "parameter 'max_views' has to be a whole number");

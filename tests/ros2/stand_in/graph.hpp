@@ -49,8 +49,9 @@ struct Graph {
   std::vector<std::weak_ptr<std::function<void()>>> timers;
   std::map<std::string, std::function<std::shared_ptr<void>(const std::any& options)>> components;
   std::vector<std::string> log;
-  std::int64_t now = 0;  ///< nanoseconds
-  bool busy = false;     ///< the executor is: messages wait until hand_over()
+  std::int64_t now = 0;         ///< nanoseconds
+  std::int64_t clock_step = 0;  ///< by which time goes on whenever a node looks at it (ns)
+  bool busy = false;            ///< the executor is: messages wait until hand_over()
   /// The transform of two frames at a time (ns), as std::any of a TransformStamped; throws what tf2 throws.
   std::function<std::any(const std::string& target, const std::string& source, std::int64_t at)> transform;
 };
