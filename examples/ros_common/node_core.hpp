@@ -89,7 +89,11 @@ class NodeCore {
         start();
       }
       if (!session_.tick(ros_.now())) return;
-      ros_.warn("The view was not reached in time, the next best follows");
+      std::string next = "there is no other";
+      if (session_.state() == SessionState::moving) next = "the next best follows";
+      if (session_.state() == SessionState::paused)
+        next = std::to_string(ScanSession::kMostMissed) + " in a row: the scan stops, start goes on with this view";
+      ros_.warn("The view was not taken in time: " + session_.missed_for() + "; " + next);
       publish();
     });
   }
@@ -106,13 +110,14 @@ class NodeCore {
   }
 
   void take_image(const ImagePtr& image) {
-    if (!info_) return;
+    if (!info_) return session_.note("depth images came, but no camera info", ros_.now());
     guarded([&] {
       const auto& header = image->header;
       const auto pose =
           pose_if_arrived(own_.optical_frame.empty() ? header.frame_id : own_.optical_frame, header.stamp);
       if (!pose) return;
       matcher_.add_depth(ros_.seconds(header.stamp), {image, info_, *pose});
+      session_.note("the depth image's colors or labels did not come", ros_.now());
       observe_match();
     });
   }
@@ -179,22 +184,45 @@ class NodeCore {
     publish();
   }
 
-  /// world_T_optical at the stamp of a frame where it is the one awaited.
+  /// world_T_optical at the stamp of a frame where it is the one awaited; else why not is noted.
   template <typename Stamp>
-  std::optional<Pose> pose_if_arrived(const std::string& frame, const Stamp& stamp) const {
-    if (session_.state() != SessionState::moving || ros_.seconds(stamp) < own_.arrival.settle) return std::nullopt;
-    const Pose pose = ros_.world_T(frame, stamp, 0.0);
-    const Pose before = ros_.world_T(frame, stamp, own_.arrival.settle);
-    if (!session_.arrived(ros_.seconds(stamp), pose, before)) return std::nullopt;
-    return pose;
+  std::optional<Pose> pose_if_arrived(const std::string& frame, const Stamp& stamp) {
+    if (session_.state() != SessionState::moving) return std::nullopt;
+    const double taken = ros_.seconds(stamp);
+    std::string objection = "the frame has no usable stamp";
+    try {
+      if (taken >= own_.arrival.settle) {
+        const Pose pose = ros_.world_T(frame, stamp, 0.0);
+        objection = session_.objection(taken, pose, ros_.world_T(frame, stamp, own_.arrival.settle));
+        if (objection.empty()) return pose;
+      }
+    } catch (const PoseUnknown& e) {
+      throw PoseUnknown(e.what() + hints(taken));
+    }
+    session_.note(objection + hints(taken), ros_.now());
+    return std::nullopt;
   }
 
-  /// Runs an action; a bad message or an unknown pose is reported and skipped.
+  /// What may be behind a frame, taken at `taken` (s), that is not the one awaited.
+  std::string hints(double taken) const {
+    constexpr double kLate = 5.0;  // no planning takes that long (s)
+    const double behind = ros_.now() - taken;
+    std::string text;
+    if (std::abs(behind) > kLate)
+      text += "; its stamp is " + number_text(std::abs(behind), 3) + " s " + (behind > 0.0 ? "behind" : "ahead of") +
+              " the node's clock: sensor and node must share one";
+    if (ros_.listeners("joint_goal") + ros_.listeners("chosen_view") == 0)
+      text += "; nobody listens to joint_goal or chosen_view";
+    return text;
+  }
+
+  /// Runs an action; a bad message or an unknown pose is reported, noted and skipped.
   template <typename Action>
   void guarded(Action&& action) {
     try {
       action();
     } catch (const Error& e) {
+      session_.note(e.what(), ros_.now());
       ros_.left_out(std::string("Left out: ") + e.what());
     }
   }

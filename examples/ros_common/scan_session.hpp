@@ -62,6 +62,9 @@ inline double angle_between(const Pose& a, const Pose& b) {
 /// One scan after another of one workcell, driven by start, stop, reset, time and frames.
 class ScanSession {
  public:
+  /// After so many views in a row that time ran out for, the scan stops: arm or camera must have failed.
+  static constexpr int kMostMissed = 3;
+
   /// @throws ParameterError, InputError for an unusable workcell
   ScanSession(const Workcell& workcell, const Parameters& parameters, const SessionParameters& session = {},
               std::uint64_t seed = 0, int threads = 1)
@@ -75,6 +78,7 @@ class ScanSession {
   bool start(double now) {
     if (state_ == SessionState::moving) return false;
     if (state_ == SessionState::done) begin();
+    forget_misses();
     choose(now);
     return true;
   }
@@ -95,14 +99,33 @@ class ScanSession {
   bool refuse(double now) {
     if (state_ != SessionState::moving) return false;
     ++refused_;
+    missed_for_.clear();
     pipeline_->refused();
     choose(now);
     return true;
   }
 
-  /// To be called now and then: a view that is not reached in time is refused. @return true when that has happened
+  /// To be called now and then: a view that is not reached in time is given up for the next best; the last of
+  /// kMostMissed in a row stops the scan instead, and is asked for again by start(). @return true when one was given up
   bool tick(double now) {
-    return state_ == SessionState::moving && now - asked_at_ > session_.move_timeout && refuse(now);
+    if (state_ != SessionState::moving || now - asked_at_ <= session_.move_timeout) return false;
+    const std::string cause = cause_at(now);
+    if (missed_ + 1 < kMostMissed) {
+      refuse(now);
+      ++missed_;
+    } else {
+      ++refused_;
+      stop();
+    }
+    missed_for_ = cause;
+    return true;
+  }
+
+  /// Tell why the awaited frame could not be taken yet; when its view is given up, the last cause is told.
+  void note(const std::string& cause, double now) {
+    if (state_ != SessionState::moving) return;
+    cause_ = cause;
+    cause_at_ = now;
   }
 
   /// Where the arm stood at `stamp` (rad); without it the planner reckons from the last goal.
@@ -112,15 +135,24 @@ class ScanSession {
     joints_stamp_ = stamp;
   }
 
-  /// Whether a frame stamped `stamp`, when the sensor was at `world_T_optical`, and at `before` `settle` seconds
-  /// earlier, is the one awaited. If joint states are received, one from before the standstill is not enough: the
-  /// next view is planned from it.
-  bool arrived(double stamp, const Pose& world_T_optical, const Pose& before) const {
+  /// Why a frame stamped `stamp`, when the sensor was at `world_T_optical`, and at `before` `settle` seconds earlier,
+  /// is not the one awaited; empty if it is. If joint states are received, one from before the standstill is not
+  /// enough: the next view is planned from it.
+  std::string objection(double stamp, const Pose& world_T_optical, const Pose& before) const {
+    if (state_ != SessionState::moving) return "no view was asked for";
     const double standing_since = stamp - session_.settle;
-    return state_ == SessionState::moving && standing_since >= asked_at_ &&
-           (!joints_stamp_ || *joints_stamp_ >= standing_since) &&
-           near(world_T_optical, goal_->world_T_optical, session_.position_tolerance, session_.angle_tolerance) &&
-           near(world_T_optical, before, session_.still_distance, session_.still_angle);
+    if (standing_since < asked_at_) return "the frame is from before the arm could have stood at the view";
+    const Distance off(world_T_optical, goal_->world_T_optical);
+    if (!off.within(session_.position_tolerance, session_.angle_tolerance))
+      return "the sensor is " + off.text() + " from the view, " +
+             Distance(session_.position_tolerance, session_.angle_tolerance).text() + " are allowed";
+    const Distance moved(world_T_optical, before);
+    if (!moved.within(session_.still_distance, session_.still_angle))
+      return "the sensor does not stand still: it moved by " + moved.text() + " in " + number_text(session_.settle, 3) +
+             " s";
+    if (joints_stamp_ && *joints_stamp_ < standing_since)
+      return "the last joint states are " + number_text(stamp - *joints_stamp_, 3) + " s older than the frame";
+    return "";
   }
 
   /// Take in the frame of the view that was asked for, and choose the next.
@@ -129,6 +161,7 @@ class ScanSession {
     check_input(state_ == SessionState::moving, "a frame that nobody asked for");
     if (!joints_stamp_ && goal_->joints) joints_ = *goal_->joints;
     pipeline_->observe(frame, world_T_optical, joints_);
+    forget_misses();
     choose(now);
   }
   /// The same for points in the optical frame, any cloud type.
@@ -145,6 +178,9 @@ class ScanSession {
   /// Which scan this is, from 1; start() after the end and reset() begin another.
   std::size_t scans() const { return scans_; }
   int refused() const { return refused_; }
+  /// How many views in a row were given up because time ran out, and why the last of them could not be taken.
+  int missed() const { return missed_; }
+  const std::string& missed_for() const { return missed_for_; }
   /// Where the arm stood last (rad), and when; without a stamp nobody told, and it is the last view's or the
   /// workcell's.
   const Joints& joints() const { return joints_; }
@@ -155,13 +191,33 @@ class ScanSession {
   std::string status() const {
     std::string text = std::string(to_string(state_)) + ", " + std::to_string(pipeline_->views().size()) + " views";
     if (refused_ > 0) text += ", " + std::to_string(refused_) + " refused";
+    if (!missed_for_.empty()) text += " (" + missed_for_ + ")";
     if (state_ == SessionState::done) text += std::string(", ") + agrisee::to_string(pipeline_->stop_reason());
     return text;
   }
 
  private:
-  static bool near(const Pose& a, const Pose& b, double distance, double angle) {
-    return (a.translation() - b.translation()).norm() <= distance && angle_between(a, b) <= angle;
+  /// How far a pose is from another.
+  struct Distance {
+    double length, angle;  // m, rad
+    Distance(double metres, double radians) : length(metres), angle(radians) {}
+    Distance(const Pose& a, const Pose& b)
+        : length((a.translation() - b.translation()).norm()), angle(angle_between(a, b)) {}
+    bool within(double most_length, double most_angle) const { return length <= most_length && angle <= most_angle; }
+    std::string text() const { return number_text(1e3 * length, 3) + " mm and " + number_text(angle, 3) + " rad"; }
+  };
+
+  /// Why the awaited frame has not been taken by now.
+  std::string cause_at(double now) const {
+    constexpr double kSilence = 5.0;  // s without any frame
+    if (cause_.empty()) return "no depth image and no point cloud came";
+    if (now - cause_at_ <= kSilence) return cause_;
+    return "no frame came for " + number_text(now - cause_at_, 3) + " s; before, " + cause_;
+  }
+
+  void forget_misses() {
+    missed_ = 0;
+    missed_for_.clear();
   }
 
   void begin() {
@@ -173,12 +229,14 @@ class ScanSession {
     goal_.reset();
     ++scans_;
     refused_ = 0;
+    forget_misses();
     state_ = SessionState::idle;
   }
 
   void choose(double now) {
     goal_ = pipeline_->next_view(joints_);
     asked_at_ = now;
+    cause_.clear();
     goals_ += goal_.has_value();
     state_ = goal_ ? SessionState::moving : SessionState::done;
   }
@@ -196,6 +254,9 @@ class ScanSession {
   Joints joints_ = Joints::Zero();
   std::optional<double> joints_stamp_;
   int refused_ = 0;
+  int missed_ = 0;  // in a row
+  std::string missed_for_, cause_;
+  double cause_at_ = 0.0;  // when cause_ was told
 };
 
 }  // namespace agrisee::robot

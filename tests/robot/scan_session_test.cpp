@@ -42,24 +42,26 @@ sensor::DepthFrame look(const Pose& pose) { return test::render(kFruit, cell().s
 TEST_CASE("a frame is taken once the sensor has arrived and stands still") {
   ScanSession session(cell(), few_views());
   CHECK(session.state() == SessionState::idle);
-  CHECK_FALSE(session.arrived(100.0, Pose::Identity(), Pose::Identity()));
+  CHECK(session.objection(100.0, Pose::Identity(), Pose::Identity()) == "no view was asked for");
   CHECK_THROWS_AS(session.observe(look(Pose::Identity()), Pose::Identity(), 1.0), InputError);
   REQUIRE(session.start(10.0));
   CHECK_FALSE(session.start(10.0));
   REQUIRE(session.goal());
   const Pose goal = session.goal()->world_T_optical;
   const auto moved = [&](double x, double turn) { return Pose(goal * pose_from_xyz_rpy({x, 0, 0}, {0, 0, turn})); };
-  CHECK(session.arrived(10.31, goal, goal));
-  CHECK_FALSE(session.arrived(10.29, goal, goal));                           // stood there before it was asked
-  CHECK_FALSE(session.arrived(12.0, moved(0.021, 0.0), moved(0.021, 0.0)));  // elsewhere
-  CHECK_FALSE(session.arrived(12.0, moved(0.0, 0.06), moved(0.0, 0.06)));    // turned
-  CHECK_FALSE(session.arrived(12.0, goal, moved(0.001, 0.0)));               // moving
-  CHECK_FALSE(session.arrived(12.0, goal, moved(0.0, 0.005)));               // turning
-  CHECK(session.arrived(12.0, moved(0.01, 0.03), moved(0.01, 0.03)));        // near enough
-  session.set_joints(cell().start, 11.6);                                    // where the arm was before it stood
-  CHECK_FALSE(session.arrived(12.0, goal, goal));
+  CHECK(session.objection(10.31, goal, goal).empty());
+  CHECK_THAT(session.objection(10.29, goal, goal), test::says("before the arm could have stood"));
+  CHECK(session.objection(12.0, moved(0.021, 0.0), moved(0.021, 0.0)) ==
+        "the sensor is 21 mm and 0 rad from the view, 20 mm and 0.05 rad are allowed");
+  CHECK_THAT(session.objection(12.0, moved(0.0, 0.06), moved(0.0, 0.06)), test::says("0.06 rad from the view"));
+  CHECK(session.objection(12.0, goal, moved(0.001, 0.0)) ==
+        "the sensor does not stand still: it moved by 1 mm and 0 rad in 0.3 s");
+  CHECK_THAT(session.objection(12.0, goal, moved(0.0, 0.005)), test::says("0.005 rad in 0.3 s"));
+  CHECK(session.objection(12.0, moved(0.01, 0.03), moved(0.01, 0.03)).empty());  // near enough
+  session.set_joints(cell().start, 11.6);                                        // where the arm was before it stood
+  CHECK(session.objection(12.0, goal, goal) == "the last joint states are 0.4 s older than the frame");
   session.set_joints(*session.goal()->joints, 11.8);
-  CHECK(session.arrived(12.0, goal, goal));
+  CHECK(session.objection(12.0, goal, goal).empty());
 }
 
 TEST_CASE("a session leads a scan to its end, and another after it") {
@@ -71,7 +73,7 @@ TEST_CASE("a session leads a scan to its end, and another after it") {
       t += 1.0;
       const Pose pose = session.goal()->world_T_optical;
       session.set_joints(*session.goal()->joints, t);
-      REQUIRE(session.arrived(t, pose, pose));
+      REQUIRE(session.objection(t, pose, pose).empty());
       session.observe(look(pose), pose, t);
     }
     CHECK(session.state() == SessionState::done);
@@ -133,6 +135,35 @@ TEST_CASE("a view that is refused or not reached in time is followed by another"
     for (std::size_t j = 0; j < i; ++j) CHECK((goals[i].matrix() - goals[j].matrix()).norm() > 1e-3);
 }
 
+TEST_CASE("three views in a row that cannot be taken stop the scan with the last cause") {
+  ScanSession session(cell(), few_views());
+  session.start(0.0);
+  REQUIRE(session.tick(61.0));
+  CHECK(session.status() == "moving, 0 views, 1 refused (no depth image and no point cloud came)");
+  session.note("the lens is covered", 120.0);
+  REQUIRE(session.tick(122.0));
+  CHECK(session.missed_for() == "the lens is covered");
+  session.refuse(123.0);  // the caller's own reasons are not told
+  CHECK(session.status() == "moving, 0 views, 3 refused");
+  session.note("the lens is covered", 124.0);
+  const Pose third = session.goal()->world_T_optical;
+  REQUIRE(session.tick(184.0));
+  CHECK(session.state() == SessionState::paused);
+  CHECK(session.missed_for() == "no frame came for 60 s; before, the lens is covered");
+  CHECK_FALSE(session.tick(1e9));
+  // It is asked for once more, with new patience.
+  session.start(200.0);
+  CHECK((session.goal()->world_T_optical.matrix() - third.matrix()).norm() < 1e-12);
+  CHECK(session.missed() == 0);
+  session.tick(261.0);
+  session.tick(322.0);
+  CHECK(session.missed() == 2);
+  const Pose pose = session.goal()->world_T_optical;
+  session.observe(look(pose), pose, 330.0);
+  CHECK(session.missed() == 0);
+  CHECK(session.status() == "moving, 1 views, 6 refused");
+}
+
 TEST_CASE("what was seen outlives a stop, not a reset") {
   ScanSession session(cell(), few_views());
   CHECK_FALSE(session.stop());
@@ -142,7 +173,7 @@ TEST_CASE("what was seen outlives a stop, not a reset") {
   REQUIRE(session.stop());
   CHECK_FALSE(session.stop());
   CHECK_FALSE(session.goal());
-  CHECK_FALSE(session.arrived(9.0, pose, pose));
+  CHECK_FALSE(session.objection(9.0, pose, pose).empty());
   CHECK(session.pipeline().views().size() == 1);
   REQUIRE(session.start(2.0));
   CHECK(session.state() == SessionState::moving);

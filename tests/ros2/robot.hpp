@@ -124,6 +124,11 @@ class Robot {
     pass(1.0);
     tell_joints();
   }
+  /// Stand elsewhere: `metres` along x from there.
+  void go_astray(double metres) {
+    go();
+    world_T_optical_.translation().x() += metres;
+  }
   std::optional<Pose> goal() const {
     if (!chosen.last) return std::nullopt;
     Pose pose = Pose::Identity();

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The ROS 2 node as it is, with message types by rosidl and a stand-in for rclcpp and tf2 (stand_in/graph.hpp).
+#include <functional>
+
 #include "catch.hpp"
 #include "robot.hpp"
 #include "support/says.hpp"
@@ -217,7 +219,88 @@ TEST_CASE("a view that is not reached in time is followed by another") {
   Robot::pass(2.0);
   stand_in::fire_timers();
   CHECK((robot.goal()->matrix() - first.matrix()).norm() > 1e-3);
-  CHECK(Robot::said("[warn] The view was not reached in time"));
+  CHECK(Robot::said("[warn] The view was not taken in time: no depth image and no point cloud came"));
+}
+
+TEST_CASE("why a view could not be taken is told") {
+  Robot robot({{"channels.color", true}});
+  REQUIRE(robot.bring_up() == "active");
+  const auto given_up = [&](const std::function<void()>& before, const std::string& text) {
+    robot.call("start");
+    Robot::pass(58.0);
+    before();
+    Robot::pass(3.0);
+    stand_in::fire_timers();
+    INFO(robot.status.last->data);
+    CHECK(robot.status_says("moving, 0 views"));
+    CHECK(robot.status.last->data.find("(" + text) != std::string::npos);
+    CHECK(Robot::said("[warn] The view was not taken in time: " + text));
+    robot.call("stop");
+  };
+  given_up([] {}, "no depth image and no point cloud came");
+  given_up([&] { robot.depth.say(robot.image("32FC1", 4)); }, "depth images came, but no camera info");
+  given_up(
+      [&] {
+        robot.go_astray(0.05);
+        robot.look();
+      },
+      "the sensor is 50 mm and ");
+  given_up(
+      [&] {
+        robot.go();
+        Robot::pass(1.0);
+        robot.look();
+      },
+      "the last joint states are 1 s older than the frame");
+  given_up(
+      [&] {
+        robot.go();
+        robot.lost = true;
+        robot.look();
+        robot.lost = false;
+      },
+      "no transform from camera to world");
+  auto image = robot.image("32FC1", 4);
+  image.header.stamp = rclcpp::Time(std::int64_t{5000000000});
+  given_up([&] { robot.depth.say(image); },
+           "the frame is from before the arm could have stood at the view; its stamp is ");
+  CHECK(Robot::said("s behind the node's clock: sensor and node must share one"));
+  image.header.stamp = builtin_interfaces::msg::Time();
+  given_up([&] { robot.depth.say(image); }, "the frame has no usable stamp");
+  given_up(
+      [&] {
+        robot.go();
+        robot.look();
+      },
+      "the depth image's colors or labels did not come");
+}
+
+TEST_CASE("a scan that gets no frame is stopped after three views, with the cause") {
+  Robot robot;
+  REQUIRE(robot.bring_up() == "active");
+  robot.call("start");
+  const auto wait = [] {
+    Robot::pass(61.0);
+    stand_in::fire_timers();
+  };
+  wait();
+  wait();
+  CHECK(robot.status_says("moving, 0 views, 2 refused"));
+  Robot::pass(60.0);
+  robot.tell_joints(robot.joints);
+  Robot::pass(0.1);
+  stand_in::fire_timers();
+  CHECK(robot.status_says("paused, 0 views, 3 refused (no depth image and no point cloud came)"));
+  CHECK(Robot::said("came; 3 in a row: the scan stops, start goes on with this view"));
+  CHECK(robot.held_at(robot.joints));
+  const int goals = robot.joint_goal.count;
+  wait();
+  CHECK(robot.joint_goal.count == goals);
+  REQUIRE(robot.call("start").success);
+  robot.go();
+  robot.look();
+  CHECK(robot.status_says("moving, 1 views, 3 refused"));
+  CHECK(robot.status.last->data.find('(') == std::string::npos);
 }
 
 TEST_CASE("autostart waits for joints, and for somebody who moves the arm") {
