@@ -15,8 +15,8 @@ class ArmGoals {
   static constexpr double kRecent = 0.2;    ///< joint states that are older (s) do not tell where the arm is
   static constexpr double kHoldTime = 0.5;  ///< in which the arm comes to rest at the joints where it holds (s)
 
-  /// @param speed share of the joints' top speeds, above 0, at most 1
-  ArmGoals(Ros& ros, double speed) : ros_(ros), speed_(speed) {}
+  /// @param speed share of the joints' top speeds, above 0, at most 1  @param prefix of the joints' names
+  ArmGoals(Ros& ros, double speed, const std::string& prefix) : ros_(ros), speed_(speed), names_(joint_names(prefix)) {}
 
   /// The joints of a new view; once no view is wanted any more, that the arm holds. An arm that was not sent anywhere
   /// since is left alone: something else may move it.
@@ -47,7 +47,7 @@ class ArmGoals {
 
   typename Ros::JointTrajectory trajectory() const {
     typename Ros::JointTrajectory out;
-    out.joint_names.assign(kJointNames.begin(), kJointNames.end());
+    out.joint_names = names_;
     return out;
   }
 
@@ -63,6 +63,7 @@ class ArmGoals {
 
   Ros& ros_;
   double speed_;
+  std::vector<std::string> names_;
   std::size_t published_ = 0;  // ScanSession::goals() at the last goal
   bool under_way_ = false;     // the last that was published was a goal
 };

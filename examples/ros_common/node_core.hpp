@@ -83,6 +83,7 @@ class NodeCore {
 
   /// To be called twice a second or so.
   void tick() {
+    warn_of_joints();
     guarded([&] {
       if (own_.autostart && joints_heard_ && ros_.listeners("joint_goal") > 0) {
         own_.autostart = false;
@@ -101,8 +102,11 @@ class NodeCore {
   void take_info(const CameraInfoPtr& info) { info_ = info; }
 
   void take_joints(const typename Ros::JointState& message) {
-    const auto joints = joints_of(message);
-    if (!joints) return;
+    const auto joints = joints_of(message, own_.joint_prefix);
+    if (!joints) {
+      other_joints_ = message.name;
+      return;
+    }
     guarded([&] {
       session_.set_joints(*joints, ros_.seconds(message.header.stamp));
       joints_heard_ = true;
@@ -184,6 +188,17 @@ class NodeCore {
     publish();
   }
 
+  /// Once, if joint states come, but never the arm's. Those of a gripper may come first.
+  void warn_of_joints() {
+    if (joints_heard_ || warned_of_joints_ || other_joints_.empty()) return;
+    warned_of_joints_ = true;
+    std::string text = "joint_states do not name all of";
+    for (const std::string& name : joint_names(own_.joint_prefix)) text += " " + name;
+    text += "; they name";
+    for (const std::string& name : other_joints_) text += " " + name;
+    ros_.warn(text + ". Is joint_prefix right? Until they come, the last goal counts as reached");
+  }
+
   /// world_T_optical at the stamp of a frame where it is the one awaited; else why not is noted.
   template <typename Stamp>
   std::optional<Pose> pose_if_arrived(const std::string& frame, const Stamp& stamp) {
@@ -232,7 +247,8 @@ class NodeCore {
   ScanSession session_;
   FrameMatcher<Depth, ImagePtr> matcher_;
   CameraInfoPtr info_;
-  bool joints_heard_ = false;
+  bool joints_heard_ = false, warned_of_joints_ = false;
+  std::vector<std::string> other_joints_;  // names in joint states without the arm's
   NodeOutputs<Ros> outputs_;
 };
 

@@ -14,7 +14,10 @@ class NodeOutputs {
  public:
   /// @throws FileError when the folder `output` cannot be made
   NodeOutputs(Ros& ros, const NodeSetup& setup)
-      : ros_(ros), world_frame_(setup.node.world_frame), arm_(ros, setup.node.speed), files_(setup) {}
+      : ros_(ros),
+        world_frame_(setup.node.world_frame),
+        arm_(ros, setup.node.speed, setup.node.joint_prefix),
+        files_(setup) {}
 
   /// f(topic, message, latched) for everything that is published; the message only tells its type. Joint goals and
   /// chosen views are not latched: whoever connects late must not be sent off by an old one.

@@ -10,7 +10,7 @@ namespace agrisee::robot {
 
 /// The parameters of the node itself; docs/ros.md describes them.
 struct NodeParameters {
-  std::string workcell, world_frame = "world", optical_frame, output;
+  std::string workcell, world_frame = "world", optical_frame, joint_prefix, output;
   bool rectified = false, autostart = false;
   int seed = 0, threads = 1;
   double speed = 1.0;
@@ -23,6 +23,7 @@ struct NodeParameters {
     f("workcell", p.workcell);
     f("world_frame", p.world_frame);
     f("optical_frame", p.optical_frame);
+    f("joint_prefix", p.joint_prefix);
     f("output", p.output);
     f("rectified", p.rectified);
     f("autostart", p.autostart);

@@ -244,6 +244,12 @@ TEST_CASE("joints are found by name") {
   CHECK((*robot::joints_of(state) == (Joints() << 1, 2, 3, 4, 5, 6).finished()));
   state.position.pop_back();
   CHECK_FALSE(robot::joints_of(state));
+  state.name = robot::joint_names("left_");
+  CHECK(state.name.front() == "left_shoulder_pan_joint");
+  CHECK_FALSE(robot::joints_of(state));
+  CHECK_FALSE(robot::joints_of(state, "right_"));
+  REQUIRE(robot::joints_of(state, "left_"));
+  CHECK((*robot::joints_of(state, "left_"))[0] == 9.0);
 }
 
 TEST_CASE("the poses that a result is published as are where a gripper takes the fruit") {

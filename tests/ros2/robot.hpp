@@ -145,7 +145,8 @@ class Robot {
   void tell_joints(const Joints& at) {
     sensor_msgs::msg::JointState state;
     state.header.stamp = stamp();
-    state.name.assign(robot::kJointNames.rbegin(), robot::kJointNames.rend());
+    state.name = robot::joint_names(joint_prefix);
+    std::reverse(state.name.begin(), state.name.end());
     state.position.assign(at.data(), at.data() + 6);
     std::reverse(state.position.begin(), state.position.end());
     joint_states.say(state);
@@ -210,6 +211,7 @@ class Robot {
   static builtin_interfaces::msg::Time stamp() { return rclcpp::Time(stand_in::graph().now); }
 
   std::shared_ptr<rclcpp_lifecycle::LifecycleNode> node;
+  std::string joint_prefix;
   Joints joints = Workcell().start;  ///< of the last goal that it went to (rad)
   bool lost = false;                 ///< tf does not know the sensor's pose
   Ear<trajectory_msgs::msg::JointTrajectory> joint_goal{"/agrisee/joint_goal"};

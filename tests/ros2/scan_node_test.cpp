@@ -7,6 +7,7 @@
 #include "support/says.hpp"
 
 using namespace agrisee;
+using rclcpp::Parameter;
 using test::Ear;
 using test::latched;
 using test::Mouth;
@@ -301,6 +302,26 @@ TEST_CASE("a scan that gets no frame is stopped after three views, with the caus
   robot.look();
   CHECK(robot.status_says("moving, 1 views, 3 refused"));
   CHECK(robot.status.last->data.find('(') == std::string::npos);
+}
+
+TEST_CASE("joints have a prefix, and other names are noticed") {
+  Robot robot({Parameter("joint_prefix", "left_")});
+  REQUIRE(robot.bring_up() == "active");
+  robot.call("start");
+  CHECK(robot.joint_goal.last->joint_names == robot::joint_names("left_"));
+  stand_in::fire_timers();
+  CHECK_FALSE(Robot::said("[warn]"));
+  robot.tell_joints();  // without it
+  stand_in::fire_timers();
+  CHECK(Robot::said("[warn] joint_states do not name all of left_shoulder_pan_joint"));
+  CHECK(Robot::said("they name wrist_3_joint wrist_2_joint"));
+  stand_in::graph().log.clear();
+  stand_in::fire_timers();
+  CHECK_FALSE(Robot::said("joint_states"));  // once
+  robot.joint_prefix = "left_";
+  robot.tell_joints();
+  robot.call("stop");
+  CHECK(robot.held_at(robot.joints));
 }
 
 TEST_CASE("autostart waits for joints, and for somebody who moves the arm") {
