@@ -5,6 +5,7 @@
 #include <limits>
 #include <map>
 #include <rcl_interfaces/msg/parameter_descriptor.hpp>
+#include <rcl_interfaces/msg/set_parameters_result.hpp>
 #include <rclcpp_lifecycle/lifecycle_node.hpp>
 
 #include "read_parameters.hpp"
@@ -48,6 +49,19 @@ class Ros2Lookup {
         throw ParameterError("unknown parameter '" + entry.first + "'");
   }
 
+  /// The answer to those who set parameters of ours once they have been read.
+  rcl_interfaces::msg::SetParametersResult refuse_change(const std::vector<rclcpp::Parameter>& changes) const {
+    rcl_interfaces::msg::SetParametersResult answer;
+    answer.successful = true;
+    for (const rclcpp::Parameter& change : changes)
+      if (read_.count(change.get_name())) {
+        answer.successful = false;
+        answer.reason =
+            "'" + change.get_name() + "' is read when the node is configured: deactivate it and clean it up first";
+      }
+    return answer;
+  }
+
   /// Forget the parameters that have the value of their default, so that another preset may give them another one.
   void forget_defaults() {
     for (const auto& [name, value] : defaults_)
@@ -59,6 +73,7 @@ class Ros2Lookup {
  private:
   template <typename T>
   rclcpp::ParameterValue declared(const std::string& name, const T& field) {
+    read_.insert(name);
     if (node_.has_parameter(name)) return node_.get_parameter(name).get_parameter_value();
     using Stored = std::conditional_t<std::is_same_v<T, bool> || std::is_same_v<T, std::string>, T,
                                       std::conditional_t<std::is_integral_v<T>, std::int64_t, double>>;
@@ -75,6 +90,7 @@ class Ros2Lookup {
 
   rclcpp_lifecycle::LifecycleNode& node_;
   std::map<std::string, rclcpp::ParameterValue> defaults_;
+  std::set<std::string> read_;  // names of all that were asked for
 };
 
 }  // namespace agrisee::robot

@@ -111,6 +111,9 @@ class ScanNode : public rclcpp_lifecycle::LifecycleNode {
   using State = rclcpp_lifecycle::State;
 
   explicit ScanNode(const rclcpp::NodeOptions& options) : LifecycleNode("agrisee", options), lookup_(*this) {
+    on_set_ = add_on_set_parameters_callback([this](const std::vector<rclcpp::Parameter>& changes) {
+      return core_ ? lookup_.refuse_change(changes) : rcl_interfaces::msg::SetParametersResult().set__successful(true);
+    });
     Core::services([this](const std::string& name, auto call) { services_.push_back(serve("~/" + name, call)); });
   }
 
@@ -210,6 +213,7 @@ class ScanNode : public rclcpp_lifecycle::LifecycleNode {
   }
 
   Ros2Lookup lookup_;
+  OnSetParametersCallbackHandle::SharedPtr on_set_;
   std::unique_ptr<Ros2> ros_;
   std::unique_ptr<Core> core_;
   bool active_ = false;

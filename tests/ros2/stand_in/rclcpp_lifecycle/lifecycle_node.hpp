@@ -3,6 +3,7 @@
 #pragma once
 
 #include <rcl_interfaces/msg/parameter_descriptor.hpp>
+#include <rcl_interfaces/msg/set_parameters_result.hpp>
 
 #include "lifecycle_publisher.hpp"
 
@@ -60,14 +61,30 @@ class LifecycleNode : public node_interfaces::LifecycleNodeInterface {
     if (has_parameter(name)) throw std::logic_error("declared twice: " + name);
     if (!descriptor.dynamic_typing) throw std::logic_error("the stand-in has dynamic typing only: " + name);
     const auto given = parameters_->overrides.find(name);
-    return parameters_->declared[name] = given == parameters_->overrides.end() ? value : given->second;
+    const rclcpp::ParameterValue first = given == parameters_->overrides.end() ? value : given->second;
+    if (!asked({name, first}).successful) throw std::invalid_argument("refused: " + name);
+    return parameters_->declared[name] = first;
   }
   void undeclare_parameter(const std::string& name) {
     if (parameters_->declared.erase(name) == 0) throw std::logic_error("not declared: " + name);
   }
   rclcpp::Parameter get_parameter(const std::string& name) const { return {name, parameters_->declared.at(name)}; }
-  void set_parameter(const rclcpp::Parameter& parameter) {
-    parameters_->declared.at(parameter.get_name()) = parameter.get_parameter_value();
+  rcl_interfaces::msg::SetParametersResult set_parameter(const rclcpp::Parameter& parameter) {
+    auto& value = parameters_->declared.at(parameter.get_name());
+    auto answer = asked(parameter);
+    if (answer.successful) value = parameter.get_parameter_value();
+    return answer;
+  }
+  struct OnSetParametersCallbackHandle {
+    using SharedPtr = std::shared_ptr<OnSetParametersCallbackHandle>;
+    std::function<rcl_interfaces::msg::SetParametersResult(const std::vector<rclcpp::Parameter>&)> callback;
+  };
+  template <typename Callback>
+  OnSetParametersCallbackHandle::SharedPtr add_on_set_parameters_callback(Callback callback) {
+    auto handle = std::make_shared<OnSetParametersCallbackHandle>();
+    handle->callback = callback;
+    on_set_ = handle;
+    return handle;
   }
   std::shared_ptr<node_interfaces::Parameters> get_node_parameters_interface() { return parameters_; }
 
@@ -133,7 +150,14 @@ class LifecycleNode : public node_interfaces::LifecycleNodeInterface {
     return CallbackReturn::SUCCESS;
   }
 
+  /// The answer of the callback, as long as its handle lives; it is asked at declarations, too.
+  rcl_interfaces::msg::SetParametersResult asked(const rclcpp::Parameter& parameter) const {
+    if (const auto handle = on_set_.lock()) return handle->callback({parameter});
+    return rcl_interfaces::msg::SetParametersResult().set__successful(true);
+  }
+
   std::string name_;
+  std::weak_ptr<OnSetParametersCallbackHandle> on_set_;
   State state_{"unconfigured"};
   rclcpp::Clock::SharedPtr clock_ = std::make_shared<rclcpp::Clock>();
   std::shared_ptr<node_interfaces::Parameters> parameters_ = std::make_shared<node_interfaces::Parameters>();
