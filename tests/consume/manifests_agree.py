@@ -45,6 +45,11 @@ agree("package.xml, license", package.findtext("license"), "BSD-3-Clause")
 agree("package.xml, build_type", package.findtext("export/build_type"), "cmake")
 depends = {e.text for e in package if e.tag in ("depend", "build_depend", "test_depend")}
 agree("package.xml, libraries", depends, names(2))
+for folder in ("examples/ros1", "examples/ros2"):
+    agree(f"{folder}/package.xml, version", xml.parse(root / folder / "package.xml").findtext("version"), version)
+    agree(f"{folder}/CMakeLists.txt, version of agrisee",
+          re.search(r"find_package\(agrisee ([0-9.]+) ", (root / folder / "CMakeLists.txt").read_text()).group(1),
+          version.rsplit(".", 1)[0])
 
 vcpkg = json.loads((root / "vcpkg.json").read_text())
 agree("vcpkg.json, version", vcpkg["version"], version)
@@ -105,4 +110,4 @@ agree("conanfile.py, components", [p.cmake_target_name for p in parts.values()],
       ["agrisee::headers", "agrisee::agrisee", "agrisee::study", "agrisee::io"])
 agree("conanfile.py, libraries of the components",
       {r.split("::")[0] for p in parts.values() for r in p.requires if "::" in r}, names(1))
-print(f"CHANGELOG.md, package.xml, vcpkg.json and conanfile.py agree on {version}")
+print(f"CHANGELOG.md, three package.xml, vcpkg.json and conanfile.py agree on {version}")
