@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The files beside the ROS 2 node: the launch file runs against recorders in place of ROS's launch packages, the layout of RViz shows
-topics that are published, and CMake and package.xml name the same packages.
+"""The files beside the ROS nodes: ROS 2's launch file runs against recorders in place of ROS's launch packages, the layout of RViz shows
+topics that are published, CMake and package.xml name the same packages, and ROS 1's demonstration has all arguments of its simulation.
 
     files_test.py EXAMPLES    # the project's folder examples; 77 where PyYAML is missing
 """
@@ -131,6 +131,20 @@ def test_packages():
     assert included <= depends, included - depends
 
 
-for test in (test_launch, test_rviz, test_packages):
+def test_demo():
+    launch = xml.etree.ElementTree.parse(EXAMPLES / 'ros1/launch/demo.launch').getroot()
+    simulation = (EXAMPLES / 'ros1/sim_node.cpp').read_text(encoding='utf-8')
+    arguments = {e.attrib['name']: e.attrib for e in launch.findall('arg')}
+    read = re.findall(r'read\("(\w+)"', simulation)
+    assert set(read) == {e.attrib['name'] for e in launch.find('node').findall('param')}, read
+    assert set(read) <= set(arguments), read
+    models = (EXAMPLES / '../include/agrisee/study/noise_model.hpp').read_text(encoding='utf-8')
+    known = re.search(r'kNoiseNames =\s*"([^"]*)"', models).group(1)
+    words = [set(re.findall(r'[a-z][a-z0-9-]+', re.sub(r'\(.*?\)', '', text))) for text in (known, arguments['noise']['doc'])]
+    assert words[0] - {'rough'} <= words[1], words  # which is of the poses, too
+
+
+
+for test in (test_launch, test_rviz, test_packages, test_demo):
     test()
     print('ok', test.__name__)
