@@ -86,7 +86,7 @@ int main(int argc, char** argv) {
   ros::NodeHandle node;
   tf2_ros::Buffer buffer;
   tf2_ros::TransformListener listener(buffer);
-  Latest<std_msgs::String> status(node, "/agrisee/status");
+  Latest<std_msgs::String> status(node, "/agrisee/status"), json(node, "/agrisee/fruits_json");
   Latest<geometry_msgs::PoseArray> fruits(node, "/agrisee/fruits"), bodies(node, "/agrisee/bodies"),
       candidates(node, "/agrisee/candidate_views"), pre_grasps(node, "/agrisee/pre_grasps");
   Latest<visualization_msgs::MarkerArray> fruit_markers(node, "/agrisee/fruit_markers"),
@@ -158,10 +158,16 @@ int main(int argc, char** argv) {
   spin_until(60.0, [&] { return fruits.last() && fruits.last()->poses.size() == expected.size() && held; });
 
   expect(fruits.last() && bodies.last() && cloud.last() && fruit_markers.last() && view_markers.last() &&
-             pre_grasps.last(),
+             pre_grasps.last() && json.last(),
          "all topics were heard");
   if (failures) return 1;
   expect(fruits.last()->header.frame_id == "world", "poses are in world");
+  const ros::Time stamp = fruits.last()->header.stamp;
+  expect(bodies.last()->header.stamp == stamp && pre_grasps.last()->header.stamp == stamp &&
+             cloud.last()->header.stamp == stamp && fruit_markers.last()->markers.front().header.stamp == stamp &&
+             json.last()->data.find(R"({"stamp": {"sec": )" + std::to_string(stamp.sec) + R"(, "nanosec": )" +
+                                    std::to_string(stamp.nsec) + R"(}, "fruits": [)") == 0,
+         "what is published together has one stamp");
   expect(fruits.last()->poses.size() == expected.size(), std::to_string(fruits.last()->poses.size()) + " fruit, " +
                                                              std::to_string(expected.size()) + " by agrisee scan");
   double worst_pose = 0.0, worst_center = 0.0;

@@ -14,6 +14,7 @@ esac
 printf 'max_views: 6\ngain:\n  dwell: 1\n' >params.yaml  # a whole number for a real one, and a group
 make_truss "$agrisee" 5
 "$agrisee" scan truss/scene.yaml -o result --noise $noise --seed 1 --params params.yaml 2>/dev/null || exit 1
+echo "output: '$work/by_node'" >>params.yaml  # of the node alone
 
 start_master
 launch noise:=$noise output:=$output seed:=1 autostart:=false rviz:=false
@@ -26,5 +27,8 @@ if kill -0 $recording 2>/dev/null; then
   echo "FAILED: roslaunch has ended"
   code=1
 fi
+for file in run.json fruits.json cloud.ply report.html truss.png; do # of the only scan that was taken to its end
+  [ $code != 0 ] || [ -s by_node/*Z/$file ] || { echo "FAILED: the node has not written $file"; code=1; }
+done
 [ $code = 0 ] || { echo "--- launch.txt"; tail -n 60 launch.txt; }
 exit $code
