@@ -8,13 +8,14 @@
 #include <agrisee/cloud/body_verdict.hpp>
 #include <agrisee/cloud/fit.hpp>
 #include <agrisee/cloud/found_body.hpp>
+#include <agrisee/cloud/free_points.hpp>
 #include <agrisee/cloud/mask_evidence.hpp>
 #include <agrisee/cloud/parameters.hpp>
 #include <agrisee/cloud/seen_through.hpp>
 #include <agrisee/core/log_odds.hpp>
-#include <agrisee/neighbors/grid.hpp>
 
 #include <algorithm>
+#include <iterator>
 #include <optional>
 #include <string>
 #include <utility>
@@ -44,17 +45,16 @@ class Competition {
  public:
   Competition(const PointCloud<S>& cloud, const BodyParameters& parameters, const SeenThrough& seen_through,
               const MaskEvidence& masks, const SeenOn& seen_on)
-      : cloud_(cloud),
-        parameters_(parameters),
+      : parameters_(parameters),
         seen_through_(seen_through),
         masks_(masks),
         seen_on_(seen_on),
-        grid_(cloud, static_cast<S>(parameters.cell())),
-        taken_(cloud.size(), 0) {}
+        free_(cloud, parameters) {}
 
   /// Fit and judge the candidates. Those that score enough enter the competition.
   void enter(const std::vector<BodyCandidate>& candidates) {
     std::vector<Ellipsoid> known;  // where proposals ended up; many end up at the same place
+    std::vector<Outgrown> outgrown;
     for (const BodyCandidate& c : candidates) {
       throw_if_cancelled();
       if (!parameters_.plausible(c.body.mean_radius())) {
@@ -70,9 +70,9 @@ class Competition {
         ++(counts_.*(c.doubt ? c.doubt : fault));
         continue;
       }
-      std::optional<Entry> wider = outgrown(e);
-      if (!wider || wider->confidence < e.confidence) entries_.push_back(std::move(e));
-      if (wider) entries_.push_back(std::move(*wider));
+      Outgrown* const wider = outgrow(e, outgrown);
+      if (!wider || wider->entry->confidence < e.confidence) entries_.push_back(std::move(e));
+      if (wider && !std::exchange(wider->entered, true)) entries_.push_back(*wider->entry);
     }
   }
 
@@ -87,7 +87,7 @@ class Competition {
       ++counts_.taken;
       found.push_back({best->fit, *best->found_by, best->verdict.coverage, best->confidence,
                        best->mask_log_odds.has_value(), best->prior});
-      take_points(best->fit.body);
+      free_.take(best->fit.body);
       judge_anew(best->fit.body);
     }
   }
@@ -101,7 +101,7 @@ class Competition {
     sizes_ = sizes_of(found);
     found.clear();
     counts_.taken = counts_.overlapping = 0;
-    std::fill(taken_.begin(), taken_.end(), 0);
+    free_.release();
     entries_ = entered_;
     for (Entry& e : entries_) {
       throw_if_cancelled();
@@ -149,6 +149,14 @@ class Competition {
     double prior = 0.0;                        // log-odds by the masks
   };
 
+  /// Where entries grew to with a wide gate, roughly, and the entry that a better fit made of it; empty if it may not
+  /// win.
+  struct Outgrown {
+    Ellipsoid place;
+    std::optional<Entry> entry;
+    bool entered = false;  // into the competition
+  };
+
   /// The sizes of the bodies with at least some confidence.
   static std::vector<KnownSize> sizes_of(const std::vector<FoundBody>& found, double least = 0.0) {
     std::vector<KnownSize> sizes;
@@ -178,20 +186,11 @@ class Competition {
   /// outline.
   void prefer_points(Entry& e) {
     constexpr double kEnough = 0.5;
-    const auto fit = refine(e.fit.body, parameters_.fit);
+    const auto fit = free_.fit(e.fit.body, parameters_.fit);
     if (!fit || !plausible(fit->body, parameters_)) return;
-    if (judge(cloud_, grid_, taken_, fit->body, parameters_, {}).coverage < kEnough) return;
+    if (free_.judge(fit->body, {}).coverage < kEnough) return;
     e.fit = *fit;
     e.mask_log_odds.reset();
-  }
-
-  /// Fit a body to the free points near it.
-  std::optional<EllipsoidFit> refine(const Ellipsoid& start, const FitParameters& fit) {
-    near_.clear();
-    grid_.visit(start.center.cast<S>(), static_cast<S>(kNearBody * start.mean_radius()), [&](Index i, S) {
-      if (!taken_[static_cast<std::size_t>(i)]) near_.push_back(i);
-    });
-    return fit_ellipsoid(cloud_, near_, start, fit);
   }
 
   /// How a body is fitted to few points, to see where it ends up.
@@ -211,7 +210,7 @@ class Competition {
   /// @param known where others ended up; receives this one's place
   /// @return empty if it ends up where another did, or is not worth a better fit, or has none
   std::optional<EllipsoidFit> fitted(const BodyCandidate& candidate, std::vector<Ellipsoid>& known) {
-    const auto first = refine(candidate.body, rough());
+    const auto first = free_.fit(candidate.body, rough());
     if (!first) {
       ++(counts_.*(candidate.doubt ? candidate.doubt : &BodyCounts::not_fitted));
       return std::nullopt;
@@ -223,43 +222,52 @@ class Competition {
       ++(counts_.*(candidate.doubt ? candidate.doubt : &BodyCounts::doubtful));
       return std::nullopt;
     }
-    auto fit = refine(first->body, parameters_.fit);
+    auto fit = free_.fit(first->body, parameters_.fit);
     if (!fit) ++(counts_.*(candidate.doubt ? candidate.doubt : &BodyCounts::not_fitted));
     return fit;
   }
 
-  /// Another body about the place of an entry, which explains far more of the points there; empty if there is none, or
-  /// it may not win. Lobed fruit, such as peppers, are no ellipsoids: a fit may settle on some lobes and leave others
-  /// out. With a wide gate it takes in the surface that goes on beyond them.
-  std::optional<Entry> outgrown(const Entry& e) {
+  /// Another body about the place of an entry, which explains far more of the points there. Lobed fruit, such as
+  /// peppers, are no ellipsoids: a fit may settle on some lobes and leave others out. With a wide gate it takes in the
+  /// surface that goes on beyond them.
+  /// @param known where other entries grew to; receives this one's place
+  /// @return one of `known`; null if there is no such body, or it may not win
+  Outgrown* outgrow(const Entry& e, std::vector<Outgrown>& known) {
     constexpr double kFarMore = 1.3, kLobeSpread = 0.06;  // the second: lobes' standard deviation / radius
     const Verdict& v = e.verdict;
     // Points beyond those on the body are clutter near it.
-    if (e.mask_log_odds || v.clutter < kFarMore - 1.0) return std::nullopt;
-    const double least = kFarMore * static_cast<double>(v.support);
+    if (e.mask_log_odds || v.clutter < kFarMore - 1.0) return nullptr;
     FitParameters wide = rough();
     wide.max_noise = std::max(wide.max_noise, kLobeSpread);
     wide.noise = std::max(wide.noise, kLobeSpread * e.fit.body.mean_radius());
-    const auto first = refine(e.fit.body, wide);
-    if (!first || alike(first->body, e.fit.body)) return std::nullopt;
-    const auto fit = refine(first->body, parameters_.fit);
-    if (!fit) return std::nullopt;
-    Entry out = e;
-    out.fit = *fit;
-    out.prior = prior_of(fit->body);
-    if (assess(out) || static_cast<double>(out.verdict.support) < least) return std::nullopt;
-    return out;
+    const auto first = free_.fit(e.fit.body, wide);
+    if (!first || alike(first->body, e.fit.body)) return nullptr;
+    auto place =
+        std::find_if(known.begin(), known.end(), [&](const Outgrown& o) { return alike(o.place, first->body); });
+    if (place == known.end()) {
+      known.push_back({first->body, e});
+      place = std::prev(known.end());
+      std::optional<Entry>& grown = place->entry;
+      const auto fit = free_.fit(first->body, parameters_.fit);
+      if (fit) {
+        grown->fit = *fit;
+        grown->prior = prior_of(fit->body);
+      }
+      if (!fit || assess(*grown)) grown.reset();
+    }
+    const double least = kFarMore * static_cast<double>(v.support);
+    return place->entry && static_cast<double>(place->entry->verdict.support) >= least ? &*place : nullptr;
   }
 
-  /// Whether a rough fit, to the points of near_, is so unlike a fruit that a better one is not worth its time. Size,
-  /// score or roundness say so of most leaves. In a single view, which nothing follows, and with masks, which may know
-  /// better, only the probability does.
+  /// Whether a rough fit, to the free points near it, is so unlike a fruit that a better one is not worth its time.
+  /// Size, score or roundness say so of most leaves. In a single view, which nothing follows, and with masks, which may
+  /// know better, only the probability does.
   bool hopeless(const EllipsoidFit& fit) const {
     constexpr double kTooLarge = 1.3, kShareOfLeast = 0.25;  // margins: a better fit may be smaller, or rounder
     constexpr std::size_t kFlatSurely = 60;                  // points that show whether a surface is round
     const bool strict = !seen_on_ && !masks_.log_odds;
     if (strict && fit.body.mean_semi_axis() > kTooLarge * parameters_.radius_max) return true;
-    const Verdict v = judge_quickly(cloud_, near_, taken_, fit.body, parameters_, static_cast<bool>(seen_on_));
+    const Verdict v = free_.judge_quickly(fit.body, static_cast<bool>(seen_on_));
     if (strict && v.score() < kShareOfLeast * parameters_.min_coverage) return true;
     if (strict && v.support >= kFlatSurely && v.roundness < kShareOfLeast * parameters_.min_roundness) return true;
     const double least = 0.1 * kHopeless * parameters_.min_confidence;
@@ -273,7 +281,7 @@ class Competition {
   /// @return the count of the first test that it fails; null when it is alive
   std::size_t BodyCounts::*assess(Entry& e) const {
     const bool right_size = plausible(e.fit.body, parameters_);
-    e.verdict = judge(cloud_, grid_, taken_, e.fit.body, parameters_, seen_through_, seen_on_);
+    e.verdict = free_.judge(e.fit.body, seen_through_, seen_on_);
     e.confidence = fruit_probability(e.verdict, e.fit, parameters_, e.prior);
     if (e.mask_log_odds) {  // little of it may show: the depths under the masks have decided
       e.confidence = from_log_odds(*e.mask_log_odds - against_masks(e.fit.body, e.verdict));
@@ -317,21 +325,6 @@ class Competition {
     });
   }
 
-  /// Take the points that a body explains: those on it within a margin, and everything inside it, such as points in the
-  /// dimple at its calyx.
-  void take_points(const Ellipsoid& body) {
-    const double margin = 1.5 * parameters_.near(body.mean_radius());
-    const double cos_loose = loose_cosine(parameters_);
-    grid_.visit(body.center.cast<S>(), static_cast<S>(kNearBody * body.mean_radius()), [&](Index index, S) {
-      const auto i = static_cast<std::size_t>(index);
-      const Eigen::Vector3d p = cloud_.points[i].template cast<double>();
-      const auto foot = body.foot(p);
-      if (foot.distance < margin &&
-          (foot.distance < -margin || foot.normal.dot(cloud_.normals[i].template cast<double>()) >= cos_loose))
-        taken_[i] = 1;
-    });
-  }
-
   /// Judge the living entries near a body that has just won, and fit those again that lost points to it.
   void judge_anew(const Ellipsoid& body) {
     for (Entry& e : entries_) {
@@ -342,7 +335,7 @@ class Competition {
       const std::size_t support = e.verdict.support;
       assess(e);  // most end here: their points are taken
       if (!e.alive || e.mask_log_odds || e.verdict.support == support) continue;
-      if (const auto again = refine(e.fit.body, parameters_.fit)) {
+      if (const auto again = free_.fit(e.fit.body, parameters_.fit)) {
         e.fit = *again;
         e.prior = prior_of(e.fit.body);
         assess(e);
@@ -352,18 +345,15 @@ class Competition {
     }
   }
 
-  const PointCloud<S>& cloud_;
   const BodyParameters& parameters_;
   const SeenThrough& seen_through_;
   const MaskEvidence& masks_;
   const SeenOn& seen_on_;
-  Grid<S> grid_;
-  std::vector<char> taken_;  // whether a point belongs to a body that has won
+  FreePoints<S> free_;
   std::vector<Entry> entries_;
   std::vector<Entry> entered_;    // as they were before the first body won
   std::vector<KnownSize> sizes_;  // of the fruit found then
   BodyCounts counts_;
-  Indices near_;  // scratch of refine()
 };
 
 }  // namespace detail
