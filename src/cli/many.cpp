@@ -239,13 +239,19 @@ int run_jobs(const std::vector<Job>& jobs, const Shard& shard, const std::string
   make_folder(output);
   const StopMessage message("agrisee: stopped; the same command goes on, what is done is skipped");
   const fs::path summary = fs::path(output) / summary_name(shard);
-  std::vector<SummaryRow> rows;
+  Summary list;
+  std::vector<SummaryRow>& rows = list.rows;
   for (std::size_t i = shard.index - 1; i < jobs.size(); i += shard.count) {
     rows.emplace_back();
     rows.back().input = jobs[i].input;
     rows.back().folder = jobs[i].folder;
   }
-  write_summary(summary, rows);  // if this process is killed, it tells what is open
+  if (shard.count > 1) {
+    std::vector<std::string> inputs;
+    for (const Job& job : jobs) inputs.push_back(job.input);
+    list.list = list_mark(inputs);
+  }
+  write_summary(summary, list);  // if this process is killed, it tells what is open
   std::vector<std::string> failures;
   std::size_t done_before = 0;
   for (std::size_t k = 0; k < rows.size(); ++k) {
@@ -253,9 +259,9 @@ int run_jobs(const std::vector<Job>& jobs, const Shard& shard, const std::string
     const bool worked = do_job({row.input, row.folder}, fs::path(output) / row.folder, command, row);
     if (!row.message.empty()) failures.push_back(row.input + ": " + row.message);
     done_before += !worked;
-    if (worked) write_summary(summary, rows);
+    if (worked) write_summary(summary, list);
   }
-  write_summary(summary, rows);
+  write_summary(summary, list);
   std::cout << rows.size() << " inputs, " << (done_before > 0 ? std::to_string(done_before) + " done before, " : "")
             << failures.size() << " failed: " << summary.string() << "\n";
   for (const std::string& failure : failures) std::cerr << "agrisee: failed: " << failure << "\n";

@@ -28,19 +28,27 @@ int print_unfinished(const fs::path& folder) {
   return kSuccess;
 }
 
+/// Why the summaries of shards are not those of a whole list; empty: they are.
+std::string what_is_missing(const fs::path& folder, const ShardSummaries& shards) {
+  if (!shards.missing.empty()) {
+    const std::string first = (folder / summary_name({shards.missing.front(), shards.count})).string();
+    return first + ": is missing" +
+           (shards.missing.size() > 1 ? "; shards " + comma_list(shards.missing) + " have no summary" : "");
+  }
+  if (shards.stale.empty()) return "";
+  return folder.string() + ": the shards have not seen the same list of inputs, as when files came while they ran. " +
+         "Run shards " + comma_list(shards.unfinished()) + " again; what is done is skipped";
+}
+
 /// Join DIR/summary-I-of-N.csv of all shards to DIR/summary.csv.
-/// @param must whether there have to be summaries
-/// @return kBadInput if any input is still open, or, unless they must be there, a summary is missing
-/// @throws FileError if a summary that must be there is missing
+/// @param must whether there have to be summaries, of all shards
+/// @return kBadInput if any input is still open, or, unless they must be whole, a summary is missing or stale
+/// @throws FileError if a summary that must be there is missing, or shards have not seen the same list
 int join_summaries(const fs::path& folder, bool must) {
   const ShardSummaries shards = read_shards(folder);
   if (shards.count == 0 && !must) return kSuccess;
   if (shards.count == 0) throw FileError(folder.string() + ": holds no summary of a shard (summary-I-of-N.csv)");
-  if (!shards.missing.empty()) {
-    const bool several = shards.missing.size() > 1;
-    const std::string message = (folder / summary_name({shards.missing.front(), shards.count})).string() +
-                                ": is missing" +
-                                (several ? "; shards " + comma_list(shards.missing) + " have no summary" : "");
+  if (const std::string message = what_is_missing(folder, shards); !message.empty()) {
     if (must) throw FileError(message);
     std::cerr << "agrisee: " << message << "\n";
     return kBadInput;
@@ -49,7 +57,7 @@ int join_summaries(const fs::path& folder, bool must) {
   const auto count = [&](const char* status) {
     return std::count_if(rows.begin(), rows.end(), [&](const SummaryRow& row) { return row.status == status; });
   };
-  write_summary(folder / "summary.csv", rows);
+  write_summary(folder / "summary.csv", {rows, ""});
   std::cout << rows.size() << " results of " << shards.count << " shards, " << count("failed")
             << " failed: " << (folder / "summary.csv").string() << "\n";
   if (count("open") == 0) return kSuccess;

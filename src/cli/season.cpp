@@ -54,7 +54,7 @@ struct Found {
 void collect_scans(const fs::path& folder, Found& found) {
   std::error_code error;
   std::vector<SummaryRow> list;
-  if (fs::exists(folder / "summary.csv", error)) list = read_summary(folder / "summary.csv");
+  if (fs::exists(folder / "summary.csv", error)) list = read_summary(folder / "summary.csv").rows;
   std::map<std::string, std::string> folder_of;
   for (const SummaryRow& row : list) folder_of[row.input] = row.folder;
   const std::vector<fs::path> results = season::result_folders(folder);

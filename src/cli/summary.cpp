@@ -2,9 +2,11 @@
 #include "summary.hpp"
 
 #include <agrisee/io/files.hpp>
+#include <agrisee/io/fingerprint.hpp>
 
 #include <algorithm>
 #include <cstdio>
+#include <cstdlib>
 #include <fstream>
 #include <map>
 #include <optional>
@@ -16,6 +18,12 @@ namespace agrisee::cli {
 namespace {
 
 constexpr const char* kSummaryHeader = "input,folder,status,fruits,views,stop_reason,seconds,message";
+constexpr const char* kListColumn = ",list";  ///< in the summary of a shard
+
+/// Whether a summary begins with this line. Shards of older versions have no column `list`.
+bool is_header(std::string_view line) {
+  return line == kSummaryHeader || line == std::string(kSummaryHeader) + kListColumn;
+}
 
 /// The shard that the name of a summary states; none for another name.
 std::optional<Shard> shard_of(const std::string& name) {
@@ -30,6 +38,38 @@ bool is_done(const std::vector<SummaryRow>& rows) {
   return std::all_of(rows.begin(), rows.end(), [](const SummaryRow& row) { return row.status == "ok"; });
 }
 
+/// How many of `inputs` are those of shard `index` of `count`.
+std::size_t size_of_shard(std::size_t inputs, std::size_t index, std::size_t count) {
+  return inputs < index ? 0 : (inputs - index) / count + 1;
+}
+
+/// The shards that did not see the list that was written last: those of another list, of too few or too many inputs, or
+/// that share an input.
+/// @param lists the list of each shard; empty: not known, as it is of older versions and of shards without input
+/// @param last the list that was written last; empty: not known
+std::vector<std::size_t> stale_shards(const ShardSummaries& shards, const std::vector<std::string>& lists,
+                                      const std::string& last) {
+  std::size_t inputs = 0;
+  for (const auto& part : shards.parts) inputs += part.size();
+  if (!last.empty()) inputs = std::strtoull(last.c_str(), nullptr, 10);
+  const bool known = !last.empty() || shards.missing.empty();  // how many inputs there are
+  const std::set<std::size_t> missing(shards.missing.begin(), shards.missing.end());
+  std::map<std::string, std::size_t> shard_of_input;
+  std::set<std::size_t> out;
+  for (std::size_t i = 1; i <= shards.count; ++i) {
+    if (missing.count(i) > 0) continue;
+    const auto& part = shards.parts[i - 1];
+    const bool other = !lists[i - 1].empty() && lists[i - 1] != last;
+    if (other || (known && part.size() != size_of_shard(inputs, i, shards.count))) out.insert(i);
+  }
+  for (std::size_t i = 1; i <= shards.count; ++i) {
+    if (out.count(i) > 0) continue;
+    for (const SummaryRow& row : shards.parts[i - 1])
+      if (const auto [there, is_new] = shard_of_input.emplace(row.input, i); !is_new) out.insert({there->second, i});
+  }
+  return {out.begin(), out.end()};
+}
+
 }  // namespace
 
 std::string summary_name(const Shard& shard) {
@@ -42,32 +82,42 @@ bool is_summary(const std::filesystem::path& path) {
   if (name != "summary.csv" && !shard_of(name)) return false;
   std::string first;
   std::ifstream file(path);
-  return std::getline(file, first) && first == kSummaryHeader;
+  return std::getline(file, first) && is_header(first);
 }
 
-void write_summary(const std::filesystem::path& path, const std::vector<SummaryRow>& rows) {
+std::string list_mark(const std::vector<std::string>& inputs) {
+  io::Fingerprint print;
+  for (const std::string& input : inputs) print.add(input + "\n");
+  return std::to_string(inputs.size()) + ":" + print.text();
+}
+
+void write_summary(const std::filesystem::path& path, const Summary& summary) {
   io::CsvWriter csv;
-  for (const SummaryRow& row : rows) {
+  for (const SummaryRow& row : summary.rows) {
     for (const std::string* cell :
          {&row.input, &row.folder, &row.status, &row.fruits, &row.views, &row.stop_reason, &row.seconds, &row.message})
       csv.cell(*cell);
+    if (!summary.list.empty()) csv.cell(summary.list);
     csv.end_row();
   }
-  io::write_file(path, std::string(kSummaryHeader) + "\n" + csv.text());
+  io::write_file(path, std::string(kSummaryHeader) + (summary.list.empty() ? "" : kListColumn) + "\n" + csv.text());
 }
 
-std::vector<SummaryRow> read_summary(const std::filesystem::path& path) {
+Summary read_summary(const std::filesystem::path& path) {
   const io::Bytes bytes = io::read_bytes(path);
   io::Lines lines(bytes.view());
   std::string_view line;
-  if (!lines.next(line) || line != kSummaryHeader) io::fail(path, "is not a summary of many scans");
-  std::vector<SummaryRow> rows;
+  if (!lines.next(line) || !is_header(line)) io::fail(path, "is not a summary of many scans");
+  const std::size_t columns = line == kSummaryHeader ? 8 : 9;
+  Summary out;
   std::vector<std::string> cells;
   while (lines.next_filled(line)) {
-    if (!io::split_csv(line, cells) || cells.size() != 8) io::fail(path, lines.number(), "expected 8 cells");
-    rows.push_back({cells[0], cells[1], cells[2], cells[3], cells[4], cells[5], cells[6], cells[7]});
+    if (!io::split_csv(line, cells) || cells.size() != columns)
+      io::fail(path, lines.number(), "expected " + std::to_string(columns) + " cells");
+    out.rows.push_back({cells[0], cells[1], cells[2], cells[3], cells[4], cells[5], cells[6], cells[7]});
+    if (columns == 9) out.list = cells[8];
   }
-  return rows;
+  return out;
 }
 
 std::vector<SummaryRow> ShardSummaries::rows() const {
@@ -82,11 +132,11 @@ std::vector<SummaryRow> ShardSummaries::rows() const {
 }
 
 std::vector<std::size_t> ShardSummaries::unfinished() const {
-  std::vector<std::size_t> out = missing;
+  std::set<std::size_t> out(missing.begin(), missing.end());
+  out.insert(stale.begin(), stale.end());
   for (std::size_t i = 0; i < parts.size(); ++i)
-    if (!is_done(parts[i])) out.push_back(i + 1);
-  std::sort(out.begin(), out.end());
-  return out;
+    if (!is_done(parts[i])) out.insert(i + 1);
+  return {out.begin(), out.end()};
 }
 
 ShardSummaries read_shards(const std::filesystem::path& folder) {
@@ -118,11 +168,21 @@ ShardSummaries read_shards(const std::filesystem::path& folder) {
     io::fail(folder, "holds the summary of one of " + std::to_string(found.begin()->first) + " shards, at most " +
                          std::to_string(kMostShards) + " are possible");
   out.count = found.begin()->first;
+  std::vector<std::string> lists(out.count);
+  auto last = std::pair(std::filesystem::file_time_type::min(), std::string());  // when it was written, and what it is
   for (std::size_t i = 1; i <= out.count; ++i) {
-    const bool is_there = found.begin()->second.count(i) > 0;
-    if (!is_there) out.missing.push_back(i);
-    out.parts.push_back(is_there ? read_summary(folder / summary_name({i, out.count})) : std::vector<SummaryRow>());
+    out.parts.emplace_back();
+    if (found.begin()->second.count(i) == 0) {
+      out.missing.push_back(i);
+      continue;
+    }
+    const std::filesystem::path path = folder / summary_name({i, out.count});
+    Summary summary = read_summary(path);
+    out.parts.back() = std::move(summary.rows);
+    lists[i - 1] = summary.list;
+    if (!summary.list.empty()) last = std::max(last, {std::filesystem::last_write_time(path, ignored), summary.list});
   }
+  out.stale = stale_shards(out, lists, last.second);
   return out;
 }
 

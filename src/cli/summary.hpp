@@ -27,21 +27,31 @@ std::string summary_name(const Shard& shard);
 /// Whether a file is a summary, or that of a shard, by its name and first line.
 bool is_summary(const std::filesystem::path& path);
 
-/// Write a summary. @throws FileError when it cannot be written
-void write_summary(const std::filesystem::path& path, const std::vector<SummaryRow>& rows);
+/// A summary, or that of a shard.
+struct Summary {
+  std::vector<SummaryRow> rows;
+  std::string list;  ///< of a shard: what the whole list is known by (list_mark); empty: not known
+};
+
+/// What a list of inputs is known by: their number and a fingerprint, "12:0123456789abcdef".
+std::string list_mark(const std::vector<std::string>& inputs);
+
+/// Write a summary; that of a shard has one more column, `list`. @throws FileError when it cannot be written
+void write_summary(const std::filesystem::path& path, const Summary& summary);
 
 /// Read a summary. @throws FileError if it is missing or something else
-std::vector<SummaryRow> read_summary(const std::filesystem::path& path);
+Summary read_summary(const std::filesystem::path& path);
 
 /// The summaries of all shards of a folder.
 struct ShardSummaries {
   std::size_t count = 0;                       ///< number of shards; 0: there is no summary of a shard
   std::vector<std::size_t> missing;            ///< shards without a summary: never started
+  std::vector<std::size_t> stale;              ///< shards that saw another list than the shard that wrote last
   std::vector<std::vector<SummaryRow>> parts;  ///< of each shard; empty where it is missing
 
   /// The rows of all shards in the order of the list.
   std::vector<SummaryRow> rows() const;
-  /// The shards to run again: those that are missing, and those with an input that is open or failed.
+  /// The shards to run again: those that are missing or stale, and those with an input that is open or failed.
   std::vector<std::size_t> unfinished() const;
 };
 

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Lists that skip what is done, the database of a season, and its page.
 
-  python3 season.py AGRISEE WORKDIR CASE      keyed, interrupted, database or million; exit code 77: built without SQLite
+  python3 season.py AGRISEE WORKDIR CASE      one of the cases below; exit code 77: built without SQLite
 """
 import fcntl
 import json
@@ -190,6 +190,60 @@ def interrupted():
         file.write("of another program\n")
     run("scan", "in/t1/scene.yaml", "-o", "single", "--max-views", "1", *FEW_FILES)
     assert "single: is a result itself (run.json)" in run(*scan, "single", code=1)
+
+
+@case
+def shards():
+    """Shards that saw different lists are not merged."""
+    def shard(text, code=0):
+        return process("--shard", text, code=code)
+
+    def merged(code=0):
+        return run("merge", "out", code=code), run("merge", "out", "--unfinished").strip()
+
+    for name in "abd":
+        ball(f"in/{name}.ply")
+    shard("1/2")
+    ball("in/c.ply")
+    shard("2/2")
+    told, left = merged(code=2)
+    assert "not seen the same list" in told and "Run shards 1 again" in told and left == "1", (told, left)
+    assert not os.path.exists("out/summary.csv")
+    shard("1/2")
+    assert "4 results of 2 shards, 0 failed" in merged()[0] and merged()[1] == ""
+    with open("out/summary.csv", encoding="utf-8") as file:
+        assert [line.split(",")[0] for line in file] == ["input", *(f"in/{name}.ply" for name in "abcd")]
+    # A list may shrink, and a shard have no input.
+    for name in "cd":
+        os.remove(f"in/{name}.ply")
+    shard("2/2")
+    assert "Run shards 1 again" in merged(code=2)[0]
+    shard("1/2")
+    assert "2 results of 2 shards" in merged()[0]
+    for index in 1, 2:
+        os.remove(f"out/summary-{index}-of-2.csv")
+        shard(f"{index}/3")
+    shard("3/3")
+    assert "2 results of 3 shards" in merged()[0]
+    ball("in/c.ply")
+    shard("1/3")
+    shard("2/3")
+    assert merged(code=2)[1] == "3", merged(code=2)
+    shard("3/3")
+    assert "3 results of 3 shards" in merged()[0]
+    # Summaries of older versions do not tell the list: but no input may be there twice.
+    for index in 1, 2, 3:
+        with open(f"out/summary-{index}-of-3.csv", encoding="utf-8") as file:
+            lines = [line.rsplit(",", 1)[0] + "\n" for line in file]
+        with open(f"out/summary-{index}-of-3.csv", "w", encoding="utf-8") as file:
+            file.writelines(lines)
+    assert "3 results of 3 shards" in merged()[0]
+    shutil.copy("out/summary-1-of-3.csv", "out/summary-3-of-3.csv")
+    assert merged(code=2)[1] == "1,3"
+    shutil.copy("out/summary-1-of-3.csv", "out/summary-2-of-3.csv")
+    with open("out/summary-3-of-3.csv", "w", encoding="utf-8") as file:
+        file.writelines(lines[:1])
+    assert merged(code=2)[1] == "1,2"
 
 
 @case
