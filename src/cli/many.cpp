@@ -151,6 +151,7 @@ bool do_job(const Job& job, const fs::path& folder, const ListedCommand& command
     const bool same = before && before->key == record.key && !record.key.empty() && !command.force;
     if (same && before->status == "ok" && command.is_complete(folder.string())) {
       worked = false;
+      recorded = before->input != job.input;  // it has another path now
     } else {
       const bool interrupted = same && before->status == "started";
       // A result is deleted before a new key is noted: it must never pass for what it is not.

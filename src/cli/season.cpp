@@ -7,12 +7,11 @@
 #include <algorithm>
 #include <filesystem>
 #include <iostream>
-#include <map>
 #include <memory>
 
 #include "commands.hpp"
-#include "summary.hpp"
 #ifdef AGRISEE_HAS_SQLITE
+#include "listed_results.hpp"
 #include "season/database.hpp"
 #include "season/page.hpp"
 #endif
@@ -38,53 +37,6 @@ std::regex pattern_of(const char* option, const std::string& text) {
     return pattern;
   } catch (const std::regex_error& e) {
     throw UsageError(std::string(option) + ": '" + text + "' is not a regular expression: " + e.what());
-  }
-}
-
-/// What the folders of a season hold.
-struct Found {
-  std::vector<season::Scan> scans;
-  std::vector<fs::path> left_out;   ///< results of inputs whose list has put them into another folder
-  std::vector<std::string> unread;  ///< why results cannot be read
-};
-
-/// Add all scans of an output folder: its results, and the inputs of its list that have none. A result whose input the
-/// list puts into another folder is left over from an older list, and is left out.
-/// @throws FileError if there is none
-void collect_scans(const fs::path& folder, Found& found) {
-  std::error_code error;
-  std::vector<SummaryRow> list;
-  if (fs::exists(folder / "summary.csv", error)) list = read_summary(folder / "summary.csv").rows;
-  std::map<std::string, std::string> folder_of;
-  for (const SummaryRow& row : list) folder_of[row.input] = row.folder;
-  const std::vector<fs::path> results = season::result_folders(folder);
-  if (results.empty() && list.empty())
-    throw FileError(folder.string() + ": holds no result of agrisee (run.json), nor does a folder in it");
-  for (const fs::path& result : results) {
-    season::Scan scan;
-    try {
-      scan = season::open_result(result);
-    } catch (const FileError& e) {
-      found.unread.emplace_back(e.what());
-      continue;
-    }
-    const auto listed = folder_of.find(scan.input);
-    if (listed == folder_of.end() || (folder / listed->second).lexically_normal() == result.lexically_normal()) {
-      found.scans.push_back(scan);
-      continue;
-    }
-    found.left_out.push_back(result);
-    std::cerr << result.string() << ": left out; " << scan.input << " is now in " << listed->second << "\n";
-  }
-  for (const SummaryRow& row : list) {
-    if (row.status == "ok" || fs::exists(folder / row.folder / "run.json", error)) continue;
-    season::Scan scan;
-    scan.folder = folder / row.folder;
-    scan.status = row.status;
-    scan.message = row.message;
-    scan.input = row.input;
-    scan.content = row.status + ": " + row.message;
-    found.scans.push_back(scan);
   }
 }
 
@@ -139,8 +91,9 @@ int add_to_season(const std::vector<std::string>& folders, const SeasonOptions& 
   season::PlaceRules rules;
   if (!options.row.empty()) rules.row = pattern_of("--row", options.row);
   if (!options.date.empty()) rules.date = pattern_of("--date", options.date);
-  Found found;
-  for (const std::string& folder : folders) collect_scans(folder, found);
+  ListedResults found;
+  for (const std::string& folder : folders) collect_results(folder, found);
+  for (const std::string& note : found.notes) std::cerr << "agrisee: " << note << "\n";
   season::Added added =
       season::add_scans(options.database, found.scans, found.left_out, rules, threads_of(options.threads));
   std::cout << added.added << " scans added, " << added.changed << " replaced, " << added.unchanged << " were there"
@@ -156,9 +109,9 @@ int add_to_season(const std::vector<std::string>& folders, const SeasonOptions& 
   };
   tell_unmatched("--row", options.row, &season::Place::row);
   tell_unmatched("--date", options.date, &season::Place::date);
-  found.unread.insert(found.unread.end(), added.unread.begin(), added.unread.end());
-  for (const std::string& fault : found.unread) std::cerr << "agrisee: left out: " << fault << "\n";
-  return found.unread.empty() ? kSuccess : kBadInput;
+  found.faults.insert(found.faults.end(), added.unread.begin(), added.unread.end());
+  for (const std::string& fault : found.faults) std::cerr << "agrisee: left out: " << fault << "\n";
+  return found.faults.empty() ? kSuccess : kBadInput;
 }
 
 #else

@@ -164,7 +164,7 @@ class Writer {
 
 }  // namespace
 
-Added add_scans(const std::string& database, const std::vector<Scan>& scans, const std::vector<fs::path>& left_out,
+Added add_scans(const std::string& database, const std::vector<Scan>& scans, const std::vector<Scan>& left_out,
                 const PlaceRules& rules, int threads) {
   const Connection connection(database, Connection::Mode::write);
   prepare(connection);
@@ -195,8 +195,8 @@ Added add_scans(const std::string& database, const std::vector<Scan>& scans, con
     else
       open.emplace_back(&e, id);
   }
-  for (const fs::path& folder : left_out)
-    if (const long long id = writer.find(name_of_folder(folder)).first; id > 0) writer.forget(id), ++out.removed;
+  for (const Scan& scan : left_out)
+    if (const long long id = writer.find(name_of_folder(scan.folder)).first; id > 0) writer.forget(id), ++out.removed;
   constexpr std::size_t kBatch = 1024;  // so many results are in memory at a time
   for (std::size_t from = 0; from < open.size(); from += kBatch) {
     std::vector<std::optional<ResultFiles>> files(std::min(kBatch, open.size() - from));

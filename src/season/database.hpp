@@ -23,10 +23,10 @@ struct Added {
 /// Put scans into a database, which is created if it is missing. A scan is known by its folder, relative to that of the
 /// database: one that is there with the same content is skipped, one with another content is replaced. All of it
 /// happens in one transaction: if it fails, or the process is killed, the database stays as it was.
-/// @param left_out folders of scans that are removed if they are there
+/// @param left_out scans that are removed if they are there
 /// @param threads number of threads that read files; the database does not depend on it
 /// @throws FileError for a file that is no such database
-Added add_scans(const std::string& database, const std::vector<Scan>& scans,
-                const std::vector<std::filesystem::path>& left_out, const PlaceRules& rules, int threads);
+Added add_scans(const std::string& database, const std::vector<Scan>& scans, const std::vector<Scan>& left_out,
+                const PlaceRules& rules, int threads);
 
 }  // namespace agrisee::season

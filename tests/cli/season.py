@@ -247,6 +247,52 @@ def shards():
 
 
 @case
+def renamed():
+    """What older lists left behind does not count, nor does what is gone."""
+    needs_sqlite()
+    for name in "ab":
+        ball(f"in/row_1/{name}/c.ply")
+    ball("in/row_2/c/c.ply")
+    words = ["-o", "out", "--viewpoint", "0,0,0", *FEW_FILES]
+
+    def stored(database):
+        connection = sqlite3.connect(database)
+        try:
+            return connection.execute('SELECT "row", input, status FROM scans ORDER BY input').fetchall()
+        finally:
+            connection.close()
+
+    run("process", "in/*/*/*.ply", *words)
+    run("merge", "out", "--db", "s.sqlite")
+    # Under another path the same result is kept, and knows it.
+    os.rename("in", "season")
+    assert "3 inputs, 3 done before" in run("process", "season/*/*/*.ply", *words)
+    assert "left out" not in run("merge", "out", "--db", "s.sqlite")
+    expected = [("1", "season/row_1/a/c.ply", "ok"), ("1", "season/row_1/b/c.ply", "ok"), ("2", "season/row_2/c/c.ply", "ok")]
+    assert stored("s.sqlite") == expected, stored("s.sqlite")
+    # With another name it gets another folder, and the old one is left out.
+    os.rename("season/row_1/b", "season/row_1/d")
+    run("process", "season/*/*/*.ply", *words)
+    expected[1] = ("1", "season/row_1/d/c.ply", "ok")
+    for database in "s.sqlite", "new.sqlite":
+        told = run("merge", "out", "--db", database)
+        assert "left out; its input season/row_1/b/c.ply is gone, and no list names it" in told, told
+        assert stored(database) == expected, stored(database)
+        told = run("merge", ".", "--db", database)  # the list in a folder below counts, too
+        assert "left out; its input season/row_1/b/c.ply is gone" in told and stored(database) == expected, told
+    # A list of other inputs leaves nothing out.
+    ball("more/e.ply")
+    ball("more/f.ply", radius=0.025)
+    run("process", "more/*.ply", *words)
+    assert "2 scans added" in run("merge", "out", "--db", "s.sqlite") and len(stored("s.sqlite")) == 5
+    # What is listed and gone is named, and stays in the database.
+    shutil.rmtree("out/f")
+    assert "out/f: is listed as ok, but its result is gone" in run("merge", "out", "--db", "s.sqlite", code=2)
+    assert len(stored("s.sqlite")) == 5
+    assert "1 scans added" not in run("merge", "out", "--db", "fewer.sqlite", code=2) and len(stored("fewer.sqlite")) == 4
+
+
+@case
 def database():
     needs_sqlite()
     for n, name in enumerate(["2026-05-01/row_2/p1", "2026-05-01/row_10/p1", "20260601/row_2/p1"]):
@@ -295,7 +341,8 @@ def database():
     # What an older list left behind goes.
     shutil.copytree("out/p2", "out/old")
     assert "1 scans added" in run("merge", "out/old", "--db", "s.sqlite")
-    assert "out/old: left out" in run("merge", "out", "--db", "s.sqlite") and ask("SELECT count(*) FROM scans") == [(4,)]
+    assert "out/old: left out; in/20260601/row_2/p2.ply is now in p2" in run("merge", "out", "--db", "s.sqlite")
+    assert ask("SELECT count(*) FROM scans") == [(4,)]
     shutil.rmtree("out/old")
     # A result that cannot be read does not stop the others, and what was there of it stays.
     shutil.copytree("out", "broken")
