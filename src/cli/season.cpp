@@ -97,8 +97,13 @@ int add_to_season(const std::vector<std::string>& folders, const SeasonOptions& 
   season::Added added =
       season::add_scans(options.database, found.scans, found.left_out, rules, threads_of(options.threads));
   std::cout << added.added << " scans added, " << added.changed << " replaced, " << added.unchanged << " were there"
+            << (added.moved > 0 ? ", " + std::to_string(added.moved) + " moved" : "")
             << (added.removed > 0 ? ", " + std::to_string(added.removed) + " removed" : "") << ": " << options.database
             << "\n";
+  if (added.twice > 0)
+    std::cerr << "agrisee: " << added.twice << (added.twice == 1 ? " scan is" : " scans are")
+              << " in the database twice, such as " << added.example
+              << "; delete one of the folders, and merge the other again\n";
   const auto tell_unmatched = [&](const char* option, const std::string& pattern, std::string season::Place::*part) {
     const auto has_it = [&](const season::Scan& scan) {
       return !(rules.of(scan.input.empty() ? scan.folder.string() : scan.input).*part).empty();

@@ -83,6 +83,9 @@ class Writer {
         parameters_(connection, "SELECT id FROM parameters WHERE json = ?",
                     "INSERT INTO parameters(json, preset) VALUES (?, ?)"),
         known_(connection, "SELECT id, content FROM scans WHERE folder = ?"),
+        same_(connection, "SELECT id, folder FROM scans WHERE content = ? AND status = 'ok' ORDER BY id"),
+        doubled_(connection, "SELECT content FROM scans WHERE status = 'ok' GROUP BY content HAVING count(*) > 1"),
+        move_(connection, "UPDATE scans SET folder = ? WHERE id = ?"),
         forget_(connection, "DELETE FROM scans WHERE id = ?"),
         scan_(connection,
               "INSERT INTO scans(folder, content, status, message, input, \"row\", date, time, version, parameters, "
@@ -99,6 +102,20 @@ class Writer {
     known_.reset();
     return out;
   }
+  /// The results with a content: ids and folders.
+  std::vector<std::pair<long long, std::string>> same(const std::string& content) {
+    std::vector<std::pair<long long, std::string>> out;
+    same_.bind(content);
+    while (same_.step()) out.emplace_back(same_.integer(0), same_.text(1));
+    return out;
+  }
+  /// The contents of results that are there more than once.
+  std::vector<std::string> doubled() {
+    std::vector<std::string> out;
+    while (doubled_.step()) out.push_back(doubled_.text(0));
+    return out;
+  }
+  void move(long long id, const std::string& folder) { move_.bind(folder).bind(id).run(); }
   void forget(long long id) { forget_.bind(id).run(); }
 
   /// @param files null for a scan without a result
@@ -159,8 +176,63 @@ class Writer {
 
   const Connection& connection_;
   Texts versions_, parameters_;
-  Statement known_, forget_, scan_, fruit_, view_;
+  Statement known_, same_, doubled_, move_, forget_, scan_, fruit_, view_;
 };
+
+/// Where a database is, and which folders its relative names mean.
+class Home {
+ public:
+  explicit Home(const std::string& database) {
+    std::error_code error;
+    path_ = fs::absolute(fs::path(database), error).parent_path().lexically_normal();
+  }
+  /// What a folder is called in the database.
+  std::string name_of(const fs::path& path) const {
+    std::error_code error;
+    fs::path folder = fs::absolute(path, error).lexically_normal();
+    if (!folder.has_filename()) folder = folder.parent_path();  // "scans/1/" is "scans/1"
+    return folder.lexically_relative(path_).string();
+  }
+  /// Whether a folder that the database names is there.
+  bool has(const std::string& folder) const {
+    std::error_code error;
+    return fs::exists(path_ / folder, error);
+  }
+
+ private:
+  fs::path path_;
+};
+
+/// The entry of a scan.
+Entry entry_of(const Scan& scan, const Home& home, const PlaceRules& rules) {
+  Entry out{&scan, home.name_of(scan.folder), {}, ""};
+  out.place = rules.of(scan.input.empty() ? out.folder : scan.input);
+  io::Fingerprint print;  // other rules for rows and dates change the scan, too
+  print.add(scan.content + "\n" + out.place.row + "\n" + out.place.date);
+  out.content = print.text();
+  return out;
+}
+
+/// The id of a result that is there with a folder that is gone; 0 if there is none.
+long long moved_id(const Entry& entry, const Home& home, Writer& writer) {
+  if (entry.scan->status != "ok") return 0;
+  for (const auto& [id, folder] : writer.same(entry.content))
+    if (!home.has(folder)) return id;
+  return 0;
+}
+
+/// Remove results that are there twice and whose folder is gone, and count the others.
+void tell_doubled(const Home& home, Writer& writer, Added& out) {
+  for (const std::string& content : writer.doubled()) {
+    const auto all = writer.same(content);
+    std::vector<std::pair<long long, std::string>> gone, there;
+    for (const auto& scan : all) (home.has(scan.second) ? there : gone).push_back(scan);
+    if (there.empty()) continue;
+    for (const auto& [id, folder] : gone) writer.forget(id), ++out.removed;
+    out.twice += there.size() - 1;
+    if (there.size() > 1) out.example = there[0].second + " and " + there[1].second;
+  }
+}
 
 }  // namespace
 
@@ -170,21 +242,9 @@ Added add_scans(const std::string& database, const std::vector<Scan>& scans, con
   prepare(connection);
   Writer writer(connection);
   Added out;
-  std::error_code error;
-  const fs::path home = fs::absolute(fs::path(database), error).parent_path();
-  const auto name_of_folder = [&](const fs::path& path) {
-    fs::path folder = fs::absolute(path, error).lexically_normal();
-    if (!folder.has_filename()) folder = folder.parent_path();  // "scans/1/" is "scans/1"
-    return folder.lexically_relative(home.lexically_normal()).string();
-  };
+  const Home home(database);
   std::vector<Entry> entries;
-  for (const Scan& scan : scans) {
-    const std::string folder = name_of_folder(scan.folder);
-    const Place place = rules.of(scan.input.empty() ? folder : scan.input);
-    io::Fingerprint print;  // other rules for rows and dates change the scan, too
-    print.add(scan.content + "\n" + place.row + "\n" + place.date);
-    entries.push_back({&scan, folder, place, print.text()});
-  }
+  for (const Scan& scan : scans) entries.push_back(entry_of(scan, home, rules));
   std::set<std::string> listed;                          // folders, which may be named twice
   std::vector<std::pair<const Entry*, long long>> open;  // scans that are new or changed, with their id, 0 of new ones
   for (const Entry& e : entries) {
@@ -192,11 +252,17 @@ Added add_scans(const std::string& database, const std::vector<Scan>& scans, con
     const auto [id, content] = writer.find(e.folder);
     if (id > 0 && content == e.content)
       ++out.unchanged;
+    else if (const long long there = id > 0 ? 0 : moved_id(e, home, writer); there > 0)
+      writer.move(there, e.folder), ++out.moved;
     else
       open.emplace_back(&e, id);
   }
-  for (const Scan& scan : left_out)
-    if (const long long id = writer.find(name_of_folder(scan.folder)).first; id > 0) writer.forget(id), ++out.removed;
+  for (const Scan& scan : left_out) {
+    const Entry entry = entry_of(scan, home, rules);
+    long long id = writer.find(entry.folder).first;
+    if (id == 0) id = moved_id(entry, home, writer);
+    if (id > 0) writer.forget(id), ++out.removed;
+  }
   constexpr std::size_t kBatch = 1024;  // so many results are in memory at a time
   for (std::size_t from = 0; from < open.size(); from += kBatch) {
     std::vector<std::optional<ResultFiles>> files(std::min(kBatch, open.size() - from));
@@ -224,6 +290,7 @@ Added add_scans(const std::string& database, const std::vector<Scan>& scans, con
       writer.add(*entry, files[k] ? &*files[k] : nullptr);
     }
   }
+  tell_doubled(home, writer, out);
   connection.run("COMMIT");
   return out;
 }

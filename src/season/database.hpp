@@ -13,15 +13,19 @@ namespace agrisee::season {
 
 /// What add_scans did.
 struct Added {
-  std::size_t added = 0;                 ///< scans that were not there
-  std::size_t changed = 0;               ///< scans whose result is another than before
-  std::size_t unchanged = 0;             ///< scans that were there already
-  std::size_t removed = 0;               ///< scans that were there and are left out
+  std::size_t added = 0;      ///< scans that were not there
+  std::size_t changed = 0;    ///< scans whose result is another than before
+  std::size_t unchanged = 0;  ///< scans that were there already
+  std::size_t moved = 0;      ///< scans that were there with another folder, which is gone
+  std::size_t removed = 0;    ///< scans that were there and are left out, or are there twice with a folder gone
+  std::size_t twice = 0;      ///< scans that are there more than once, in different folders
+  std::string example = {};   ///< two folders with the same scan
   std::vector<std::string> unread = {};  ///< why results could not be read; what was there of them stays
 };
 
 /// Put scans into a database, which is created if it is missing. A scan is known by its folder, relative to that of the
-/// database: one that is there with the same content is skipped, one with another content is replaced. All of it
+/// database: one that is there with the same content is skipped, one with another content is replaced. One that is
+/// there with the same content and another folder, which is gone, gets the new folder. All of it
 /// happens in one transaction: if it fails, or the process is killed, the database stays as it was.
 /// @param left_out scans that are removed if they are there
 /// @param threads number of threads that read files; the database does not depend on it

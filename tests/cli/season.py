@@ -280,6 +280,19 @@ def renamed():
         assert stored(database) == expected, stored(database)
         told = run("merge", ".", "--db", database)  # the list in a folder below counts, too
         assert "left out; its input season/row_1/b/c.ply is gone" in told and stored(database) == expected, told
+    # The same results under another path are the same scans: where the old one is gone, they get the new one.
+    os.makedirs("moved")
+    shutil.copy("new.sqlite", "moved/s.sqlite")
+    told = run("merge", "out", "--db", "moved/s.sqlite")
+    assert "0 scans added, 0 replaced, 0 were there, 3 moved" in told and stored("moved/s.sqlite") == expected, told
+    assert "0 scans added, 0 replaced, 3 were there:" in run("merge", "out", "--db", "moved/s.sqlite")
+    # Copies count twice, which is told; without one of them they do not.
+    shutil.copytree("out", "copy")
+    told = run("merge", "out", "copy", "--db", "new.sqlite")
+    assert "3 scans added" in told and "3 scans are in the database twice, such as " in told, told
+    shutil.rmtree("copy")
+    told = run("merge", "out", "--db", "new.sqlite")
+    assert "3 removed" in told and "twice" not in told and stored("new.sqlite") == expected, told
     # A list of other inputs leaves nothing out.
     ball("more/e.ply")
     ball("more/f.ply", radius=0.025)
