@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <iostream>
 #include <memory>
+#include <optional>
 
 #include "commands.hpp"
 #ifdef AGRISEE_HAS_SQLITE
@@ -28,16 +29,36 @@ struct PageOptions {
 
 #ifdef AGRISEE_HAS_SQLITE
 
-/// A regular expression of the command line. @throws UsageError if it is none, or has no group
-std::regex pattern_of(const char* option, const std::string& text) {
+/// A regular expression of the command line; none for an empty text. @throws UsageError if it cannot be used
+std::optional<season::PathPattern> pattern_of(const char* option, const std::string& text) {
+  if (text.empty()) return std::nullopt;
   try {
-    std::regex pattern(text, std::regex::icase);
-    if (pattern.mark_count() == 0)
-      throw UsageError(std::string(option) + ": '" + text + "' has no group: put what is to be stored in parentheses");
-    return pattern;
-  } catch (const std::regex_error& e) {
-    throw UsageError(std::string(option) + ": '" + text + "' is not a regular expression: " + e.what());
+    return season::PathPattern(text);
+  } catch (const ParameterError& e) {
+    throw UsageError(std::string(option) + ": " + e.what());
   }
+}
+
+/// Tell of a regular expression that is in the path of no scan, and of paths with two dates.
+void tell_places(const SeasonOptions& options, const std::vector<season::Scan>& scans,
+                 const std::vector<season::Place>& places) {
+  const auto path_of = [&](std::size_t i) {
+    return scans[i].input.empty() ? scans[i].folder.string() : scans[i].input;
+  };
+  const auto tell_unmatched = [&](const char* option, const std::string& pattern, std::string season::Place::*part) {
+    const auto has_it = [&](const season::Place& place) { return !(place.*part).empty(); };
+    if (!pattern.empty() && !places.empty() && std::none_of(places.begin(), places.end(), has_it))
+      std::cerr << "agrisee: " << option << ": '" << pattern << "' is in the path of no input, such as '" << path_of(0)
+                << "'\n";
+  };
+  tell_unmatched("--row", options.row, &season::Place::row);
+  tell_unmatched("--date", options.date, &season::Place::date);
+  const auto has_two = [](const season::Place& place) { return !place.other_date.empty(); };
+  const auto first = std::find_if(places.begin(), places.end(), has_two);
+  if (first == places.end()) return;
+  std::cerr << "agrisee: paths with two dates: " << std::count_if(first, places.end(), has_two) << ", such as '"
+            << path_of(static_cast<std::size_t>(first - places.begin())) << "', of which " << first->date
+            << " counts; --date chooses another\n";
 }
 
 int run_season(const PageOptions& options) {
@@ -88,9 +109,7 @@ void add_season_options(CLI::App& command, SeasonOptions& options) {
 #ifdef AGRISEE_HAS_SQLITE
 
 int add_to_season(const std::vector<std::string>& folders, const SeasonOptions& options) {
-  season::PlaceRules rules;
-  if (!options.row.empty()) rules.row = pattern_of("--row", options.row);
-  if (!options.date.empty()) rules.date = pattern_of("--date", options.date);
+  const season::PlaceRules rules{pattern_of("--row", options.row), pattern_of("--date", options.date)};
   ListedResults found;
   for (const std::string& folder : folders) collect_results(folder, found);
   for (const std::string& note : found.notes) std::cerr << "agrisee: " << note << "\n";
@@ -104,16 +123,7 @@ int add_to_season(const std::vector<std::string>& folders, const SeasonOptions& 
     std::cerr << "agrisee: " << added.twice << (added.twice == 1 ? " scan is" : " scans are")
               << " in the database twice, such as " << added.example
               << "; delete one of the folders, and merge the other again\n";
-  const auto tell_unmatched = [&](const char* option, const std::string& pattern, std::string season::Place::*part) {
-    const auto has_it = [&](const season::Scan& scan) {
-      return !(rules.of(scan.input.empty() ? scan.folder.string() : scan.input).*part).empty();
-    };
-    if (!pattern.empty() && !found.scans.empty() && std::none_of(found.scans.begin(), found.scans.end(), has_it))
-      std::cerr << "agrisee: " << option << ": '" << pattern << "' is in the path of no input, such as '"
-                << found.scans.front().input << "'\n";
-  };
-  tell_unmatched("--row", options.row, &season::Place::row);
-  tell_unmatched("--date", options.date, &season::Place::date);
+  tell_places(options, found.scans, added.places);
   found.faults.insert(found.faults.end(), added.unread.begin(), added.unread.end());
   for (const std::string& fault : found.faults) std::cerr << "agrisee: left out: " << fault << "\n";
   return found.faults.empty() ? kSuccess : kBadInput;

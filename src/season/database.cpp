@@ -244,7 +244,10 @@ Added add_scans(const std::string& database, const std::vector<Scan>& scans, con
   Added out;
   const Home home(database);
   std::vector<Entry> entries;
-  for (const Scan& scan : scans) entries.push_back(entry_of(scan, home, rules));
+  for (const Scan& scan : scans) {
+    entries.push_back(entry_of(scan, home, rules));
+    out.places.push_back(entries.back().place);
+  }
   std::set<std::string> listed;                          // folders, which may be named twice
   std::vector<std::pair<const Entry*, long long>> open;  // scans that are new or changed, with their id, 0 of new ones
   for (const Entry& e : entries) {

@@ -7,19 +7,21 @@
 #include <string>
 #include <vector>
 
+#include "season/place.hpp"
 #include "season/results.hpp"
 
 namespace agrisee::season {
 
 /// What add_scans did.
 struct Added {
-  std::size_t added = 0;      ///< scans that were not there
-  std::size_t changed = 0;    ///< scans whose result is another than before
-  std::size_t unchanged = 0;  ///< scans that were there already
-  std::size_t moved = 0;      ///< scans that were there with another folder, which is gone
-  std::size_t removed = 0;    ///< scans that were there and are left out, or are there twice with a folder gone
-  std::size_t twice = 0;      ///< scans that are there more than once, in different folders
-  std::string example = {};   ///< two folders with the same scan
+  std::size_t added = 0;           ///< scans that were not there
+  std::size_t changed = 0;         ///< scans whose result is another than before
+  std::size_t unchanged = 0;       ///< scans that were there already
+  std::size_t moved = 0;           ///< scans that were there with another folder, which is gone
+  std::size_t removed = 0;         ///< scans that were there and are left out, or are there twice with a folder gone
+  std::size_t twice = 0;           ///< scans that are there more than once, in different folders
+  std::string example = {};        ///< two folders with the same scan
+  std::vector<Place> places = {};  ///< of all scans, in their order
   std::vector<std::string> unread = {};  ///< why results could not be read; what was there of them stays
 };
 

@@ -14,17 +14,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// The groups of the first match, joined by "-".
-std::string groups_of(const std::string& text, const std::regex& pattern) {
-  std::smatch match;
-  if (!std::regex_search(text, match, pattern)) return "";
-  if (match.size() == 1) return match.str(0);
-  std::string out;
-  for (std::size_t i = 1; i < match.size(); ++i)
-    if (match[i].matched) out += (out.empty() ? "" : "-") + match.str(i);
-  return out;
-}
-
 /// Add the results in and below a folder. @param inner whether it is itself below the first: then a result holds no
 /// other
 void find_results(const fs::path& folder, bool inner, std::vector<fs::path>& out) {
@@ -41,8 +30,6 @@ void find_results(const fs::path& folder, bool inner, std::vector<fs::path>& out
 }
 
 }  // namespace
-
-Place PlaceRules::of(const std::string& path) const { return {groups_of(path, row), groups_of(path, date)}; }
 
 std::vector<fs::path> result_folders(const fs::path& folder) {
   std::vector<fs::path> out;

@@ -6,29 +6,10 @@
 #include <agrisee/io/results.hpp>
 
 #include <filesystem>
-#include <optional>
-#include <regex>
 #include <string>
 #include <vector>
 
 namespace agrisee::season {
-
-/// Where in a greenhouse a scan was made, and when.
-struct Place {
-  std::string row;   ///< of plants; empty: not known
-  std::string date;  ///< "2026-06-03"; empty: not known
-};
-
-/// Reads row and date from the path of a scan's input: the groups in parentheses of a match, joined by "-". Without a
-/// match it is empty.
-struct PlaceRules {
-  std::regex row{"(?:^|[^a-z])row[ _-]?([0-9]+[a-z]?)", std::regex::icase};  ///< "row_07" -> "07"
-  std::regex date{"(?:^|[^0-9])(20[0-9]{2})[-_]?(0[1-9]|1[0-2])[-_]?(0[1-9]|[12][0-9]|3[01])(?![0-9])"};
-  ///< "20260603" -> "2026-06-03"
-
-  /// The place that a path tells.
-  Place of(const std::string& path) const;
-};
 
 /// A scan, finished or not. Where it is not `ok`, there is no result.
 struct Scan {

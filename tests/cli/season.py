@@ -306,6 +306,40 @@ def renamed():
 
 
 @case
+def places():
+    """Row and date are the last ones in a path; what regular expressions cannot do is told at once."""
+    needs_sqlite()
+    paths = {"2025-01-01_backup/2026-06-03/row_07/a": ("7", "2026-06-03"), "2026-06-10/row_7/b": ("7", "2026-06-10"),
+             "20260610/20260231/row_1/row_010b/c": ("10b", "2026-06-10"), "2024-02-29/row_0/d": ("0", "2024-02-29"),
+             "20260610123/2026-06-311/e": ("", None), "2026-02-29/Row 12/f": ("12", None)}
+    for path in paths:
+        ball(f"in/{path}.ply")
+    run("process", *(f"in/{path}.ply" for path in paths), "-o", "out", "--viewpoint", "0,0,0", *FEW_FILES)
+    told = run("merge", "out", "--db", "s.sqlite")
+    assert "paths with two dates: 1, such as 'in/2025-01-01_backup/2026-06-03/row_07/a.ply', of which 2026-06-03" in told, told
+    connection = sqlite3.connect("s.sqlite")
+    for path, (row, date) in paths.items():
+        got = connection.execute('SELECT "row", date, substr(time, 1, 10) FROM scans WHERE input = ?', [f"in/{path}.ply"]).fetchone()
+        assert got[:2] == (row, date or got[2]), (path, got)
+    connection.close()
+
+    def merged(*words, code=0):
+        begin = time.time()
+        out = run("merge", "out", "--db", "t.sqlite", *words, code=code)
+        assert time.time() - begin < 5, words
+        return out
+
+    for pattern in "(([a-z_0-9/.-]+)+)$x", "((a|ab|b|[a-z])*)*=", "(.*)(.*)(.*)(.*)(.*)(.*)(.*)(.*)(.*)(.*)x{3}y":
+        assert "is in the path of no input" in merged("--row", pattern), pattern
+    assert "references to groups" in merged("--row", r"(a)\1", code=1)
+    assert "--date: '" in merged("--date", "((((a{1,999}){1,999}){1,999}){1,999})", code=1)
+    merged("--date", r"/(\d+)[_-](\d\d)", "--row", "row.0*([0-9]+)")
+    connection = sqlite3.connect("t.sqlite")
+    assert ("7", "2026-06") in connection.execute('SELECT "row", date FROM scans').fetchall()
+    connection.close()
+
+
+@case
 def database():
     needs_sqlite()
     for n, name in enumerate(["2026-05-01/row_2/p1", "2026-05-01/row_10/p1", "20260601/row_2/p1"]):
