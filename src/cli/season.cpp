@@ -115,10 +115,15 @@ int add_to_season(const std::vector<std::string>& folders, const SeasonOptions& 
   for (const std::string& note : found.notes) std::cerr << "agrisee: " << note << "\n";
   season::Added added =
       season::add_scans(options.database, found.scans, found.left_out, rules, threads_of(options.threads));
+  const std::size_t without = added.failed + added.open;
   std::cout << added.added << " scans added, " << added.changed << " replaced, " << added.unchanged << " were there"
             << (added.moved > 0 ? ", " + std::to_string(added.moved) + " moved" : "")
-            << (added.removed > 0 ? ", " + std::to_string(added.removed) + " removed" : "") << ": " << options.database
+            << (added.removed > 0 ? ", " + std::to_string(added.removed) + " removed" : "")
+            << (without > 0 ? ", " + std::to_string(without) + " without a result" : "") << ": " << options.database
             << "\n";
+  if (added.open > 0)
+    std::cerr << "agrisee: " << added.open << (added.open == 1 ? " input is" : " inputs are")
+              << " open: a list was stopped. Run it again; what is done is skipped\n";
   if (added.twice > 0)
     std::cerr << "agrisee: " << added.twice << (added.twice == 1 ? " scan is" : " scans are")
               << " in the database twice, such as " << added.example
@@ -126,7 +131,7 @@ int add_to_season(const std::vector<std::string>& folders, const SeasonOptions& 
   tell_places(options, found.scans, added.places);
   found.faults.insert(found.faults.end(), added.unread.begin(), added.unread.end());
   for (const std::string& fault : found.faults) std::cerr << "agrisee: left out: " << fault << "\n";
-  return found.faults.empty() ? kSuccess : kBadInput;
+  return found.faults.empty() && added.open == 0 ? kSuccess : kBadInput;
 }
 
 #else

@@ -19,7 +19,7 @@ struct SeasonOptions {
 void add_season_options(CLI::App& command, SeasonOptions& options);
 
 /// Put all results in some folders, at any depth, into the database, and print how many are new.
-/// @return kBadInput if results cannot be read, which are told of
+/// @return kBadInput if results cannot be read or inputs are open, which is told
 /// @throws UsageError without SQLite, or for a regular expression that is none; FileError for a folder without results
 int add_to_season(const std::vector<std::string>& folders, const SeasonOptions& options);
 

@@ -252,9 +252,11 @@ Added add_scans(const std::string& database, const std::vector<Scan>& scans, con
   std::vector<std::pair<const Entry*, long long>> open;  // scans that are new or changed, with their id, 0 of new ones
   for (const Entry& e : entries) {
     if (!listed.insert(e.folder).second) continue;
+    const std::string& status = e.scan->status;
+    if (status != "ok") ++(status == "open" ? out.open : out.failed);
     const auto [id, content] = writer.find(e.folder);
     if (id > 0 && content == e.content)
-      ++out.unchanged;
+      out.unchanged += status == "ok";
     else if (const long long there = id > 0 ? 0 : moved_id(e, home, writer); there > 0)
       writer.move(there, e.folder), ++out.moved;
     else
@@ -289,7 +291,7 @@ Added add_scans(const std::string& database, const std::vector<Scan>& scans, con
       }
       const auto [entry, id] = open[from + k];
       if (id > 0) writer.forget(id);
-      ++(id > 0 ? out.changed : out.added);
+      if (entry->scan->status == "ok") ++(id > 0 ? out.changed : out.added);
       writer.add(*entry, files[k] ? &*files[k] : nullptr);
     }
   }

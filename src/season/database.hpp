@@ -14,9 +14,11 @@ namespace agrisee::season {
 
 /// What add_scans did.
 struct Added {
-  std::size_t added = 0;           ///< scans that were not there
-  std::size_t changed = 0;         ///< scans whose result is another than before
-  std::size_t unchanged = 0;       ///< scans that were there already
+  std::size_t added = 0;           ///< results that were not there
+  std::size_t changed = 0;         ///< results that are others than before
+  std::size_t unchanged = 0;       ///< results that were there already
+  std::size_t failed = 0;          ///< scans without a result that failed
+  std::size_t open = 0;            ///< scans without a result that are to be done
   std::size_t moved = 0;           ///< scans that were there with another folder, which is gone
   std::size_t removed = 0;         ///< scans that were there and are left out, or are there twice with a folder gone
   std::size_t twice = 0;           ///< scans that are there more than once, in different folders

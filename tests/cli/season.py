@@ -348,8 +348,8 @@ def database():
         file.write("ply\ndamaged\n")
     scan = ["process", "in/*/*/*.ply", "-o", "out", "--viewpoint", "0,0,0", *FEW_FILES]
     run(*scan, code=2)
-    assert "4 scans added, 0 replaced, 0 were there" in run("merge", "out", "--db", "s.sqlite")
-    assert "0 scans added, 0 replaced, 4 were there" in run("merge", "out", "--db", "s.sqlite")
+    assert "3 scans added, 0 replaced, 0 were there, 1 without a result" in run("merge", "out", "--db", "s.sqlite")
+    assert "0 scans added, 0 replaced, 3 were there, 1 without a result" in run("merge", "out", "--db", "s.sqlite")
 
     def ask(question):
         connection = sqlite3.connect("s.sqlite")
@@ -391,6 +391,14 @@ def database():
     assert "out/old: left out; in/20260601/row_2/p2.ply is now in p2" in run("merge", "out", "--db", "s.sqlite")
     assert ask("SELECT count(*) FROM scans") == [(4,)]
     shutil.rmtree("out/old")
+    # What a stopped list left open is told of.
+    os.makedirs("stopped")
+    shutil.copytree("out/p2", "stopped/p2")
+    with open("out/summary.csv", encoding="utf-8") as file, open("stopped/summary.csv", "w", encoding="utf-8") as stopped:
+        stopped.write(file.read().replace(",ok,", ",open,"))
+    told = run("merge", "stopped", "--db", "o.sqlite", code=2)
+    assert "1 scans added, 0 replaced, 0 were there, 3 without a result" in told and "3 inputs are open" in told, told
+    assert "3 without a result" in run("season", "o.sqlite", "-o", "o.html")
     # A result that cannot be read does not stop the others, and what was there of it stays.
     shutil.copytree("out", "broken")
     for folder in os.listdir("broken"):
