@@ -45,6 +45,13 @@ struct Entry {
   std::string content;  ///< fingerprint of what is stored
 };
 
+/// A scan that the database has.
+struct Known {
+  long long id;
+  std::string folder;
+  bool has_result;
+};
+
 /// Ids of texts that are stored once.
 class Texts {
  public:
@@ -83,8 +90,8 @@ class Writer {
         parameters_(connection, "SELECT id FROM parameters WHERE json = ?",
                     "INSERT INTO parameters(json, preset) VALUES (?, ?)"),
         known_(connection, "SELECT id, content FROM scans WHERE folder = ?"),
-        same_(connection, "SELECT id, folder FROM scans WHERE content = ? AND status = 'ok' ORDER BY id"),
-        doubled_(connection, "SELECT content FROM scans WHERE status = 'ok' GROUP BY content HAVING count(*) > 1"),
+        same_(connection, "SELECT id, folder, status FROM scans WHERE content = ? AND input = ? ORDER BY id"),
+        doubled_(connection, "SELECT content, input FROM scans GROUP BY content, input HAVING count(*) > 1"),
         move_(connection, "UPDATE scans SET folder = ? WHERE id = ?"),
         forget_(connection, "DELETE FROM scans WHERE id = ?"),
         scan_(connection,
@@ -102,17 +109,17 @@ class Writer {
     known_.reset();
     return out;
   }
-  /// The results with a content: ids and folders.
-  std::vector<std::pair<long long, std::string>> same(const std::string& content) {
-    std::vector<std::pair<long long, std::string>> out;
-    same_.bind(content);
-    while (same_.step()) out.emplace_back(same_.integer(0), same_.text(1));
+  /// The scans with a content, which failures share, and an input.
+  std::vector<Known> same(const std::string& content, const std::string& input) {
+    std::vector<Known> out;
+    same_.bind(content).bind(input);
+    while (same_.step()) out.push_back({same_.integer(0), same_.text(1), same_.text(2) == "ok"});
     return out;
   }
-  /// The contents of results that are there more than once.
-  std::vector<std::string> doubled() {
-    std::vector<std::string> out;
-    while (doubled_.step()) out.push_back(doubled_.text(0));
+  /// Content and input of scans that are there more than once.
+  std::vector<std::pair<std::string, std::string>> doubled() {
+    std::vector<std::pair<std::string, std::string>> out;
+    while (doubled_.step()) out.emplace_back(doubled_.text(0), doubled_.text(1));
     return out;
   }
   void move(long long id, const std::string& folder) { move_.bind(folder).bind(id).run(); }
@@ -193,10 +200,11 @@ class Home {
     if (!folder.has_filename()) folder = folder.parent_path();  // "scans/1/" is "scans/1"
     return folder.lexically_relative(path_).string();
   }
-  /// Whether a folder that the database names is there.
-  bool has(const std::string& folder) const {
+  /// Whether the folder of a scan is there; where there is no result, that of its list.
+  bool has(const Known& scan) const {
     std::error_code error;
-    return fs::exists(path_ / folder, error);
+    const fs::path folder = path_ / scan.folder;
+    return fs::exists(scan.has_result ? folder : folder.parent_path(), error);
   }
 
  private:
@@ -213,24 +221,22 @@ Entry entry_of(const Scan& scan, const Home& home, const PlaceRules& rules) {
   return out;
 }
 
-/// The id of a result that is there with a folder that is gone; 0 if there is none.
+/// The id of the same scan that is there with a folder that is gone; 0 if there is none.
 long long moved_id(const Entry& entry, const Home& home, Writer& writer) {
-  if (entry.scan->status != "ok") return 0;
-  for (const auto& [id, folder] : writer.same(entry.content))
-    if (!home.has(folder)) return id;
+  for (const Known& known : writer.same(entry.content, entry.scan->input))
+    if (!home.has(known)) return known.id;
   return 0;
 }
 
-/// Remove results that are there twice and whose folder is gone, and count the others.
+/// Remove scans that are there twice and whose folder is gone, and count the others.
 void tell_doubled(const Home& home, Writer& writer, Added& out) {
-  for (const std::string& content : writer.doubled()) {
-    const auto all = writer.same(content);
-    std::vector<std::pair<long long, std::string>> gone, there;
-    for (const auto& scan : all) (home.has(scan.second) ? there : gone).push_back(scan);
+  for (const auto& [content, input] : writer.doubled()) {
+    std::vector<Known> gone, there;
+    for (const Known& known : writer.same(content, input)) (home.has(known) ? there : gone).push_back(known);
     if (there.empty()) continue;
-    for (const auto& [id, folder] : gone) writer.forget(id), ++out.removed;
+    for (const Known& known : gone) writer.forget(known.id), ++out.removed;
     out.twice += there.size() - 1;
-    if (there.size() > 1) out.example = there[0].second + " and " + there[1].second;
+    if (there.size() > 1) out.example = there[0].folder + " and " + there[1].folder;
   }
 }
 
@@ -258,7 +264,7 @@ Added add_scans(const std::string& database, const std::vector<Scan>& scans, con
     if (id > 0 && content == e.content)
       out.unchanged += status == "ok";
     else if (const long long there = id > 0 ? 0 : moved_id(e, home, writer); there > 0)
-      writer.move(there, e.folder), ++out.moved;
+      writer.move(there, e.folder), out.moved += status == "ok";
     else
       open.emplace_back(&e, id);
   }

@@ -54,7 +54,7 @@ CREATE TABLE IF NOT EXISTS views (
 CREATE INDEX IF NOT EXISTS scans_by_date ON scans(date, "row");
 CREATE INDEX IF NOT EXISTS scans_by_row ON scans("row", date);
 CREATE INDEX IF NOT EXISTS scans_by_status ON scans(status);
-CREATE INDEX IF NOT EXISTS scans_by_content ON scans(content);
+CREATE INDEX IF NOT EXISTS scans_by_content ON scans(content, input);
 CREATE INDEX IF NOT EXISTS fruit_by_diameter ON fruit(diameter);
 )";
 

@@ -286,6 +286,14 @@ def renamed():
     told = run("merge", "out", "--db", "moved/s.sqlite")
     assert "0 scans added, 0 replaced, 0 were there, 3 moved" in told and stored("moved/s.sqlite") == expected, told
     assert "0 scans added, 0 replaced, 3 were there:" in run("merge", "out", "--db", "moved/s.sqlite")
+    # Failures move, too.
+    with open("in2.ply", "w", encoding="utf-8") as file:
+        file.write("ply\ndamaged\n")
+    run("process", "in2.ply", "season/row_1/a/c.ply", "-o", "first", "--viewpoint", "0,0,0", *FEW_FILES, code=2)
+    run("merge", "first", "--db", "f.sqlite")
+    os.rename("first", "second")
+    told = run("merge", "second", "--db", "f.sqlite")
+    assert "0 were there, 1 moved, 1 without a result" in told and len(stored("f.sqlite")) == 2, told
     # Copies count twice, which is told; without one of them they do not.
     shutil.copytree("out", "copy")
     told = run("merge", "out", "copy", "--db", "new.sqlite")
