@@ -69,9 +69,11 @@ int run_season(const PageOptions& options) {
     throw UsageError(options.output + ": exists; use --force to overwrite it");
   const season::Overview overview = season::read_overview(options.database);
   io::write_file(options.output, season::season_page(overview, fs::path(options.database).stem().string()));
-  const season::Tally all = overview.all();
-  std::cout << all.fruit << " fruit in " << all.scans << " scans, " << all.failed
-            << " without a result: " << options.output << "\n";
+  const season::Tally all = overview.all(), last = overview.of_date(overview.last_date());
+  const std::size_t dates = overview.dates().size();
+  std::cout << last.fruit << " fruit in " << last.scans << " scans on " << overview.last_date()
+            << (dates > 1 ? ", the last of " + std::to_string(dates) + " dates" : "") << "; in all " << all.scans
+            << " scans, " << all.failed << " without a result: " << options.output << "\n";
   return kSuccess;
 }
 

@@ -76,11 +76,25 @@ std::vector<std::string> Overview::dates() const {
   return {out.begin(), out.end()};
 }
 
-Tally Overview::of_row(const std::string& row) const {
-  Tally sum;
+std::string Overview::last_date(const std::string& row) const {
+  std::string out;
   if (const auto found = cells.find(row); found != cells.end())
-    for (const auto& [date, tally] : found->second) sum += tally;
-  return sum;
+    for (const auto& [date, tally] : found->second)
+      if (tally.scans > 0) out = date;
+  return out;
+}
+
+std::string Overview::last_date() const {
+  std::string out;
+  for (const auto& [row, dates] : cells) out = std::max(out, last_date(row));
+  return out;
+}
+
+Tally Overview::of(const std::string& row, const std::string& date) const {
+  const auto found = cells.find(row);
+  if (found == cells.end()) return {};
+  const auto tally = found->second.find(date);
+  return tally == found->second.end() ? Tally() : tally->second;
 }
 
 Tally Overview::of_date(const std::string& date) const {
@@ -92,7 +106,8 @@ Tally Overview::of_date(const std::string& date) const {
 
 Tally Overview::all() const {
   Tally sum;
-  for (const auto& [row, dates] : cells) sum += of_row(row);
+  for (const auto& [row, dates] : cells)
+    for (const auto& [date, tally] : dates) sum += tally;
   return sum;
 }
 

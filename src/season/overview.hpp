@@ -43,9 +43,14 @@ struct Overview {
   std::vector<std::string> versions;                          ///< of AgriSEE, of all scans
   std::size_t parameter_sets = 0;                             ///< number of different parameters
 
-  /// The rows, numbers in their order; the dates, in theirs; and all together.
+  /// The rows, numbers in their order; the dates, in theirs.
   std::vector<std::string> rows() const, dates() const;
-  Tally of_row(const std::string& row) const;
+  /// The last date with a result of a row; "" if there is none.
+  std::string last_date(const std::string& row) const;
+  /// The last date with a result of any row; "" if there is none.
+  std::string last_date() const;
+  /// The scans of a row on a date; of all rows on it; of everything, where fruit of several dates count several times.
+  Tally of(const std::string& row, const std::string& date) const;
   Tally of_date(const std::string& date) const;
   Tally all() const;
 };

@@ -84,21 +84,30 @@ std::string ripeness_bar(const Tally& tally) {
   return out + "</div>";
 }
 
-std::string table_row(const std::string& name, const Tally& t) {
+/// A line of a table: what it is about, and the scans of that.
+struct Line {
+  std::vector<std::string> labels;
+  Tally tally;
+};
+
+std::string table_row(const Line& line) {
+  const Tally& t = line.tally;
   const auto low = t.diameter(0.1), high = t.diameter(0.9);
-  return "<tr>" + cell(name) + cell(count_text(t.scans)) + cell(t.failed > 0 ? count_text(t.failed) : "") +
+  std::string labels;
+  for (const std::string& text : line.labels) labels += cell(label(text));
+  return "<tr>" + labels + cell(count_text(t.scans)) + cell(t.failed > 0 ? count_text(t.failed) : "") +
          cell(count_text(t.fruit)) + optional_cell(fruit_per_scan(t), 1) + optional_cell(t.diameter(0.5), 1) +
          cell(low ? number(*low, 0) + " to " + number(*high, 0) : "") + cell(t.sized > 0 ? number(t.mass, 1) : "") +
          optional_cell(ripe_percent(t), 0) + cell(ripeness_bar(t)) + "</tr>\n";
 }
 
-std::string table(const std::string& title, const std::vector<std::string>& names,
-                  const std::function<Tally(const std::string&)>& tally_of) {
-  std::string out =
-      "<div class=\"wide\"><table><tr><th>" + title +
-      "</th><th>scans</th><th>failed</th><th>fruit</th><th>a scan</th><th>diameter, mm</th><th>80 % of them</th>"
+std::string table(const std::vector<std::string>& titles, const std::vector<Line>& lines) {
+  std::string out = "<div class=\"wide\"><table><tr>";
+  for (const std::string& title : titles) out += "<th>" + title + "</th>";
+  out +=
+      "<th>scans</th><th>failed</th><th>fruit</th><th>a scan</th><th>diameter, mm</th><th>80 % of them</th>"
       "<th>mass, kg</th><th>ripe, %</th><th>ripeness</th></tr>\n";
-  for (const std::string& name : names) out += table_row(label(name), tally_of(name));
+  for (const Line& line : lines) out += table_row(line);
   return out + "</table></div>\n";
 }
 
@@ -169,15 +178,24 @@ std::string histograms(const Overview& overview, const Tally& all) {
 }  // namespace
 
 std::string season_page(const Overview& overview, const std::string& name) {
-  const Tally all = overview.all();
+  const Tally all = overview.all(), last = overview.of_date(overview.last_date());
   const std::vector<std::string> dates = overview.dates(), rows = overview.rows();
+  std::vector<Line> of_dates, of_rows;
+  for (const std::string& date : dates) of_dates.push_back({{date}, overview.of_date(date)});
+  for (const std::string& row : rows) {
+    const std::string date = overview.last_date(row);
+    of_rows.push_back({{row, date}, overview.of(row, date)});
+  }
   std::string out = "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><title>" + escaped_html(name) +
                     "</title><meta name=\"viewport\" content=\"width=device-width\"><style>" + kStyle +
-                    "</style></head><body>\n<h1>" + escaped_html(name) + "</h1>\n<p>" + count_text(all.fruit) +
-                    " fruit in " + count_text(all.scans) + " scans of " + count_text(rows.size()) +
+                    "</style></head><body>\n<h1>" + escaped_html(name) + "</h1>\n<p>" + count_text(last.fruit) +
+                    " fruit in " + count_text(last.scans) + (last.scans == 1 ? " scan on " : " scans on ") +
+                    (dates.size() > 1 ? "the last date, " : "") + label(overview.last_date()) + ". In all " +
+                    count_text(all.scans) + (all.scans == 1 ? " scan of " : " scans of ") + count_text(rows.size()) +
                     (rows.size() == 1 ? " row" : " rows") + " on " + count_text(dates.size()) +
                     (dates.size() == 1 ? " date" : " dates") + "; " + count_text(all.failed) +
-                    " scans have no result.</p>\n";
+                    " scans have no result.</p>\n<p>Fruit count in each scan anew, so those of different dates are "
+                    "not added up: they may be the same.</p>\n";
   if (overview.versions.size() > 1 || overview.parameter_sets > 1)
     out += "<p class=\"note\">The scans were processed by " + std::to_string(overview.versions.size()) +
            " versions with " + std::to_string(overview.parameter_sets) +
@@ -189,10 +207,12 @@ std::string season_page(const Overview& overview, const std::string& name) {
              to_string(static_cast<RipenessClass>(i));
     out += ". Ripe are light_red and red.</p>\n";
   }
-  out += "<h2>Dates</h2>\n" + table("date", dates, [&](const std::string& date) { return overview.of_date(date); });
-  out += "<h2>Rows</h2>\n" + table("row", rows, [&](const std::string& row) { return overview.of_row(row); });
+  out += "<h2>Dates</h2>\n" + table({"date"}, of_dates);
+  out += "<h2>Rows, each on its last date</h2>\n" + table({"row", "date"}, of_rows);
   if (rows.size() > 1 || dates.size() > 1)
     out += "<h2>Rows and dates</h2>\n" + grid(overview, "Fruit a scan", 1, fruit_per_scan) +
+           grid(overview, "Mass, kg", 1,
+                [](const Tally& t) { return t.sized > 0 ? std::optional(t.mass) : std::nullopt; }) +
            grid(overview, "Median diameter, mm", 1, [](const Tally& t) { return t.diameter(0.5); }) +
            grid(overview, "Ripe, %", 0, ripe_percent);
   return out + histograms(overview, all) + "</body></html>\n";

@@ -431,7 +431,7 @@ def database():
     assert ask("SELECT \"row\", date = substr(time, 1, 10), views FROM scans WHERE input = ''") == [("B", 1, 2)]
     assert ask("SELECT count(*), sum(points_new) > 0 FROM views") == [(2, 1)]
     page = "s.html"
-    assert "in 5 scans, 0 without a result" in run("season", "s.sqlite", "-o", page)
+    assert "the last of 3 dates; in all 5 scans, 0 without a result" in run("season", "s.sqlite", "-o", page)
     with open(page, encoding="utf-8") as file:
         text = file.read()
     for told in "5 scans of 3 rows", "2026-05-01", "<td>10</td>", "2 sets of parameters":
@@ -476,12 +476,16 @@ def million():
           FROM scans s, k;""")
     connection.close()
     begin = time.time()
-    assert "1000000 fruit in 50000 scans" in run("season", "s.sqlite", "-o", "s.html")
+    assert "50000 fruit in 2500 scans on 2026-08-12, the last of 20 dates; in all 50000 scans" in run(
+        "season", "s.sqlite", "-o", "s.html")
     page = time.time() - begin
     print(f"page of a million fruit: {page:.2f} s")
     assert page < 10 and seconds < 20  # some ten times what it takes
     with open("s.html", encoding="utf-8") as file:
         text = file.read()
+    assert "50&#8239;000 fruit in 2&#8239;500 scans on the last date, 2026-08-12. In all 50&#8239;000 scans" in text
+    # Fruit of several dates, which may be the same, are not added up.
+    assert "<tr><td>6</td><td>2026-08-12</td><td>62</td><td></td><td>1&#8239;240</td>" in text, text[:12000]
     row = "<tr><td>2026-04-08</td><td>2&#8239;500</td><td></td><td>50&#8239;000</td><td>20.0</td><td>50.0</td>"
     assert row in text and "<td>42 to 58</td><td>5000.0</td><td>50</td>" in text, text[:6000]
 
