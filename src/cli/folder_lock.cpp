@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "folder_lock.hpp"
 
-#include <agrisee/core/error.hpp>
-
 #include <cerrno>
 #include <fcntl.h>
 #include <sys/file.h>
@@ -20,7 +18,7 @@ void FolderLock::take(const std::string& folder) {
   if (descriptor_ < 0 || ::flock(descriptor_, LOCK_EX | LOCK_NB) == 0 || errno != EWOULDBLOCK) return;
   ::close(descriptor_);
   descriptor_ = -1;
-  throw FileError(folder + ": another process works in this folder; wait for its end, or name another");
+  throw FolderBusy(folder + ": another process works in this folder; wait for its end, or name another");
 }
 
 }  // namespace agrisee::cli

@@ -10,6 +10,7 @@
 #include <glob.h>
 #include <iostream>
 #include <map>
+#include <numeric>
 #include <set>
 #include <sstream>
 #include <unistd.h>
@@ -138,15 +139,19 @@ void check_inputs_stay(const std::string& input, const ListedCommand& command, c
         throw UsageError(file + ": is an input and would be overwritten; name another output folder");
 }
 
-/// Does a job unless it is done. @return whether there was anything to do
+/// Does a job unless it is done; where another process works in its folder, it stays open.
+/// @return whether there was anything to do
 bool do_job(const Job& job, const fs::path& folder, const ListedCommand& command, SummaryRow& row) {
   JobRecord record{command.name, job.input, "", AGRISEE_VERSION, "started", ""};
   bool recorded = false, worked = true;
   FolderLock lock;
+  row.message.clear();
   try {
     lock.take(folder.string());
     check_inputs_stay(job.input, command, folder);
     record.key = command.key(job.input);
+    make_folder(folder.string());
+    lock.take(folder.string());
     const auto before = read_job(folder);
     const bool same = before && before->key == record.key && !record.key.empty() && !command.force;
     if (same && before->status == "ok" && command.is_complete(folder.string())) {
@@ -156,11 +161,13 @@ bool do_job(const Job& job, const fs::path& folder, const ListedCommand& command
       const bool interrupted = same && before->status == "started";
       // A result is deleted before a new key is noted: it must never pass for what it is not.
       if (!interrupted) prepare_output(folder.string(), before.has_value() || command.force);
-      lock.take(folder.string());
       recorded = true;
       write_job(folder, record);
       command.run(job.input, folder.string(), interrupted ? Begin::resume : Begin::again);
     }
+  } catch (const FolderBusy& e) {
+    row.message = e.what();
+    return false;
   } catch (const std::exception& e) {
     row.message = message_of(e);
   }
@@ -253,20 +260,32 @@ int run_jobs(const std::vector<Job>& jobs, const Shard& shard, const std::string
     list.list = list_mark(inputs);
   }
   write_summary(summary, list);  // if this process is killed, it tells what is open
-  std::vector<std::string> failures;
+  std::vector<std::size_t> left(rows.size());
+  std::iota(left.begin(), left.end(), std::size_t{0});
   std::size_t done_before = 0;
-  for (std::size_t k = 0; k < rows.size(); ++k) {
-    SummaryRow& row = rows[k];
-    const bool worked = do_job({row.input, row.folder}, fs::path(output) / row.folder, command, row);
-    if (!row.message.empty()) failures.push_back(row.input + ": " + row.message);
-    done_before += !worked;
-    if (worked) write_summary(summary, list);
+  for (int round = 0; round < 2 && !left.empty(); ++round) {  // what another process did meanwhile is done, too
+    std::vector<std::size_t> busy;
+    for (const std::size_t k : left) {
+      SummaryRow& row = rows[k];
+      const bool worked = do_job({row.input, row.folder}, fs::path(output) / row.folder, command, row);
+      if (row.status == "open")
+        busy.push_back(k);
+      else if (worked)
+        write_summary(summary, list);
+      else
+        ++done_before;
+    }
+    left = busy;
   }
   write_summary(summary, list);
+  const auto count =
+      std::count_if(rows.begin(), rows.end(), [](const SummaryRow& row) { return row.status == "failed"; });
   std::cout << rows.size() << " inputs, " << (done_before > 0 ? std::to_string(done_before) + " done before, " : "")
-            << failures.size() << " failed: " << summary.string() << "\n";
-  for (const std::string& failure : failures) std::cerr << "agrisee: failed: " << failure << "\n";
-  return failures.empty() ? kSuccess : kBadInput;
+            << count << " failed" << (left.empty() ? "" : ", " + std::to_string(left.size()) + " open") << ": "
+            << summary.string() << "\n";
+  for (const SummaryRow& row : rows)
+    if (row.status != "ok") std::cerr << "agrisee: " << row.status << ": " << row.input << ": " << row.message << "\n";
+  return count == 0 && left.empty() ? kSuccess : kBadInput;
 }
 
 bool is_list(const std::vector<std::string>& inputs, const std::string& shard) {

@@ -50,8 +50,8 @@ struct ListedCommand {
 
 /// Run the jobs of a shard one after the other. Those whose folder holds a result with the same key (job.json) are
 /// skipped, those whose key has changed are run again. After each, OUTPUT/summary.csv, or summary-I-of-N.csv, is
-/// rewritten.
-/// @return kSuccess, or kBadInput if any job failed; the messages of failed jobs are repeated at the end
+/// rewritten. Jobs in whose folder another process works come last; if it still does, they stay open.
+/// @return kSuccess, or kBadInput if any job failed or stays open; their messages are repeated at the end
 int run_jobs(const std::vector<Job>& jobs, const Shard& shard, const std::string& output, const ListedCommand& command);
 
 /// Whether inputs are a list: several, a pattern, or a shard.

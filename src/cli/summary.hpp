@@ -17,7 +17,7 @@ constexpr std::size_t kMostShards = 1000000;  ///< more are a slip of the pen
 /// One input of a list. `fruits` to `seconds` are those of its result, as texts; empty unless it is done.
 struct SummaryRow {
   std::string input, folder;
-  std::string status = "open";  ///< `open`: not run yet; `ok`, `failed`
+  std::string status = "open";  ///< `open`: not run yet, or another process does it; `ok`, `failed`
   std::string fruits, views, stop_reason, seconds, message;
 };
 

@@ -193,6 +193,31 @@ def interrupted():
 
 
 @case
+def together():
+    """Two processes on the same list leave one summary, of what both did."""
+    for n in range(6):
+        ball(f"in/{n}.ply", seed=n)
+    process("--threads", "1")
+    lock = os.open("out/2", os.O_RDONLY)
+    fcntl.flock(lock, fcntl.LOCK_EX)
+    told = process("--threads", "1", code=2)
+    assert "6 inputs, 5 done before, 0 failed, 1 open" in told and "agrisee: open: in/2.ply: out/2: another process" in told
+    with open("out/summary.csv", encoding="utf-8") as file:
+        assert 'in/2.ply,2,open,,,,,"out/2: another process works' in file.read()
+    os.close(lock)
+    assert "6 inputs, 6 done before, 0 failed:" in process("--threads", "1")
+    for _ in range(3):
+        shutil.rmtree("out")
+        words = [AGRISEE, "process", "in/*.ply", "-o", "out", "--viewpoint", "0,0,0", *FEW_FILES, "--threads", "1"]
+        both = [subprocess.Popen(words, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True) for _ in range(2)]
+        told = [one.communicate()[0] for one in both]
+        assert all("6 inputs" in text and " 0 failed" in text for text in told), told
+        assert 0 in [one.returncode for one in both] and {one.returncode for one in both} <= {0, 2}, told
+        with open("out/summary.csv", encoding="utf-8") as file:
+            assert file.read().count(",ok,1,") == 6, told
+
+
+@case
 def shards():
     """Shards that saw different lists are not merged."""
     def shard(text, code=0):
