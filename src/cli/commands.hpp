@@ -115,7 +115,8 @@ void show_progress(const std::vector<View>& views, std::size_t budget);
 /// Call after the last view.
 void end_progress();
 
-/// Print the summary of a result to stdout: a table of the fruit unless it should be quiet, or JSON.
+/// Print the summary of a result to stdout: a table of the fruit unless it should be quiet, or JSON, on one
+/// line in a list.
 void print_summary(const ScanResult& result, const std::string& folder, const CommonOptions& options);
 
 }  // namespace agrisee::cli

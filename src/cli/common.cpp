@@ -59,7 +59,7 @@ CLI::Option* add_common_options(CLI::App& command, CommonOptions& options) {
       ->check(CLI::Range(0, 1024))
       ->capture_default_str();
   command.add_flag("--force", options.force, "overwrite an existing result");
-  command.add_flag("--json", options.json, "print the summary and the fruit as JSON");
+  command.add_flag("--json", options.json, "print the summary and the fruit as JSON; of a list a line each");
   command.add_flag("--quiet", options.quiet, "print neither progress nor the table of fruit");
   command.add_flag("--no-picture", options.no_picture,
                    "do not write truss.png, which takes about half of the time of `process`");
@@ -198,7 +198,8 @@ void end_progress() {
 
 namespace {
 
-std::string summary_json(const ScanResult& result, const std::string& folder, std::size_t labelled) {
+/// @param one_line as in a list, whose results are a line each
+std::string summary_json(const ScanResult& result, const std::string& folder, std::size_t labelled, bool one_line) {
   io::Json out;
   out["folder"] = folder;
   out["fruits"] = io::parse_json(io::fruits_to_json(result.fruits));
@@ -209,7 +210,7 @@ std::string summary_json(const ScanResult& result, const std::string& folder, st
   if (result.fruits.empty()) out["no_fruit"] = why_no_fruit(result);
   out["points"] = {{"merged", result.raw.size()}, {"filtered", result.cloud.size()}, {"labelled", labelled}};
   out["seconds"] = result.seconds.total;
-  return out.dump(2) + "\n";
+  return out.dump(one_line ? -1 : 2, ' ', false, io::Json::error_handler_t::replace) + "\n";
 }
 
 /// " from 7 views (low_gain)"; nothing for a cloud, of whose views nothing is known.
@@ -258,7 +259,7 @@ void print_summary(const ScanResult& result, const std::string& folder, const Co
   if (options.quiet && !options.json) return;
   std::size_t labelled = 0;
   for (int l : result.labels) labelled += l > 0;
-  std::cout << (options.json ? summary_json(result, folder, labelled) : summary_text(result, folder));
+  std::cout << (options.json ? summary_json(result, folder, labelled, options.prepared) : summary_text(result, folder));
 }
 
 }  // namespace agrisee::cli

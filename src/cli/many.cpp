@@ -280,9 +280,11 @@ int run_jobs(const std::vector<Job>& jobs, const Shard& shard, const std::string
   write_summary(summary, list);
   const auto count =
       std::count_if(rows.begin(), rows.end(), [](const SummaryRow& row) { return row.status == "failed"; });
-  std::cout << rows.size() << " inputs, " << (done_before > 0 ? std::to_string(done_before) + " done before, " : "")
-            << count << " failed" << (left.empty() ? "" : ", " + std::to_string(left.size()) + " open") << ": "
-            << summary.string() << "\n";
+  (command.json ? std::cerr : std::cout) << rows.size() << " inputs, "
+                                         << (done_before > 0 ? std::to_string(done_before) + " done before, " : "")
+                                         << count << " failed"
+                                         << (left.empty() ? "" : ", " + std::to_string(left.size()) + " open") << ": "
+                                         << summary.string() << "\n";
   for (const SummaryRow& row : rows)
     if (row.status != "ok") std::cerr << "agrisee: " << row.status << ": " << row.input << ": " << row.message << "\n";
   return count == 0 && left.empty() ? kSuccess : kBadInput;

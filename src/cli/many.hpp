@@ -38,6 +38,7 @@ enum class Begin {
 struct ListedCommand {
   std::string name;                     ///< "scan" or "process"
   bool force = false;                   ///< run all inputs again
+  bool json = false;                    ///< standard output is for programs
   std::vector<std::string> files = {};  ///< that all inputs use, such as that of --params
   /// Does one input. An exception counts as a failure.
   std::function<void(const std::string& input, const std::string& folder, Begin begin)> run;

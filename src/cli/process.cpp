@@ -345,7 +345,7 @@ void add_process(CLI::App& app, Run& run) {
       "  agrisee process 'season/*.ply' -o results --shard 2/8");
   command->callback([options, &run] {
     run = [options] {
-      ListedCommand list{"process", options->force, files_of(*options), {}, {}, {}};
+      ListedCommand list{"process", options->force, options->json, files_of(*options), {}, {}, {}};
       list.run = [&](const std::string& input, const std::string& folder, Begin begin) {
         ProcessOptions one = *options;
         one.cloud = input;

@@ -235,7 +235,7 @@ void run_scan(const ScanOptions& options) {
 
 /// Scan every scene of the list.
 int run_scans(const ScanOptions& options) {
-  ListedCommand list{"scan", options.force, {options.parameter_file}, {}, {}, {}};
+  ListedCommand list{"scan", options.force, options.json, {options.parameter_file}, {}, {}, {}};
   if (!options.mcap.empty() && is_list(options.scenes, options.shard))
     throw UsageError("--mcap: is one file, so name one scene without --shard");
   list.run = [&](const std::string& input, const std::string& folder, Begin begin) {

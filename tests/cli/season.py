@@ -117,6 +117,25 @@ def keyed():
 
 
 @case
+def json_lines():
+    """Of a list, --json prints one document a line, and nothing else on standard output."""
+    for name in "ab":
+        ball(f"in/{name}.ply")
+    with open("in/c.ply", "w", encoding="utf-8") as file:
+        file.write("ply\ndamaged\n")
+    run("make-truss", "--total", "3", "--hidden", "0", "--seed", "1", "-o", "t1")
+    shutil.copytree("t1", "t2")
+    for words, code, count in ([["process", "in/*.ply", "-o", "out", "--viewpoint", "0,0,0"], 2, 2],
+                               [["scan", "t1", "t2", "-o", "scans", "--max-views", "1"], 0, 2],
+                               [["scan", "t1", "t2", "-o", "scans", "--max-views", "1"], 0, 0]):
+        done = subprocess.run([AGRISEE, *words, *FEW_FILES, "--json"], capture_output=True, text=True)
+        documents = [json.loads(line) for line in done.stdout.splitlines()]
+        assert done.returncode == code and len(documents) == count, (words, done)
+        assert all(os.path.isdir(one["folder"]) and len(one["fruits"]) > 0 for one in documents), documents
+        assert " inputs, " in done.stderr and ("failed: in/c.ply" in done.stderr) == (code == 2), done.stderr
+
+
+@case
 def interrupted():
     """A list of scans that is stopped goes on by the same command, with the views that it has."""
     for n in 1, 2:
