@@ -19,16 +19,8 @@ namespace fs = std::filesystem;
 
 /// Prepare a database for writing. @throws FileError if it belongs to something else
 void prepare(const Connection& connection) {
-  const auto pragma = [&](const char* sql) {
-    Statement question(connection, sql);
-    question.step();
-    return question.integer(0);
-  };
-  const bool is_new = pragma("SELECT count(*) FROM sqlite_master") == 0;
-  if (!is_new && pragma("PRAGMA application_id") != kApplicationId)
-    throw FileError(connection.path() + ": is a database of something else");
-  if (!is_new && pragma("PRAGMA user_version") != kSchemaVersion)
-    throw FileError(connection.path() + ": was written by another version of AgriSEE; make it again from the results");
+  const bool is_new = connection.integer("SELECT count(*) FROM sqlite_master") == 0;
+  if (!is_new) check_schema(connection);
   connection.run("PRAGMA foreign_keys = ON; BEGIN IMMEDIATE;");
   connection.run(kSchema);
   if (!is_new) return;

@@ -115,10 +115,8 @@ Overview read_overview(const std::string& database) {
   std::error_code error;
   if (!std::filesystem::exists(database, error)) throw FileError(database + ": no such file");
   const Connection connection(database, Connection::Mode::read);
-  Statement id(connection, "PRAGMA application_id");
-  if (!id.step() || id.integer(0) != kApplicationId)
-    throw FileError(database + ": is not a season's database, as `agrisee merge --db` writes it");
-  id.reset();
+  connection.run("BEGIN");  // all questions see the same state, though another process may write
+  check_schema(connection);
   Overview out;
   std::unordered_map<long long, Tally*> tallies;  // of each scan
   Statement scans(connection, "SELECT id, status, \"row\", date FROM scans");
@@ -150,9 +148,7 @@ Overview read_overview(const std::string& database) {
   Statement versions(connection,
                      "SELECT version FROM versions WHERE id IN (SELECT version FROM scans) ORDER BY version");
   while (versions.step()) out.versions.push_back(versions.text(0));
-  Statement parameters(connection, "SELECT count(DISTINCT parameters) FROM scans");
-  parameters.step();
-  out.parameter_sets = static_cast<std::size_t>(parameters.integer(0));
+  out.parameter_sets = static_cast<std::size_t>(connection.integer("SELECT count(DISTINCT parameters) FROM scans"));
   return out;
 }
 

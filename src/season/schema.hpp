@@ -5,8 +5,13 @@
 
 namespace agrisee::season {
 
+class Connection;
+
 /// `PRAGMA user_version` of a database, and `PRAGMA application_id`, by which files of others are told apart ("AgSE").
 constexpr int kSchemaVersion = 1, kApplicationId = 0x41675345;
+
+/// Check that a database holds these tables. @throws FileError if it belongs to something else, or to another version
+void check_schema(const Connection& connection);
 
 /// Creates tables and indices that are missing.
 constexpr const char* kSchema = R"(

@@ -3,6 +3,7 @@
 
 #include <agrisee/core/error.hpp>
 
+#include <filesystem>
 #include <sqlite3.h>
 
 namespace agrisee::season {
@@ -10,6 +11,9 @@ namespace agrisee::season {
 void Connection::Closer::operator()(sqlite3* database) const { sqlite3_close(database); }
 
 Connection::Connection(const std::string& path, Mode mode) : path_(path) {
+  std::error_code error;
+  if (std::filesystem::is_directory(path, error))
+    throw FileError(path + ": is a folder; name the file of a database, as `agrisee merge --db` writes it");
   sqlite3* opened = nullptr;
   const int flags = mode == Mode::write ? SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE : SQLITE_OPEN_READONLY;
   const int code = sqlite3_open_v2(path.c_str(), &opened, flags, nullptr);
@@ -20,6 +24,11 @@ Connection::Connection(const std::string& path, Mode mode) : path_(path) {
 
 void Connection::run(const char* sql) const {
   if (sqlite3_exec(database_.get(), sql, nullptr, nullptr, nullptr) != SQLITE_OK) fail();
+}
+
+long long Connection::integer(const char* sql) const {
+  Statement question(*this, sql);
+  return question.step() ? question.integer(0) : 0;
 }
 
 long long Connection::last_id() const { return sqlite3_last_insert_rowid(database_.get()); }

@@ -64,10 +64,13 @@ class Connection {
  public:
   enum class Mode { read, write };
   /// @param mode `write` creates the file if it is missing
+  /// @throws FileError if it cannot be opened, such as a folder
   Connection(const std::string& path, Mode mode);
 
   /// Run statements that have no answer.
   void run(const char* sql) const;
+  /// The number that a question has for an answer; 0 if it has none.
+  long long integer(const char* sql) const;
   /// The id of the row that was inserted last.
   long long last_id() const;
   const std::string& path() const { return path_; }

@@ -489,7 +489,12 @@ def database():
         file.write("nothing" * 200)
     assert "other.sqlite: " in run("season", "other.sqlite", "-o", "x.html", code=2)
     sqlite3.connect("foreign.sqlite").execute("CREATE TABLE t (a)").connection.close()
-    assert "database of something else" in run("merge", "out", "--db", "foreign.sqlite", code=2)
+    shutil.copy("s.sqlite", "later.sqlite")
+    sqlite3.connect("later.sqlite").execute("PRAGMA user_version = 99").connection.close()
+    for database, told in [("foreign.sqlite", "database of something else"), ("later.sqlite", "another version of AgriSEE"),
+                           ("out", "out: is a folder")]:
+        assert told in run("merge", "out", "--db", database, code=2), database
+        assert told in run("season", database, "-o", "x.html", code=2), database
 
 
 @case
