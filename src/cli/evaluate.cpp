@@ -17,6 +17,7 @@
 
 #include "commands.hpp"
 #include "inputs.hpp"
+#include "words.hpp"
 
 namespace agrisee::cli {
 namespace {
@@ -209,7 +210,7 @@ void add_evaluate(CLI::App& app, Run& run) {
   command->add_option("scene", options->scene, "scene file (YAML), or a folder with scene.yaml")->required();
   command->add_option("result", options->result, "result folder")->required();
   command->add_option("--threshold", options->threshold, "a point lies on a surface if it is within this distance (m)")
-      ->check(CLI::PositiveNumber)
+      ->check(above_zero())
       ->capture_default_str();
   command->add_option("--threads", options->threads, "number of threads (0: one per core); does not change the result")
       ->check(CLI::Range(0, 1024));

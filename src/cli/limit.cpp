@@ -19,6 +19,7 @@
 
 #include "commands.hpp"
 #include "inputs.hpp"
+#include "words.hpp"
 
 namespace agrisee::cli {
 namespace {
@@ -307,7 +308,7 @@ void add_limit(CLI::App& app, Run& run) {
       ->needs(search)
       ->capture_default_str();
   command->add_option("--base-step", options->base.step, "distance between the places (m)")
-      ->check(CLI::PositiveNumber)
+      ->check(above_zero())
       ->needs(search)
       ->capture_default_str();
   command->add_option("--threads", options->threads, "number of threads (0: one per core); does not change the result")

@@ -22,6 +22,7 @@
 #include "job_record.hpp"
 #include "many.hpp"
 #include "recorded.hpp"
+#include "words.hpp"
 
 namespace agrisee::cli {
 namespace {
@@ -287,7 +288,7 @@ void add_image_options(CLI::App& command, ProcessOptions& options) {
   command
       .add_option("--depth-scale", options.depth_scale,
                   "metres per unit of the depth image (0.001 for whole numbers, 1 for floats)")
-      ->check(CLI::PositiveNumber)
+      ->check(above_zero())
       ->needs(depth);
   command.add_option("--color", options.color, "color image (PNG) registered to the depth image")->needs(depth);
   command

@@ -3,6 +3,10 @@
 
 #include <algorithm>
 #include <cctype>
+#include <cerrno>
+#include <cmath>
+#include <cstdlib>
+#include <limits>
 
 #include "io/formats/text.hpp"
 
@@ -71,9 +75,24 @@ CLI::Validator one_of(const std::vector<std::string>& known) {
 CLI::Validator not_negative() {
   return CLI::Validator(
       [](std::string& text) {
-        return text.find('-') == std::string::npos ? std::string() : "must be 0 or more, got " + text;
+        if (text.find('-') != std::string::npos) return "must be 0 or more, got " + text;
+        errno = 0;
+        std::strtoull(text.c_str(), nullptr, 0);
+        if (errno == ERANGE)
+          return "must be at most " + std::to_string(std::numeric_limits<unsigned long long>::max()) + ", got " + text;
+        return std::string();
       },
       ">= 0", "not negative");
+}
+
+CLI::Validator above_zero() {
+  return CLI::Validator(
+      [](std::string& text) {
+        double value = 0.0;
+        if (!CLI::detail::lexical_cast(text, value)) return "must be a number above 0, got " + text;
+        return value > 0.0 && std::isfinite(value) ? std::string() : "must be above 0, got " + text;
+      },
+      "> 0", "above zero");
 }
 
 }  // namespace agrisee::cli

@@ -17,7 +17,11 @@ std::optional<std::string> wrong_word(const CLI::App& app, const std::vector<std
 /// For an option whose value is one of some words. For any other, the nearest of them is suggested.
 CLI::Validator one_of(const std::vector<std::string>& known);
 
-/// For an option whose value is a whole number, zero or more. (CLI11 takes -1 for the largest number.)
+/// For an option whose value is a whole number, zero or more. (CLI11 takes -1, and what is too large, for the largest
+/// number.)
 CLI::Validator not_negative();
+
+/// For an option whose value is a finite number above zero.
+CLI::Validator above_zero();
 
 }  // namespace agrisee::cli

@@ -229,6 +229,13 @@ PY
     done
     expect 1 'must be 0 or more, got -1' scan s.yaml -o b --seed -1
     expect 1 'must be 0 or more, got -1' make-truss -o b --seed -1
+    for command in 'scan s.yaml' 'process c.ply' make-truss make-plant; do
+      expect 1 '--seed: must be at most 18446744073709551615, got 99999999999999999999999' $command -o b --seed 99999999999999999999999
+    done
+    for value in 0 -1 inf nan; do
+      expect 1 "--threshold: must be above 0, got $value\$" evaluate t r --threshold $value
+    done
+    expect 1 '--threshold: must be a number above 0, got x$' evaluate t r --threshold x
     expect 1 '^agrisee: .*output is required' process a.ply
     expect 1 '^agrisee: --max-views: ' scan s.yaml -o b --max-views 0 && expect 1 '^agrisee: .*subcommand' && expect 1 '^agrisee: ' scan
     for limit in 'total.*1 - 12' 'leaflets.*0 - 6' 'elongation.*0.5 - 2' 'at most half' '0.005 to 0.06'; do
