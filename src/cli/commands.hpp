@@ -64,6 +64,7 @@ std::vector<std::string> planner_choices();
 /// Options that scan and process have in common.
 struct CommonOptions {
   std::string preset = kPresetNames[0];
+  bool preset_asked = false;   ///< the command line names it
   std::string parameter_file;  ///< value of --params
   std::string output;
   std::vector<double> radius;  ///< smallest and largest expected radius of a fruit (m), or empty
@@ -75,6 +76,9 @@ struct CommonOptions {
 /// Add these options to a subcommand. @return the option that names the output folder
 CLI::Option* add_common_options(CLI::App& command, CommonOptions& options);
 
+/// A preset that an option names, changed by a parameter file.
+/// @throws UsageError if the file names another preset, FileError
+Parameters changed_by(const std::string& file, const Parameters& preset, const char* option);
 /// The preset, changed by the parameter file and the expected radii. @throws FileError, UsageError
 Parameters parameters_of(const CommonOptions& options);
 /// The number of threads to use: `requested`, or one per core if it is 0.

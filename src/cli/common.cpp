@@ -46,6 +46,7 @@ CLI::Option* add_common_options(CLI::App& command, CommonOptions& options) {
   CLI::Option* output = command.add_option("-o,--output", options.output, "folder for the result");
   command.add_option("--preset", options.preset, "initial parameter values")
       ->check(one_of(preset_choices()))
+      ->each([&options](const std::string&) { options.preset_asked = true; })
       ->capture_default_str();
   command.add_option("--params", options.parameter_file, "YAML file with parameters to change");
   command
@@ -67,9 +68,19 @@ CLI::Option* add_common_options(CLI::App& command, CommonOptions& options) {
   return output;
 }
 
+Parameters changed_by(const std::string& file, const Parameters& preset, const char* option) {
+  Parameters parameters = io::read_parameters(file, preset);
+  if (parameters.preset != preset.preset)
+    throw UsageError(std::string(option) + " " + preset.preset + ": " + file + " starts from the preset " +
+                     parameters.preset + "; leave one of them out");
+  return parameters;
+}
+
 Parameters parameters_of(const CommonOptions& options) {
-  const Parameters base = Parameters::named(options.preset);
-  Parameters parameters = options.parameter_file.empty() ? base : io::read_parameters(options.parameter_file, base);
+  Parameters parameters = Parameters::named(options.preset);
+  if (!options.parameter_file.empty())
+    parameters = options.preset_asked ? changed_by(options.parameter_file, parameters, "--preset")
+                                      : io::read_parameters(options.parameter_file, parameters);
   if (options.radius.empty()) return parameters;
   try {
     parameters.expect_radii(options.radius[0], options.radius[1]);

@@ -141,7 +141,7 @@ std::vector<GroupOfCells> groups_of(const ExperimentOptions& options) {
 
 Parameters parameters_of(const ExperimentOptions& options, const std::string& preset) {
   Parameters parameters = Parameters::named(preset);
-  if (!options.parameter_file.empty()) parameters = io::read_parameters(options.parameter_file, parameters);
+  if (!options.parameter_file.empty()) parameters = changed_by(options.parameter_file, parameters, "--presets");
   if (options.max_views > 0) parameters.max_views = options.max_views;
   return parameters;
 }
@@ -329,13 +329,13 @@ void add_experiment(CLI::App& app, Run& run) {
   command->add_option("--noise", options->noises, std::string("noise models: ") + study::kNoiseNames)
       ->delimiter(',')
       ->capture_default_str();
-  command
-      ->add_option(
-          "--groups", options->groups,
-          "groups to run instead of all combinations of --presets, --planner and --noise; the report then compares "
-          "groups, without a row per truss: "
-          "PRESET/PLANNER/NOISE, or PRESET/PLANNER/NOISE/free for a free-flying camera instead of the arm")
-      ->delimiter(',');
+  auto* groups = command->add_option(
+      "--groups", options->groups,
+      "groups to run instead of all combinations of --presets, --planner and --noise; the report then compares "
+      "groups, without a row per truss: "
+      "PRESET/PLANNER/NOISE, or PRESET/PLANNER/NOISE/free for a free-flying camera instead of the arm");
+  groups->delimiter(',');
+  for (const char* replaced : {"--presets", "--planner", "--noise"}) groups->excludes(replaced);
   command->add_flag("--scanned-only", options->scanned_only,
                     "after each view measure only how much surface was scanned, not the fruit; much faster");
   command->add_option("--trials", options->trials, "number of trials; the seeds are 1, 2, ...")

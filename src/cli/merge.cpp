@@ -87,9 +87,11 @@ void add_merge(CLI::App& app, Run& run) {
       ->add_option("folder", options->folders,
                    "output folders of lists of inputs; those of shards hold summary-I-of-N.csv")
       ->required();
-  command->add_flag("--unfinished", options->unfinished,
-                    "only print the numbers of the shards to run again, separated by commas");
   add_season_options(*command, options->season);
+  command
+      ->add_flag("--unfinished", options->unfinished,
+                 "only print the numbers of the shards to run again, separated by commas")
+      ->excludes("--db");
   command->footer(
       "Without --db it only joins the summaries of shards; a list without --shard has written its summary itself.\n"
       "Examples:\n"

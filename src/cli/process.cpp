@@ -201,6 +201,10 @@ void check_input_options(const ProcessOptions& options) {
   const bool image = !options.depth.empty();
   if (!image && options.cloud.empty()) throw UsageError("an input is needed: a cloud, views.yaml, or --depth");
   if (image && !options.cloud.empty()) throw UsageError("give either an input or --depth, not both");
+  const bool of_mcap = !options.mcap.topic.empty() || !options.mcap.world_frame.empty();
+  if (of_mcap && (image || !is_mcap(options.cloud)))
+    throw UsageError((image ? options.depth : options.cloud) +
+                     ": is no MCAP file, so leave out --topic and --world-frame");
   if (!image) return;
   if (!(options.views.empty() && options.viewpoint.empty()))
     throw UsageError("--depth: the image was seen from its own origin, so leave out --views and --viewpoint");

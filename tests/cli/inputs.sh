@@ -236,6 +236,22 @@ PY
       expect 1 "--threshold: must be above 0, got $value\$" evaluate t r --threshold $value
     done
     expect 1 '--threshold: must be a number above 0, got x$' evaluate t r --threshold x
+    # What does not go together is refused.
+    echo 'preset: paper' >p.yaml
+    for command in 'scan s.yaml' 'process c.ply'; do
+      expect 1 '--preset see: p.yaml starts from the preset paper' $command -o b --preset see --params p.yaml
+    done
+    expect 1 '--presets default: p.yaml starts from the preset paper' experiment -o e --scenes 7_1 --params p.yaml
+    for replaced in '--presets paper' '--planner gain' '--noise l515'; do
+      expect 1 "--groups excludes ${replaced% *}|${replaced% *} excludes --groups" experiment -o e --groups default/gain/none $replaced
+    done
+    expect 1 '--unfinished excludes --db|--db excludes --unfinished' merge d --unfinished --db d.sqlite
+    for option in '--topic /x' '--world-frame y'; do
+      for input in c.ply v/views.yaml v '--depth d.png --intrinsics 1,1,1,1'; do
+        expect 1 'is no MCAP file, so leave out --topic and --world-frame' process $input -o b $option
+      done
+    done
+    [ ! -e b ] || fail "a refused command wrote something"
     expect 1 '^agrisee: .*output is required' process a.ply
     expect 1 '^agrisee: --max-views: ' scan s.yaml -o b --max-views 0 && expect 1 '^agrisee: .*subcommand' && expect 1 '^agrisee: ' scan
     for limit in 'total.*1 - 12' 'leaflets.*0 - 6' 'elongation.*0.5 - 2' 'at most half' '0.005 to 0.06'; do
