@@ -91,8 +91,7 @@ std::vector<SceneJob> open_scenes(const ExperimentOptions& options) {
     } else {
       jobs.push_back(open_scene(text));
     }
-    if (!names.insert(jobs.back().name).second)
-      throw UsageError(text + ": there are two scenes with the name " + jobs.back().name);
+    take_scene_name(names, jobs.back().name, text);
   }
   return jobs;
 }

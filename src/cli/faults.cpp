@@ -7,10 +7,12 @@
 #include <agrisee/study/faults.hpp>
 #include <agrisee/version.hpp>
 
+#include <algorithm>
 #include <filesystem>
 #include <iostream>
 #include <memory>
 #include <mutex>
+#include <set>
 #include <sstream>
 
 #include "commands.hpp"
@@ -121,7 +123,17 @@ std::string command_of(const FaultOptions& options) {
   return text.str();
 }
 
+/// @throws UsageError if a value is there twice: each scan would count twice
+template <typename T>
+void check_distinct(const char* option, std::vector<T> values) {
+  std::sort(values.begin(), values.end());
+  const auto twice = std::adjacent_find(values.begin(), values.end());
+  if (twice != values.end()) throw UsageError(std::string(option) + ": " + joined<T>({*twice}) + " is there twice");
+}
+
 int run_faults(const FaultOptions& options) {
+  check_distinct("--kinds", options.kinds);
+  check_distinct("--rates", options.rates);
   const fs::path path = options.report;
   if (!path.has_extension()) throw UsageError(options.report + ": needs an extension such as .md");
   for (const fs::path& written : {path, path.parent_path() / path.stem()})
@@ -130,8 +142,11 @@ int run_faults(const FaultOptions& options) {
   const study::NoiseModel noise = noise_of(options.noise);
   const Parameters parameters = Parameters::named(options.preset);
   std::vector<JudgedScene> scenes;
-  for (const std::string& text : options.scenes.empty() ? paper_truss_names() : options.scenes)
+  std::set<std::string> names;
+  for (const std::string& text : options.scenes.empty() ? paper_truss_names() : options.scenes) {
     scenes.push_back(open_scene(text));
+    take_scene_name(names, scenes.back().name, text);
+  }
   const std::vector<FaultScan> scans = list_scans(options, scenes.size());
   const std::vector<study::FaultRecord> records =
       run_scans(scans, scenes, parameters, noise, threads_of(options.threads));

@@ -85,6 +85,10 @@ std::optional<study::Truss> truss_by_name(const std::string& name) {
   }
 }
 
+void take_scene_name(std::set<std::string>& names, const std::string& name, const std::string& text) {
+  if (!names.insert(name).second) throw UsageError(text + ": there are two scenes with the name " + name);
+}
+
 void write_truss(const std::filesystem::path& folder, const study::Truss& truss) {
   io::write_ground_truth(folder / "ground_truth.json", truss.truth);
   io::write_scene(folder / "scene.yaml", {truss.workcell, truss.scene, {}});

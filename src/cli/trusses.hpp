@@ -6,6 +6,7 @@
 
 #include <filesystem>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -19,6 +20,9 @@ std::vector<std::string> paper_truss_names();
 /// the long name. None if the text is not such a name.
 /// @throws UsageError if there is no paper truss with these numbers, or no truss can be generated with them
 std::optional<study::Truss> truss_by_name(const std::string& name);
+
+/// Note the name of a scene. @param text what named the scene  @throws UsageError if another one has the name
+void take_scene_name(std::set<std::string>& names, const std::string& name, const std::string& text);
 
 /// Write scene.yaml, ground_truth.json and the meshes. @throws FileError
 void write_truss(const std::filesystem::path& folder, const study::Truss& truss);

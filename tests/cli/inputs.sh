@@ -236,7 +236,7 @@ PY
       expect 1 "--threshold: must be above 0, got $value\$" evaluate t r --threshold $value
     done
     expect 1 '--threshold: must be a number above 0, got x$' evaluate t r --threshold x
-    # What does not go together is refused.
+    # What does not go together is refused, and so are repeats.
     echo 'preset: paper' >p.yaml
     for command in 'scan s.yaml' 'process c.ply'; do
       expect 1 '--preset see: p.yaml starts from the preset paper' $command -o b --preset see --params p.yaml
@@ -251,7 +251,10 @@ PY
         expect 1 'is no MCAP file, so leave out --topic and --world-frame' process $input -o b $option
       done
     done
-    [ ! -e b ] || fail "a refused command wrote something"
+    expect 1 '--kinds: any is there twice' faults --report f.md --scenes 7_1 --kinds any,wrong_pose,any
+    expect 1 '--rates: 0.1 is there twice' faults --report f.md --scenes 7_1 --rates 0.1,0,0.1
+    expect 1 '7_1: there are two scenes with the name truss_07_1' faults --report f.md --scenes truss_07_1,7_1 --rates 0
+    [ ! -e b ] && [ ! -e f.md ] || fail "a refused command wrote something"
     expect 1 '^agrisee: .*output is required' process a.ply
     expect 1 '^agrisee: --max-views: ' scan s.yaml -o b --max-views 0 && expect 1 '^agrisee: .*subcommand' && expect 1 '^agrisee: ' scan
     for limit in 'total.*1 - 12' 'leaflets.*0 - 6' 'elongation.*0.5 - 2' 'at most half' '0.005 to 0.06'; do
