@@ -254,11 +254,12 @@ int run_jobs(const std::vector<Job>& jobs, const Shard& shard, const std::string
     rows.back().input = jobs[i].input;
     rows.back().folder = jobs[i].folder;
   }
-  if (shard.count > 1) {
-    std::vector<std::string> inputs;
-    for (const Job& job : jobs) inputs.push_back(job.input);
+  std::vector<std::string> inputs;
+  for (const Job& job : jobs) inputs.push_back(job.input);
+  if (shard.count > 1)
     list.list = list_mark(inputs);
-  }
+  else
+    remove_replaced_shards(output, inputs);
   write_summary(summary, list);  // if this process is killed, it tells what is open
   std::vector<std::size_t> left(rows.size());
   std::iota(left.begin(), left.end(), std::size_t{0});

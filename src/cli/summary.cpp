@@ -186,6 +186,22 @@ ShardSummaries read_shards(const std::filesystem::path& folder) {
   return out;
 }
 
+void remove_replaced_shards(const std::filesystem::path& folder, const std::vector<std::string>& inputs) {
+  const std::set<std::string> known(inputs.begin(), inputs.end());
+  std::error_code error, ignored;
+  const auto is_replaced = [&](const SummaryRow& row) {
+    return known.count(row.input) > 0 || !std::filesystem::exists(row.input, ignored);
+  };
+  std::vector<std::filesystem::path> replaced;
+  for (const auto& entry : std::filesystem::directory_iterator(folder, error)) {
+    if (!shard_of(entry.path().filename().string()) || !is_summary(entry.path())) continue;
+    const std::vector<SummaryRow> rows = read_summary(entry.path()).rows;
+    if (!std::all_of(rows.begin(), rows.end(), is_replaced)) return;
+    replaced.push_back(entry.path());
+  }
+  for (const std::filesystem::path& path : replaced) std::filesystem::remove(path, ignored);
+}
+
 std::string comma_list(const std::vector<std::size_t>& numbers) {
   std::string out;
   for (const std::size_t number : numbers) out += (out.empty() ? "" : ",") + std::to_string(number);

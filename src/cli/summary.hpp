@@ -59,6 +59,10 @@ struct ShardSummaries {
 /// @throws FileError if it cannot be read, or holds summaries of different numbers of shards
 ShardSummaries read_shards(const std::filesystem::path& folder);
 
+/// Remove the summaries of shards in a folder which a list replaces: it has all inputs of all of them that
+/// still exist.
+void remove_replaced_shards(const std::filesystem::path& folder, const std::vector<std::string>& inputs);
+
 /// Numbers separated by commas, as Slurm's `--array` takes them.
 std::string comma_list(const std::vector<std::size_t>& numbers);
 

@@ -275,6 +275,14 @@ def shards():
     assert merged(code=2)[1] == "3", merged(code=2)
     shard("3/3")
     assert "3 results of 3 shards" in merged()[0]
+    # The whole list replaces those of shards, another list does not.
+    shutil.copytree("out", "whole")
+    ball("in/d.ply")
+    run("process", "in/d.ply", "in/a.ply", "-o", "whole", "--viewpoint", "0,0,0", *FEW_FILES)
+    assert "3 results of 3 shards" in run("merge", "whole")
+    run("process", "in/*.ply", "-o", "whole", "--viewpoint", "0,0,0", *FEW_FILES)
+    assert "holds no summary of a shard" in run("merge", "whole", code=2)
+    os.remove("in/d.ply")
     # Summaries of older versions do not tell the list: but no input may be there twice.
     for index in 1, 2, 3:
         with open(f"out/summary-{index}-of-3.csv", encoding="utf-8") as file:
