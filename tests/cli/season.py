@@ -353,6 +353,11 @@ def renamed():
     shutil.rmtree("copy")
     told = run("merge", "out", "--db", "new.sqlite")
     assert "3 removed" in told and "twice" not in told and stored("new.sqlite") == expected, told
+    # Line breaks in names are blanks in a summary.
+    ball("lines/a\nb.ply")
+    ball("lines/c.ply")
+    run("process", "lines/*.ply", "-o", "broken", "--viewpoint", "0,0,0", *FEW_FILES)
+    assert "2 scans added" in run("merge", "broken", "--db", "lines.sqlite")
     # A list of other inputs leaves nothing out.
     ball("more/e.ply")
     ball("more/f.ply", radius=0.025)
