@@ -13,6 +13,8 @@ using namespace agrisee::detail;
 
 namespace {
 
+double exact_log_odds(double p) { return std::log(p / (1.0 - p)); }
+
 constexpr double kRadius = 0.03;
 
 /// Points of a sphere about the origin within an angle of the direction -y, from where a camera might look.
@@ -221,14 +223,20 @@ TEST_CASE("a body of a single view is settled by both verdicts, noise and sight 
   BodyParameters parameters;
   const double now = fruit_probability(v, fit, parameters, 0.3);
   const auto odds = [&](double won, const Verdict& last) {
-    const double p = settled_probability(won, last, fit, parameters, 0.3);
-    return std::log(p / (1.0 - p));
+    return exact_log_odds(settled_probability(won, last, fit, parameters, 0.3));
   };
-  const auto log_odds = [](double p) { return std::log(p / (1.0 - p)); };
-  CHECK(odds(0.2, v) == Approx(0.5 * (log_odds(0.2) + log_odds(now)) - 0.1));
+  CHECK(odds(0.2, v) == Approx(0.5 * (exact_log_odds(0.2) + exact_log_odds(now)) - 0.1));
   CHECK(odds(0.9, v) > odds(0.2, v));
   parameters.point_noise = 0.0006;
-  CHECK(odds(0.2, v) == Approx(0.5 * (log_odds(0.2) + log_odds(now)) - 0.1 + 75.0 * explained_misfit(fit, parameters)));
+  CHECK(odds(0.2, v) ==
+        Approx(0.5 * (exact_log_odds(0.2) + exact_log_odds(now)) - 0.1 + 75.0 * explained_misfit(fit, parameters)));
+  const double radius = fit.body.mean_radius(), before = odds(0.2, v);
+  parameters.point_noise = 0.055 * radius;  // all that explains the misfit: more of it only counts against the body
+  const double most = odds(0.2, v);
+  parameters.point_noise = 0.075 * radius;
+  CHECK(odds(0.2, v) == Approx(most - 20.0 * 0.02));
+  parameters.point_noise = 0.0006;
+  CHECK(odds(0.2, v) == before);
   Verdict through = v;
   through.seen_through = 0.1 * v.coverage;
   CHECK(odds(0.2, through) < odds(0.2, v) - 1.0);
@@ -281,8 +289,6 @@ Verdict with_point(double radii, double turned = 0.0) {
   put(cloud, DirectionBins::directions()[100], radii, turned);
   return verdict_of(cloud);
 }
-
-double log_odds(double p) { return std::log(p / (1.0 - p)); }
 
 }  // namespace
 
@@ -447,7 +453,7 @@ TEST_CASE("what more than enough is known of changes nothing") {
     v.support = 400;
     v.roundness = 0.7;
     change(v);
-    return log_odds(fruit_probability(v, fit_of(rms), parameters));
+    return exact_log_odds(fruit_probability(v, fit_of(rms), parameters));
   };
   const auto same = [](Verdict&) {};
   const auto support = [&](std::size_t n) { return odds([n](Verdict& v) { v.support = n, v.normal_spread = 0.3; }); };
@@ -465,14 +471,14 @@ TEST_CASE("what more than enough is known of changes nothing") {
     v.support = 400, v.seen_on = 1.0;
     EllipsoidFit fit;
     fit.body = Ellipsoid(Sphere{Eigen::Vector3d::Zero(), radius});
-    return log_odds(fruit_probability(v, fit, parameters));
+    return exact_log_odds(fruit_probability(v, fit, parameters));
   };
   CHECK(sized(0.037) == Approx(sized(0.070)));
   CHECK(sized(0.030) < sized(0.035));
   // What is known from elsewhere adds up.
   for (const double prior : {-2.0, -0.5, 1.0})
-    CHECK(log_odds(fruit_probability(usual, fit_of(0.003), parameters, prior)) ==
-          Approx(log_odds(fruit_probability(usual, fit_of(0.003), parameters)) + prior));
+    CHECK(exact_log_odds(fruit_probability(usual, fit_of(0.003), parameters, prior)) ==
+          Approx(exact_log_odds(fruit_probability(usual, fit_of(0.003), parameters)) + prior));
   Verdict none = usual;
   none.coverage = 0.0;
   CHECK(fruit_probability(none, fit_of(0.0), parameters) == 0.0);
@@ -489,7 +495,7 @@ TEST_CASE("sight lines through a body and points inside count against what is co
     Verdict v = usual;
     v.normal_spread = 0.3;
     v.coverage = coverage, v.seen_through = through, v.inside = inside;
-    return log_odds(fruit_probability(v, fit_of(0.0005), BodyParameters()));
+    return exact_log_odds(fruit_probability(v, fit_of(0.0005), BodyParameters()));
   };
   CHECK(odds(0.5, 0.1, 0.0) == Approx(odds(0.25, 0.05, 0.0)));  // shares of what is known
   CHECK(odds(0.5, 0.0, 0.1) == Approx(odds(0.25, 0.0, 0.05)));
