@@ -130,7 +130,7 @@ TEST_CASE("in a single view the last verdict decides: a doubtful body that it be
     out.found[0].by_mask = by_mask;
     out.bodies.taken = 1;
     detail::settle(
-        cloud, BodyParameters(), {}, [&](const Ellipsoid&) { return seen_on; }, out);
+        cloud, BodyParameters(), BodyParameters(), {}, [&](const Ellipsoid&) { return seen_on; }, out);
     CHECK(out.bodies.taken == out.found.size());
     CHECK(out.bodies.doubtful == 1 - out.found.size());
     CHECK(std::count(out.labels.begin(), out.labels.end(), 1) > (out.found.empty() ? -1 : 1000));
@@ -143,6 +143,32 @@ TEST_CASE("in a single view the last verdict decides: a doubtful body that it be
   CHECK(gone.found.empty());
   CHECK(std::count(gone.labels.begin(), gone.labels.end(), 0) == static_cast<int>(cloud.size()));
   CHECK(settled(0.6, 0.02, true).found.size() == 1);  // masks have decided
+}
+
+TEST_CASE("in a single view smaller bodies are sought than expected, but not kept") {
+  Cloud cloud = rough_front(0.0002);
+  const Eigen::Vector3d aside(0.08, 0.5, 0.2);
+  test::add_sphere(cloud, {aside, 0.012}, 0.0015, [](const Eigen::Vector3d& d) { return d.y() < 0.1; });
+  const auto found = [&](double radius_min) {
+    SplitParameters parameters;
+    parameters.bodies.radius_min = radius_min;
+    return split(cloud, parameters, {}, 1, {}, [](const Ellipsoid&) { return 1.0; });
+  };
+  const Split both = found(0.008), one = found(0.025);
+  CHECK(both.found.size() == 2);
+  REQUIRE(one.found.size() == 1);
+  CHECK(one.found[0].fit.body.mean_radius() == Approx(kRadius).epsilon(0.02));
+  CHECK(one.bodies.too_small == both.bodies.too_small + 1);
+  CHECK(one.bodies.taken == 1);
+  for (std::size_t i = 0; i < cloud.size(); ++i)
+    if ((cloud.points[i].cast<double>() - aside).norm() < 0.02) CHECK(one.labels[i] == 0);
+  // Where the largest fruit are small, nothing below 8 mm is sought.
+  BodyParameters small;
+  small.radius_min = 0.01;
+  small.radius_max = 0.016;
+  CHECK(detail::sought_in_single_view(small).radius_min == 0.008);
+  small.radius_min = 0.005;
+  CHECK(detail::sought_in_single_view(small).radius_min == 0.005);
 }
 
 TEST_CASE("a region belongs to a body that has 60 percent of its points") {

@@ -120,25 +120,41 @@ void refit(const PointCloud<S>& cloud, const BodyParameters& bodies, Split& out)
 /// their last fit.
 constexpr double kShareToWin = 0.06;
 
-/// Judge the bodies of a single view once more, by their last fits. Those with too little confidence lose their points.
+/// Whether bodies are judged again after their last fit: in single views, unless masks know better.
+inline bool settled(const SeenOn& seen_on, const MaskEvidence& masks) { return seen_on && !masks.log_odds; }
+
+/// The radii among which the bodies of a single view are sought: down to a share of the largest, but not below 8 mm.
+/// Patches of fruit often look smaller than the fruit, and what is smaller than fruit has to compete for its points.
+inline BodyParameters sought_in_single_view(BodyParameters bodies) {
+  constexpr double kLeast = 0.008, kRange = 7.5;  // m; largest over smallest radius
+  bodies.radius_min = std::min(bodies.radius_min, std::max(kLeast, bodies.radius_max / kRange));
+  return bodies;
+}
+
+/// Judge the bodies of a single view once more, by their last fits. Those with too little confidence, and those of
+/// another size than expected, lose their points; those of masks stay.
+/// @param sought parameters with which the bodies were found  @param expected those with the radii of fruit
 template <typename S>
-void settle(const PointCloud<S>& cloud, const BodyParameters& bodies, const SeenThrough& seen_through,
-            const SeenOn& seen_on, Split& out) {
-  const Grid<S> grid(cloud, static_cast<S>(bodies.cell()));
+void settle(const PointCloud<S>& cloud, const BodyParameters& sought, const BodyParameters& expected,
+            const SeenThrough& seen_through, const SeenOn& seen_on, Split& out) {
+  const Grid<S> grid(cloud, static_cast<S>(sought.cell()));
   const std::vector<char> none(cloud.size(), 0);
-  const auto is_doubtful = [&](FoundBody& f) {
-    if (!f.by_mask) {
-      const Verdict v = judge(cloud, grid, none, f.fit.body, bodies, seen_through, seen_on);
-      f.confidence = settled_probability(f.confidence, v, f.fit, bodies, f.prior);
+  const auto falls = [&](FoundBody& f) {
+    if (f.by_mask) return false;
+    if (!plausible(f.fit.body, expected)) {
+      ++(f.fit.body.mean_radius() < expected.radius_min ? out.bodies.too_small : out.bodies.too_large);
+      return true;
     }
-    return f.confidence < bodies.min_confidence;
+    const Verdict v = judge(cloud, grid, none, f.fit.body, sought, seen_through, seen_on);
+    f.confidence = settled_probability(f.confidence, v, f.fit, sought, f.prior);
+    const bool doubtful = f.confidence < sought.min_confidence;
+    out.bodies.doubtful += doubtful;
+    return doubtful;
   };
-  const auto end = std::remove_if(out.found.begin(), out.found.end(), is_doubtful);
-  const auto doubtful = static_cast<std::size_t>(out.found.end() - end);
+  const auto end = std::remove_if(out.found.begin(), out.found.end(), falls);
+  out.bodies.taken -= static_cast<std::size_t>(out.found.end() - end);
   out.found.erase(end, out.found.end());
-  out.bodies.taken -= doubtful;
-  out.bodies.doubtful += doubtful;
-  out.labels = assign_to_bodies(cloud, out.found, bodies);
+  out.labels = assign_to_bodies(cloud, out.found, sought);
 }
 
 /// The body to which at least 60 % of the points of each region belong, by the region's label; 0 if there is none.
@@ -186,10 +202,11 @@ void extend_labels(Labels& labels, const PointCloud<S>& cloud, const std::vector
 }
 
 /// Let segments, masks and voted centers propose bodies, and give the points to the bodies that win.
+/// @param parameters with the radii that are sought  @param expected those with the radii of fruit
 template <typename S>
 void split_by_bodies(const PointCloud<S>& cloud, const Segments& segments, const StageParameters& stages,
-                     const SplitParameters& parameters, const SeenThrough& seen_through, const MaskEvidence& masks,
-                     const SeenOn& seen_on, int threads, Split& out) {
+                     const SplitParameters& parameters, const BodyParameters& expected, const SeenThrough& seen_through,
+                     const MaskEvidence& masks, const SeenOn& seen_on, int threads, Split& out) {
   const BodyParameters& bodies = parameters.bodies;
   std::vector<BodyCandidate> candidates;
   BodyCounts not_proposed;
@@ -200,7 +217,7 @@ void split_by_bodies(const PointCloud<S>& cloud, const Segments& segments, const
   const Grid<S> grid(cloud, static_cast<S>(stages.growing.radius), threads);
   propose_voted(cloud, cloud, {}, grid, stages, parameters, candidates);
   for (const MaskBody& m : masks.bodies) candidates.push_back({m.fit.body, "mask", nullptr, m.fit, m.log_odds});
-  const bool settles = seen_on && !masks.log_odds;  // masks know better than a second look at the points
+  const bool settles = settled(seen_on, masks);
   BodyParameters winners = bodies;
   if (settles) winners.min_confidence *= kShareToWin;
   out.found = find_bodies(cloud, candidates, winners, seen_through, &out.bodies, masks, seen_on);
@@ -209,7 +226,7 @@ void split_by_bodies(const PointCloud<S>& cloud, const Segments& segments, const
   out.bodies.inside_out += not_proposed.inside_out;
   out.labels = assign_to_bodies(cloud, out.found, bodies);
   refit(cloud, bodies, out);
-  if (settles) settle(cloud, bodies, seen_through, seen_on, out);
+  if (settles) settle(cloud, bodies, expected, seen_through, seen_on, out);
   extend_labels(out.labels, cloud, out.found, out.regions, out.regions_found, bodies);
 
   std::vector<std::size_t> sizes(segments.members.size() + 1, 0);
@@ -240,12 +257,15 @@ Split split(const PointCloud<S>& cloud, const SplitParameters& parameters = {}, 
   out.labels.assign(cloud.size(), 0);
   out.regions.assign(cloud.size(), 0);
   if (cloud.empty()) return out;
-  const auto stages = stages_for(parameters.adaptive ? estimate_spacing(cloud) : 0.0, parameters);
+  SplitParameters sought = parameters;
+  if (detail::settled(seen_on, masks)) sought.bodies = detail::sought_in_single_view(parameters.bodies);
+  const auto stages = stages_for(parameters.adaptive ? estimate_spacing(cloud) : 0.0, sought);
   if (!stages) return out;
 
   const detail::Segments segments = detail::find_segments(cloud, *stages, threads, out);
   if (parameters.fit_bodies) {
-    detail::split_by_bodies(cloud, segments, *stages, parameters, seen_through, masks, seen_on, threads, out);
+    detail::split_by_bodies(cloud, segments, *stages, sought, parameters.bodies, seen_through, masks, seen_on, threads,
+                            out);
     return out;
   }
   out.labels = segments.labels;
