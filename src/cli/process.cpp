@@ -1,22 +1,18 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // agrisee process: locates the fruit in a cloud, or in the views of a camera, from another source.
-#include <agrisee/io/depth_image.hpp>
-#include <agrisee/io/detections.hpp>
 #include <agrisee/io/fingerprint.hpp>
 #include <agrisee/io/parameters.hpp>
 #include <agrisee/io/recorded_views.hpp>
 #include <agrisee/io/results.hpp>
 #include <agrisee/process.hpp>
-#include <agrisee/sensor/detection_check.hpp>
-#include <agrisee/sensor/rectify.hpp>
 #include <agrisee/version.hpp>
 
 #include <filesystem>
 #include <iostream>
 #include <memory>
-#include <optional>
 
 #include "commands.hpp"
+#include "depth_image.hpp"
 #include "folder_lock.hpp"
 #include "inputs.hpp"
 #include "job_record.hpp"
@@ -32,10 +28,7 @@ struct ProcessOptions : CommonOptions {
   std::string cloud, views, shard;
   std::vector<double> viewpoint;
   bool turn_normals = false;
-  std::string depth, color, masks, boxes;  // files of a single depth image
-  std::vector<double> intrinsics;          // fx, fy, cx, cy
-  std::vector<double> distortion;          // k1, k2, p1, p2, k3, k4, k5, k6; empty: none
-  double depth_scale = 0.0;                // m per unit; 0: the default
+  DepthImageOptions image;
   io::McapChoice mcap;
 };
 
@@ -76,7 +69,8 @@ void check_cloud(const ProcessOptions& options, const Cloud& cloud, const Parame
 
 /// The files that options name.
 std::vector<std::string> files_of(const ProcessOptions& options) {
-  return {options.parameter_file, options.views, options.depth, options.color, options.masks, options.boxes};
+  const DepthImageOptions& image = options.image;
+  return {options.parameter_file, options.views, image.depth, image.color, image.masks, image.boxes};
 }
 
 io::RunInfo run_info(const ProcessOptions& options, const Parameters& parameters, const std::string& scene) {
@@ -116,99 +110,19 @@ Processed process_cloud(const ProcessOptions& options, const Parameters& paramet
   return out;
 }
 
-/// The depth image of --depth with its channels. @throws FileError, UsageError
-sensor::DepthFrame frame_of(const ProcessOptions& options) {
-  const io::DepthImage image = io::read_depth_image(options.depth);
-  sensor::Intrinsics k;
-  k.width = image.width;
-  k.height = image.height;
-  k.fx = options.intrinsics[0];
-  k.fy = options.intrinsics[1];
-  k.cx = options.intrinsics[2];
-  k.cy = options.intrinsics[3];
-  if (!(k.fx > 0.0 && k.fy > 0.0)) throw UsageError("--intrinsics: fx and fy have to be above 0 (pixels)");
-  if (!(k.cx >= -0.5 && k.cx <= k.width - 0.5 && k.cy >= -0.5 && k.cy <= k.height - 0.5))
-    throw FileError(options.depth + ": has " + std::to_string(k.width) + " x " + std::to_string(k.height) +
-                    " pixels, so the principal point cx,cy of --intrinsics lies outside of it");
-  const double scale = options.depth_scale > 0.0 ? options.depth_scale : io::default_depth_scale(image);
-  sensor::DepthFrame frame = io::to_frame(image, k, scale);
-  try {
-    sensor::check_depth_unit(frame);
-  } catch (const InputError& e) {
-    throw FileError(options.depth + ": " + e.what() + " (--depth-scale)");
-  }
-  io::add_channels(frame, {options.color, options.masks, options.boxes});
-  try {
-    return sensor::rectified(frame, sensor::distortion_from(options.distortion));
-  } catch (const InputError& e) {
-    throw UsageError("--distortion: " + std::string(e.what()));
-  }
-}
-
-/// The points of a frame (m, optical frame) with the colors and detections of their pixels.
-Cloud points_of(const sensor::DepthFrame& frame) {
-  Cloud cloud;
-  for (int v = 0; v < frame.intrinsics.height; ++v)
-    for (int u = 0; u < frame.intrinsics.width; ++u) {
-      if (!sensor::DepthFrame::valid(frame.at(u, v))) continue;
-      const std::size_t pixel = frame.intrinsics.index(u, v);
-      cloud.points.push_back(frame.point(u, v));
-      if (!frame.color.empty()) cloud.colors.push_back(frame.color[pixel]);
-      if (!frame.instances.empty()) cloud.instances.push_back(frame.instances[pixel]);
-    }
-  return cloud;
-}
-
-/// That the scale of the depths may be wrong, if no fruit was found and the scale was not given, or most bodies are of
-/// no expected size.
-std::optional<std::string> doubt_of_scale(const ScanResult& result, double median_depth, bool given) {
-  const BodyCounts& n = result.bodies;
-  if (!result.fruits.empty()) return std::nullopt;
-  const std::string depth = "the median depth is " + metres(median_depth);
-  if (2 * (n.too_large + n.too_small) > n.rejected())
-    return "most surfaces are too " + std::string(n.too_large > n.too_small ? "large" : "small") + " for fruit, and " +
-           depth + ": is --depth-scale right?";
-  if (given) return std::nullopt;
-  return depth + " at the default --depth-scale: is that right?";
-}
-
-/// Process a single depth image; the frame of the result is the camera's optical frame.
-Processed process_frame(const ProcessOptions& options, const Parameters& parameters) {
-  sensor::DepthFrame frame = frame_of(options);
-  const auto doubt = sensor::doubt_of(frame.intrinsics), masks = sensor::doubt_of_masks(frame);
-  const double median_depth = sensor::median_depth(frame).value_or(0.0);
-  const Cloud all = points_of(frame);
-  CloudOrigin origin;
-  origin.viewpoint = Eigen::Vector3d::Zero();
-  origin.trust_viewpoint = true;
-  if (frame.detected || !frame.color.empty()) origin.detected.push_back({std::move(frame), Pose::Identity()});
-  const Cloud cloud = parameters.fuse_surfaces ? thinned(all, parameters) : all;
-  Processed out;
-  out.workcell.name = name_of(options.depth);
-  out.workcell.scan_volume = bounding_box(cloud.points);
-  try {
-    out.result = process(cloud, parameters, origin, {}, threads_of(options.threads));
-  } catch (const InputError& e) {
-    throw FileError(options.depth + ": " + e.what());
-  }
-  for (const auto& text : {doubt, masks, doubt_of_scale(out.result, median_depth, options.depth_scale > 0.0)})
-    if (text) out.result.warnings.push_back(*text);
-  return out;
-}
-
 /// Refuse options that do not go together. @throws UsageError
 void check_input_options(const ProcessOptions& options) {
-  const bool image = !options.depth.empty();
+  const bool image = !options.image.depth.empty();
   if (!image && options.cloud.empty()) throw UsageError("an input is needed: a cloud, views.yaml, or --depth");
   if (image && !options.cloud.empty()) throw UsageError("give either an input or --depth, not both");
   const bool of_mcap = !options.mcap.topic.empty() || !options.mcap.world_frame.empty();
   if (of_mcap && (image || !is_mcap(options.cloud)))
-    throw UsageError((image ? options.depth : options.cloud) +
+    throw UsageError((image ? options.image.depth : options.cloud) +
                      ": is no MCAP file, so leave out --topic and --world-frame");
   if (!image) return;
   if (!(options.views.empty() && options.viewpoint.empty()))
     throw UsageError("--depth: the image was seen from its own origin, so leave out --views and --viewpoint");
-  if (options.intrinsics.empty()) throw UsageError("--depth needs --intrinsics fx,fy,cx,cy");
+  if (options.image.intrinsics.empty()) throw UsageError("--depth needs --intrinsics fx,fy,cx,cy");
 }
 
 /// Append all files of recorded views to a fingerprint.
@@ -253,10 +167,10 @@ void run_process(const ProcessOptions& options) {
   const Parameters parameters = parameters_of(options);
   parameters.check();
   if (!options.prepared) check_output(options.output, options.force);
-  const bool recording = options.depth.empty() && is_recording(options.cloud);
+  const bool recording = options.image.depth.empty() && is_recording(options.cloud);
   if (recording && !(options.views.empty() && options.viewpoint.empty()))
     throw FileError(options.cloud + ": states where its views were seen from, so leave out --views and --viewpoint");
-  const Processed done = !options.depth.empty() ? process_frame(options, parameters)
+  const Processed done = !options.image.depth.empty() ? process_depth_image(options.image, parameters, options.threads)
                          : recording
                              ? process_recording(recording_file(options.cloud), options, parameters, options.mcap)
                              : process_cloud(options, parameters);
@@ -269,41 +183,6 @@ void run_process(const ProcessOptions& options) {
   write_files(options.output, done.result, done.workcell, run_info(options, parameters, done.workcell.name), options,
               done.history);
   print_summary(done.result, options.output, options);
-}
-
-/// Add --depth and the options that belong to it.
-void add_image_options(CLI::App& command, ProcessOptions& options) {
-  auto* depth =
-      command.add_option("--depth", options.depth,
-                         "depth image to process instead of an input (PNG with 16 bits, or NPY); the result is in its "
-                         "optical frame (z forward, x right, y down)");
-  command.add_option("--intrinsics", options.intrinsics, "fx,fy,cx,cy of the depth image (pixels)")
-      ->delimiter(',')
-      ->expected(4)
-      ->needs(depth);
-  command
-      .add_option("--distortion", options.distortion,
-                  "distortion k1,k2,p1,p2,k3 of the lens (or 4 of them, or 8 with k4,k5,k6), to be removed "
-                  "(default: none)")
-      ->delimiter(',')
-      ->expected(4, 8)
-      ->option_text("FLOAT x 4, 5 or 8")
-      ->needs(depth);
-  command
-      .add_option("--depth-scale", options.depth_scale,
-                  "metres per unit of the depth image (0.001 for whole numbers, 1 for floats)")
-      ->check(above_zero())
-      ->needs(depth);
-  command.add_option("--color", options.color, "color image (PNG) registered to the depth image")->needs(depth);
-  command
-      .add_option("--masks", options.masks,
-                  "label image (PNG): the instance of each pixel, 0 = none; classes and scores come from a file of the "
-                  "same name with .json or .csv")
-      ->needs(depth);
-  command
-      .add_option("--boxes", options.boxes,
-                  "boxes of a detector (JSON or CSV): instance, class, score, u, v, width, height")
-      ->needs(depth);
 }
 
 }  // namespace
@@ -329,7 +208,7 @@ void add_process(CLI::App& app, Run& run) {
       ->add_option("--views", options->views,
                    "views.csv with the sensor pose of each view, for points with a property 'view'")
       ->excludes("--viewpoint");
-  add_image_options(*command, *options);
+  add_depth_image_options(*command, options->image);
   command->add_option("--topic", options->mcap.topic,
                       "topic of the depth images in an MCAP file (default: the only one)");
   command->add_option("--world-frame", options->mcap.world_frame,
