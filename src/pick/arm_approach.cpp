@@ -52,26 +52,41 @@ struct StraightApproach {
   }
   /// Why the arm cannot follow the line from joint angles `q` at its start; `reachable` when it can.
   PickingReason follow(Joints q, int roll) const {
-    const PickingReason start = collision(q);
-    if (start != PickingReason::reachable) return start;
-    for (int step = 1; step <= parameters.steps; ++step) {
-      const double t = static_cast<double>(step) / parameters.steps;
-      const Eigen::Vector3d position = request.start + t * (request.end - request.start);
-      std::optional<Joints> next;
-      double least = parameters.max_joint_step;
-      for (const Joints& solution : arm::solve(tool0_at(position, roll), q[5], mount.model)) {
-        const auto near = arm::nearest(solution, q, mount.model.limits);
-        if (!near) continue;
-        const double turn = (*near - q).cwiseAbs().maxCoeff();
-        if (turn < least) least = turn, next = near;
-      }
-      if (!next) return PickingReason::approach_interrupted;
-      const PickingReason here = collision(*next);
-      if (here == PickingReason::arm_meets_fruit) return here;
-      if (here != PickingReason::reachable) return PickingReason::approach_interrupted;
-      q = *next;
+    constexpr int kHalvings = 4;
+    PickingReason reason = collision(q);
+    for (int step = 1; step <= parameters.steps && reason == PickingReason::reachable; ++step)
+      reason = advance(q, static_cast<double>(step - 1) / parameters.steps,
+                       static_cast<double>(step) / parameters.steps, roll, kHalvings);
+    return reason;
+  }
+
+ private:
+  /// Follows the line from joint angles `q`, at the share `from` of it, to the share `to`, where it leaves `q`. Where a
+  /// joint turns far, the way is halved: what turns less and less is a motion along the line, what does not is another
+  /// posture with the same tool pose, to which the arm cannot get on the line.
+  PickingReason advance(Joints& q, double from, double to, int roll, int halvings) const {
+    constexpr double kContinuous = 0.2;  // rad
+    const Eigen::Vector3d position = request.start + to * (request.end - request.start);
+    std::optional<Joints> next;
+    double least = parameters.max_joint_step;
+    for (const Joints& solution : arm::solve(tool0_at(position, roll), q[5], mount.model)) {
+      const auto near = arm::nearest(solution, q, mount.model.limits);
+      if (!near) continue;
+      const double turn = (*near - q).cwiseAbs().maxCoeff();
+      if (turn < least) least = turn, next = near;
     }
-    return PickingReason::reachable;
+    if (!next) return PickingReason::approach_interrupted;
+    if (least > kContinuous) {
+      if (halvings == 0) return PickingReason::approach_interrupted;
+      const double middle = 0.5 * (from + to);
+      const PickingReason reason = advance(q, from, middle, roll, halvings - 1);
+      return reason == PickingReason::reachable ? advance(q, middle, to, roll, halvings - 1) : reason;
+    }
+    q = *next;
+    const PickingReason here = collision(q);
+    return here == PickingReason::reachable || here == PickingReason::arm_meets_fruit
+               ? here
+               : PickingReason::approach_interrupted;
   }
 };
 

@@ -498,6 +498,42 @@ TEST_CASE("picking: the largest change of a joint counts from step to step, not 
     CHECK((q - *plan[0].joints).cwiseAbs().maxCoeff() > 2.0 * p.max_joint_step);
 }
 
+TEST_CASE("picking: the arm gets from each step to the next along the line") {
+  // A gripper on the last axis and a camera off it: near the stretched wrist other postures with the same pose are
+  // close.
+  arm::Mount mount = ur3();
+  mount.tool0_T_optical = pose_from_xyz_rpy({0.05, -0.03, 0.04}, {0.2, 0.1, 1.0});
+  const Pose tool = pose_from_xyz_rpy({0, 0, 0.15}, {0, 0, 0});
+  const PickingParameters p;
+  const ReachApproach reach = approach_of(mount, tool, p);
+  const std::vector<KeepOut> none;
+  const std::vector<OrientedEllipsoid> alone;
+  Rng rng(7);
+  int reachable = 0;
+  for (int i = 0; i < 4000; ++i) {
+    const Vector3d center(rng.uniform(-0.3, 0.3), rng.uniform(0.3, 0.6), rng.uniform(0.0, 0.4));
+    const Vector3d direction = (Vector3d::UnitY() + rng.direction() * rng.uniform(0.0, 1.2)).normalized();
+    const auto found = reach({direction, center - p.stand_off * direction, center, none, alone}, kStart).reached;
+    if (!found) continue;
+    ++reachable;
+    Joints q = *found->joints;
+    for (int k = 1; k <= 400; ++k) {
+      Pose pose = found->world_T_pre_grasp;
+      pose.translation() += k / 400.0 * p.stand_off * direction;
+      double least = 10.0;
+      Joints next = q;
+      for (const Joints& solution : arm::inverse(pose * tool.inverse(), mount.model.limits, q[5]))
+        if (const auto near = arm::nearest(solution, q, mount.model.limits))
+          if ((*near - q).cwiseAbs().maxCoeff() < least) least = (*near - q).cwiseAbs().maxCoeff(), next = *near;
+      if (least > 0.3) break;  // a singular posture, where joints turn at once
+      q = next;
+      // On the line it comes through the postures that were tested.
+      if (k * p.steps % 400 == 0) CHECK(!arm::collides(q, mount));
+    }
+  }
+  CHECK(reachable > 300);
+}
+
 TEST_CASE("picking: a workcell's own tool frame is the one that approaches") {
   Workcell workcell;
   workcell.tool0_T_tool = pose_from_xyz_rpy({0.01, 0.02, 0.15}, {0, 0, 0});
