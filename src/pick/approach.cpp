@@ -14,6 +14,13 @@ Capsule swept_gripper(const OrientedEllipsoid& fruit, const Eigen::Vector3d& dir
           parameters.gripper_radius};
 }
 
+Capsule short_of_center(const Capsule& swept) {
+  const Eigen::Vector3d along = swept.b - swept.a;
+  const double length = along.norm();
+  if (!(length > swept.radius)) return {swept.a, swept.a, swept.radius};
+  return {swept.a, swept.b - swept.radius / length * along, swept.radius};
+}
+
 bool meets(const Capsule& capsule, const OrientedEllipsoid& ellipsoid) {
   const double apart = segment_distance(capsule.a, capsule.b, ellipsoid.center, ellipsoid.center);
   if (apart >= capsule.radius + ellipsoid.radii.maxCoeff()) return false;

@@ -213,8 +213,9 @@ class PickingRounds {
   ApproachAnswer try_direction(const Candidate& c, const Eigen::Vector3d& direction,
                                const std::vector<OrientedEllipsoid>& others) const {
     const Capsule gripper = swept_gripper(c.body, direction, parameters_);
+    const Capsule outside = short_of_center(gripper);
     for (const KeepOut& space : c.keep_out)
-      if (overlap(gripper, space)) return {std::nullopt, PickingReason::blocked_by_keep_out};
+      if (overlap(outside, space)) return {std::nullopt, PickingReason::blocked_by_keep_out};
     for (const OrientedEllipsoid& other : others)
       if (meets(gripper, other)) return {std::nullopt, PickingReason::blocked_by_fruit};
     const ApproachRequest request = request_of(c, direction, others, parameters_);

@@ -231,9 +231,26 @@ TEST_CASE("picking: a space that contains the fruit does not count, for gripper 
   CHECK(plan[0].reason == PickingReason::not_tested);
   CHECK(plan[1].reason == PickingReason::not_tested);
   CHECK_FALSE(overlap(swept_gripper(occupied(b), plan[1].direction, {}), around[0]));
-  // So near that none is left.
-  const auto near = plan_picking({fruit(1, {0.0, 0.655, 0.2})}, scene(around));
-  CHECK(near[0].reason == PickingReason::blocked_by_keep_out);
+  // Beside it: from the outside. Between it and a wall there is no way left.
+  const Fruit near = fruit(1, {0.0, 0.655, 0.2});
+  CHECK(plan_picking({near}, scene(around))[0].reason == PickingReason::not_tested);
+  const std::vector<KeepOut> both{around[0], {"wall", Box{{0.0, 0.76, 0.2}, {1.0, 0.1, 1.0}}}};
+  CHECK(plan_picking({near}, scene(both))[0].reason == PickingReason::blocked_by_keep_out);
+}
+
+TEST_CASE("picking: fruit just before a wall are picked from the front, with the gripper out of the wall") {
+  for (const double gap : {0.001, 0.01, 0.019, 0.03}) {
+    const std::vector<Fruit> fruits{fruit(1, {0.05, 0.5, 0.2})};
+    const std::vector<KeepOut> wall{{"wall", Box{{0.0, 0.5 + gap + 0.1, 0.2}, {1.0, 0.1, 1.0}}}};
+    const auto plan = plan_with_ur3(fruits, scene(wall));
+    REQUIRE(plan[0].reachable);
+    CHECK(plan[0].direction.y() > 0.0);
+    const Capsule swept = swept_gripper(occupied(fruits[0]), plan[0].direction, {});
+    const Capsule gripper = short_of_center(swept);
+    CHECK((gripper.b + gripper.radius * plan[0].direction - swept.b).norm() < 1e-12);
+    CHECK_FALSE(overlap(gripper, wall[0]));
+    CHECK(gripper.b.y() + gripper.radius <= 0.5 + gap + 1e-9);
+  }
 }
 
 TEST_CASE("picking: what cannot be picked says why and comes last") {

@@ -24,6 +24,10 @@ double surface_distance(const OrientedEllipsoid& ellipsoid, const Eigen::Vector3
 Capsule swept_gripper(const OrientedEllipsoid& fruit, const Eigen::Vector3d& direction,
                       const PickingParameters& parameters);
 
+/// The part of the swept gripper that has to stay out of keep-out spaces: its cap ends at the fruit's center instead of
+/// a gripper's radius behind it. So fruit just before a wall can be picked from the front.
+Capsule short_of_center(const Capsule& swept);
+
 /// Whether a capsule and an ellipsoid overlap by more than kTouch. Spheres inside and around the ellipsoid decide most
 /// cases quickly.
 bool meets(const Capsule& capsule, const OrientedEllipsoid& ellipsoid);

@@ -3,10 +3,11 @@
 /// How to pick the fruit that were found: a direction of approach and a pre-grasp pose for each, clear of the other
 /// fruit and of the keep-out spaces; whether an arm can follow the approach; and the order in which to pick.
 ///
-/// On its approach the gripper sweeps a capsule about the line from the pre-grasp position to the fruit's center. A
-/// keep-out space that contains the fruit's center does not apply to that fruit (a cylinder about the truss keeps the
-/// arm away while it looks, not while it picks). Whether the arm can follow an approach is answered by a callable, so
-/// that any robot's own motion planner can be used; pick/arm_approach.hpp answers for the arms of the UR family.
+/// On its approach the gripper sweeps a capsule about the line from the pre-grasp position to the fruit's center; no
+/// part of it beyond the center counts for keep-out spaces. A keep-out space that contains the fruit's center does not
+/// apply to that fruit (a cylinder about the truss keeps the arm away while it looks, not while it picks). Whether the
+/// arm can follow an approach is answered by a callable, so that any robot's own motion planner can be used;
+/// pick/arm_approach.hpp answers for the arms of the UR family.
 ///
 /// Fruit are planned in rounds: first those whose approach is free while all the others are hanging, then those that
 /// are free once these have been picked, and so on. Within a round the fruit nearest to the robot come first; among
