@@ -22,6 +22,12 @@ namespace agrisee::detail {
 /// Points near a body are looked up within this multiple of its mean radius from its center.
 constexpr double kNearBody = 1.35;
 
+/// Calls f(index) for the points near a body.
+template <typename S, typename F>
+void visit_near(const Grid<S>& grid, const Ellipsoid& body, F&& f) {
+  grid.visit(body.center.cast<S>(), static_cast<S>(kNearBody * body.mean_radius()), [&](Index i, S) { f(i); });
+}
+
 /// Points within this share of the radius from the surface that do not lie on it are clutter.
 constexpr double kClutter = 0.3;
 
@@ -145,9 +151,7 @@ Verdict judge_points(const PointCloud<S>& cloud, Visit&& visit, std::size_t each
 template <typename S>
 Verdict judge(const PointCloud<S>& cloud, const Grid<S>& grid, const std::vector<char>& taken, const Ellipsoid& body,
               const BodyParameters& parameters, const SeenThrough& seen_through, const SeenOn& seen_on = {}) {
-  const auto visit = [&](auto&& f) {
-    grid.visit(body.center.cast<S>(), static_cast<S>(kNearBody * body.mean_radius()), [&](Index i, S) { f(i); });
-  };
+  const auto visit = [&](auto&& f) { visit_near(grid, body, f); };
   Verdict v = judge_points(cloud, visit, 1, taken, body, parameters, static_cast<bool>(seen_on));
   if (seen_through && v.support >= kLeastSupport) v.seen_through = seen_through(body);
   if (seen_on && v.support >= kLeastSupport) v.seen_on = seen_on(body);

@@ -5,6 +5,7 @@
 
 #include <agrisee/cloud/alike_sizes.hpp>
 #include <agrisee/cloud/body_counts.hpp>
+#include <agrisee/cloud/body_size.hpp>
 #include <agrisee/cloud/body_verdict.hpp>
 #include <agrisee/cloud/fit.hpp>
 #include <agrisee/cloud/found_body.hpp>
@@ -24,11 +25,6 @@
 namespace agrisee {
 
 namespace detail {
-
-/// Whether the size of an ellipsoid is that of a fruit, by either definition of its mean radius.
-inline bool plausible(const Ellipsoid& body, const BodyParameters& parameters) {
-  return parameters.plausible(body.mean_radius()) && parameters.plausible(body.mean_semi_axis());
-}
 
 /// How deep two bodies penetrate each other along the line between their centers (m); negative when apart.
 inline double overlap(const Ellipsoid& a, const Ellipsoid& b) {
@@ -58,7 +54,7 @@ class Competition {
     for (const BodyCandidate& c : candidates) {
       throw_if_cancelled();
       if (!parameters_.plausible(c.body.mean_radius())) {
-        ++(c.body.mean_radius() < parameters_.radius_min ? counts_.too_small : counts_.too_large);
+        ++(counts_.*wrong_size(c.body.mean_radius(), parameters_));
         continue;
       }
       const auto fit = c.fit ? c.fit : fitted(c, known);
@@ -292,8 +288,7 @@ class Competition {
               e.verdict.roundness >= parameters_.min_roundness &&
               e.confidence >= kHopeless * parameters_.min_confidence;
     if (e.alive) return nullptr;
-    if (!right_size)
-      return e.fit.body.mean_radius() < parameters_.radius_min ? &BodyCounts::too_small : &BodyCounts::too_large;
+    if (!right_size) return wrong_size(e.fit.body.mean_radius(), parameters_);
     if (!(e.verdict.coverage >= parameters_.min_coverage)) return &BodyCounts::little_seen;
     if (!(e.verdict.score() >= parameters_.min_coverage)) return &BodyCounts::contradicted;
     if (!(e.verdict.roundness >= parameters_.min_roundness)) return &BodyCounts::too_flat;

@@ -29,7 +29,7 @@ class FreePoints {
   /// Fit a body to the free points near it; empty if there is no fit, see fit_ellipsoid.
   std::optional<EllipsoidFit> fit(const Ellipsoid& start, const FitParameters& how) {
     near_.clear();
-    visit_near(start, [&](Index i) {
+    visit_near(grid_, start, [&](Index i) {
       if (!taken_[static_cast<std::size_t>(i)]) near_.push_back(i);
     });
     return fit_ellipsoid(cloud_, near_, start, how);
@@ -51,7 +51,7 @@ class FreePoints {
   void take(const Ellipsoid& body) {
     const double margin = 1.5 * parameters_.near(body.mean_radius());
     const double cos_loose = loose_cosine(parameters_);
-    visit_near(body, [&](Index index) {
+    visit_near(grid_, body, [&](Index index) {
       const auto i = static_cast<std::size_t>(index);
       const Eigen::Vector3d p = cloud_.points[i].template cast<double>();
       const auto foot = body.foot(p);
@@ -65,12 +65,6 @@ class FreePoints {
   void release() { std::fill(taken_.begin(), taken_.end(), 0); }
 
  private:
-  /// Calls f(index) for the points within kNearBody radii of a body's center.
-  template <typename F>
-  void visit_near(const Ellipsoid& body, F&& f) const {
-    grid_.visit(body.center.cast<S>(), static_cast<S>(kNearBody * body.mean_radius()), [&](Index i, S) { f(i); });
-  }
-
   const PointCloud<S>& cloud_;
   const BodyParameters& parameters_;
   Grid<S> grid_;

@@ -4,6 +4,7 @@
 /// points make a fruit follows from the spacing of the cloud. Metres.
 #pragma once
 
+#include <agrisee/cloud/body_size.hpp>
 #include <agrisee/cloud/found_body.hpp>
 #include <agrisee/cloud/parameters.hpp>
 #include <agrisee/cloud/sphere_voting.hpp>
@@ -88,9 +89,8 @@ inline std::size_t BodyCounts::*propose(Sphere sphere, const char* by, const Bod
   if (!(sphere.radius > 0.0)) return &BodyCounts::inside_out;
   if (!(sphere.radius > 0.5 * parameters.radius_min)) return &BodyCounts::too_small;
   if (!(sphere.radius < 2.0 * parameters.radius_max)) return &BodyCounts::too_large;
-  std::size_t BodyCounts::*const doubt = parameters.plausible(sphere.radius)     ? nullptr
-                                         : sphere.radius < parameters.radius_min ? &BodyCounts::too_small
-                                                                                 : &BodyCounts::too_large;
+  std::size_t BodyCounts::*const doubt =
+      parameters.plausible(sphere.radius) ? nullptr : wrong_size(sphere.radius, parameters);
   sphere.radius = std::clamp(sphere.radius, parameters.radius_min, parameters.radius_max);
   candidates.push_back({Ellipsoid(sphere), by, doubt});
   return nullptr;

@@ -10,7 +10,9 @@
 #pragma once
 
 #include <agrisee/cloud/bodies.hpp>
+#include <agrisee/cloud/body_size.hpp>
 #include <agrisee/cloud/dbscan.hpp>
+#include <agrisee/cloud/free_points.hpp>
 #include <agrisee/cloud/labels.hpp>
 #include <agrisee/cloud/parameters.hpp>
 #include <agrisee/cloud/proposals.hpp>
@@ -87,8 +89,7 @@ template <typename S>
 bool has_changed(const Grid<S>& grid, const Ellipsoid& body, const std::vector<char>& fresh) {
   constexpr std::size_t kFewest = 20;  // points, for each that is fresh
   std::size_t near = 0, news = 0;
-  grid.visit(body.center.cast<S>(), static_cast<S>(kNearBody * body.mean_radius()),
-             [&](Index i, S) { ++near, news += fresh[static_cast<std::size_t>(i)] != 0; });
+  visit_near(grid, body, [&](Index i) { ++near, news += fresh[static_cast<std::size_t>(i)] != 0; });
   return news * kFewest >= near;
 }
 
@@ -123,11 +124,13 @@ constexpr double kShareToWin = 0.06;
 /// Whether bodies are judged again after their last fit: in single views, unless masks know better.
 inline bool settled(const SeenOn& seen_on, const MaskEvidence& masks) { return seen_on && !masks.log_odds; }
 
-/// The radii among which the bodies of a single view are sought: down to a share of the largest, but not below 8 mm.
-/// Patches of fruit often look smaller than the fruit, and what is smaller than fruit has to compete for its points.
+/// The radii among which the bodies of a single view are sought: at least the usual range below the largest, but not
+/// below the usual smallest. Patches of fruit often look smaller than the fruit, and what is smaller than fruit has to
+/// compete for its points.
 inline BodyParameters sought_in_single_view(BodyParameters bodies) {
-  constexpr double kLeast = 0.008, kRange = 7.5;  // m; largest over smallest radius
-  bodies.radius_min = std::min(bodies.radius_min, std::max(kLeast, bodies.radius_max / kRange));
+  const BodyParameters usual;
+  const double range = usual.radius_max / usual.radius_min;
+  bodies.radius_min = std::min(bodies.radius_min, std::max(usual.radius_min, bodies.radius_max / range));
   return bodies;
 }
 
@@ -137,15 +140,14 @@ inline BodyParameters sought_in_single_view(BodyParameters bodies) {
 template <typename S>
 void settle(const PointCloud<S>& cloud, const BodyParameters& sought, const BodyParameters& expected,
             const SeenThrough& seen_through, const SeenOn& seen_on, Split& out) {
-  const Grid<S> grid(cloud, static_cast<S>(sought.cell()));
-  const std::vector<char> none(cloud.size(), 0);
+  const FreePoints<S> points(cloud, sought);
   const auto falls = [&](FoundBody& f) {
     if (f.by_mask) return false;
     if (!plausible(f.fit.body, expected)) {
-      ++(f.fit.body.mean_radius() < expected.radius_min ? out.bodies.too_small : out.bodies.too_large);
+      ++(out.bodies.*wrong_size(f.fit.body.mean_radius(), expected));
       return true;
     }
-    const Verdict v = judge(cloud, grid, none, f.fit.body, sought, seen_through, seen_on);
+    const Verdict v = points.judge(f.fit.body, seen_through, seen_on);
     f.confidence = settled_probability(f.confidence, v, f.fit, sought, f.prior);
     const bool doubtful = f.confidence < sought.min_confidence;
     out.bodies.doubtful += doubtful;
