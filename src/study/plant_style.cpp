@@ -11,8 +11,10 @@ namespace agrisee::study {
 
 namespace {
 
-/// In the order of kPlantKinds.
-std::array<PlantStyle, 7> all_styles() {
+/// One for each of kPlantKinds.
+using Styles = std::array<PlantStyle, kPlantKinds.size()>;
+
+Styles all_styles() {
   PlantStyle tomato;
 
   PlantStyle cherry = tomato;
@@ -115,7 +117,7 @@ double half_width_of(FruitShape shape) {
 }  // namespace
 
 const PlantStyle& plant_style(const std::string& kind) {
-  static const std::array<PlantStyle, 7> styles = all_styles();
+  static const Styles styles = all_styles();
   for (const PlantStyle& style : styles)
     if (kind == style.kind) return style;
   throw FieldError("kind", "must be " + OneOf(kPlantKinds).text() + ", got " + kind);
