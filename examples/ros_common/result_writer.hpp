@@ -2,6 +2,7 @@
 // Results as files, as `agrisee scan` writes them, without ROS.
 #pragma once
 
+#include <agrisee/io/files.hpp>
 #include <agrisee/io/parameters.hpp>
 #include <agrisee/io/render.hpp>
 #include <agrisee/io/scan_page.hpp>
@@ -28,7 +29,7 @@ class ResultWriter {
     info_.preset = setup.pipeline.preset;
     info_.planner = setup.pipeline.planner;
     info_.parameters_json = io::parameters_to_json(setup.pipeline);
-    if (!output_.empty()) make(output_);
+    if (!output_.empty()) io::make_folder(output_);
   }
 
   /// Writes the result of a session whose scan is done or was stopped, unless it is written already. That of a scan
@@ -57,12 +58,6 @@ class ResultWriter {
   }
 
  private:
-  static void make(const std::filesystem::path& folder) {
-    std::error_code error;
-    std::filesystem::create_directories(folder, error);
-    if (error) throw FileError(folder.string() + ": cannot be created: " + error.message());
-  }
-
   /// One that does not exist yet.
   std::filesystem::path new_folder() const {
     std::string name = io::utc_now();
@@ -70,7 +65,6 @@ class ResultWriter {
     std::filesystem::path folder = output_ / name;
     std::error_code error;
     for (int i = 2; std::filesystem::exists(folder, error); ++i) folder = output_ / (name + "-" + std::to_string(i));
-    make(folder);
     return folder;
   }
 

@@ -127,8 +127,7 @@ void make_folder(const std::string& folder) {
   std::error_code error;
   if (fs::exists(folder, error) && !fs::is_directory(folder, error))
     throw UsageError(folder + ": exists and is not a folder");
-  fs::create_directories(folder, error);
-  if (error) throw FileError(folder + ": cannot be created: " + error.message());
+  io::make_folder(folder);
 }
 
 void check_output(const std::string& folder, bool force) {

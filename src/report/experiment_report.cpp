@@ -45,9 +45,7 @@ void write_experiment_report(const std::filesystem::path& path, const std::vecto
     for (File& file : all)
       if (text.find("/" + file.name + ")") != std::string::npos) files.push_back(std::move(file));
   const std::filesystem::path folder = path.parent_path() / path.stem();
-  std::error_code failed;
-  std::filesystem::create_directories(folder, failed);
-  if (failed) io::fail(folder, "cannot be created: " + failed.message());
+  io::make_folder(folder);
   for (const File& file : files) io::write_file(folder / file.name, file.bytes);
   io::write_file(path, text);
 }

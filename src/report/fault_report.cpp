@@ -106,9 +106,7 @@ void write_fault_report(const std::filesystem::path& path, std::vector<FaultReco
       "row per scan: [faults.csv](" +
       stem + "/faults.csv).\n";
   const std::filesystem::path folder = path.parent_path() / stem;
-  std::error_code failed;
-  std::filesystem::create_directories(folder, failed);
-  if (failed) io::fail(folder, "cannot be created: " + failed.message());
+  io::make_folder(folder);
   io::write_file(folder / "faults.csv", csv(records));
   io::write_file(folder / "found.svg", plot(sums));
   io::write_file(path, text);

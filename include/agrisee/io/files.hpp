@@ -90,6 +90,9 @@ class AtomicFile {
 void write_file(const std::filesystem::path& path, std::string_view bytes,
                 Durability durability = Durability::whenever);
 
+/// Create a folder and those above it, if they are missing. @throws FileError when that fails
+void make_folder(const std::filesystem::path& folder);
+
 /// Flush all files of a folder (not of its subfolders) to the disk with fsync. @throws FileError when that fails
 void make_durable(const std::filesystem::path& folder);
 

@@ -164,6 +164,12 @@ void write_file(const fs::path& path, std::string_view bytes, Durability durabil
   file.commit(durability);
 }
 
+void make_folder(const fs::path& folder) {
+  std::error_code error;
+  fs::create_directories(folder, error);
+  if (error) fail(folder, "cannot be created: " + error.message());
+}
+
 void make_durable(const fs::path& folder) {
   for (const fs::directory_entry& entry : fs::directory_iterator(folder))
     if (entry.is_regular_file() && !sync(entry.path()))

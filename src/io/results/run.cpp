@@ -94,9 +94,8 @@ void write_result(const std::filesystem::path& folder, const ScanResult& result,
   // Compose everything first: if a value is invalid, nothing is written.
   const std::string views = views_text(result.views), fruits = fruits_text(result.fruits),
                     table = fruits_csv_text(result.fruits), run = run_text(result, info);
+  make_folder(folder);
   std::error_code error;
-  std::filesystem::create_directories(folder, error);
-  if (error) fail(folder, "cannot be created: " + error.message());
   std::filesystem::remove(folder / "run.json", error);
   write_file(folder / "views.csv", views);
   write_file(folder / "fruits.json", fruits);

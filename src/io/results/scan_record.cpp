@@ -193,9 +193,7 @@ void write_view_record(const fs::path& folder, std::size_t view, const ViewRecor
   const std::uint64_t sum = checksum(bytes);
   append(bytes, &sum, 1);
   const fs::path path = view_record_path(folder, view);
-  std::error_code error;
-  fs::create_directories(path.parent_path(), error);
-  if (error) fail(path.parent_path(), "cannot be created: " + error.message());
+  make_folder(path.parent_path());
   write_file(path, bytes, Durability::now);
 }
 
