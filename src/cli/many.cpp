@@ -279,16 +279,15 @@ int run_jobs(const std::vector<Job>& jobs, const Shard& shard, const std::string
     left = busy;
   }
   write_summary(summary, list);
-  const auto count =
-      std::count_if(rows.begin(), rows.end(), [](const SummaryRow& row) { return row.status == "failed"; });
+  const std::size_t failed = count_status(rows, "failed");
   (command.json ? std::cerr : std::cout) << rows.size() << " inputs, "
                                          << (done_before > 0 ? std::to_string(done_before) + " done before, " : "")
-                                         << count << " failed"
+                                         << failed << " failed"
                                          << (left.empty() ? "" : ", " + std::to_string(left.size()) + " open") << ": "
                                          << summary.string() << "\n";
   for (const SummaryRow& row : rows)
     if (row.status != "ok") std::cerr << "agrisee: " << row.status << ": " << row.input << ": " << row.message << "\n";
-  return count == 0 && left.empty() ? kSuccess : kBadInput;
+  return failed == 0 && left.empty() ? kSuccess : kBadInput;
 }
 
 bool is_list(const std::vector<std::string>& inputs, const std::string& shard) {

@@ -54,14 +54,12 @@ int join_summaries(const fs::path& folder, bool must) {
     return kBadInput;
   }
   const std::vector<SummaryRow> rows = shards.rows();
-  const auto count = [&](const char* status) {
-    return std::count_if(rows.begin(), rows.end(), [&](const SummaryRow& row) { return row.status == status; });
-  };
+  const std::size_t open = count_status(rows, "open");
   write_summary(folder / "summary.csv", {rows, ""});
-  std::cout << rows.size() << " results of " << shards.count << " shards, " << count("failed")
+  std::cout << rows.size() << " results of " << shards.count << " shards, " << count_status(rows, "failed")
             << " failed: " << (folder / "summary.csv").string() << "\n";
-  if (count("open") == 0) return kSuccess;
-  std::cerr << "agrisee: " << count("open") << " inputs are open: a shard was stopped. Run shards "
+  if (open == 0) return kSuccess;
+  std::cerr << "agrisee: " << open << " inputs are open: a shard was stopped. Run shards "
             << comma_list(shards.unfinished()) << " again; what is done is skipped\n";
   return kBadInput;
 }

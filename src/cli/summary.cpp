@@ -33,11 +33,6 @@ std::optional<Shard> shard_of(const std::string& name) {
   return read == 3 && end == 'v' ? std::optional(shard) : std::nullopt;
 }
 
-/// Whether all inputs of a shard are done.
-bool is_done(const std::vector<SummaryRow>& rows) {
-  return std::all_of(rows.begin(), rows.end(), [](const SummaryRow& row) { return row.status == "ok"; });
-}
-
 /// How many of `inputs` are those of shard `index` of `count`.
 std::size_t size_of_shard(std::size_t inputs, std::size_t index, std::size_t count) {
   return inputs < index ? 0 : (inputs - index) / count + 1;
@@ -83,6 +78,11 @@ bool is_summary(const std::filesystem::path& path) {
   std::string first;
   std::ifstream file(path);
   return std::getline(file, first) && is_header(first);
+}
+
+std::size_t count_status(const std::vector<SummaryRow>& rows, const std::string& status) {
+  const auto has_it = [&](const SummaryRow& row) { return row.status == status; };
+  return static_cast<std::size_t>(std::count_if(rows.begin(), rows.end(), has_it));
 }
 
 std::string list_mark(const std::vector<std::string>& inputs) {
@@ -135,7 +135,7 @@ std::vector<std::size_t> ShardSummaries::unfinished() const {
   std::set<std::size_t> out(missing.begin(), missing.end());
   out.insert(stale.begin(), stale.end());
   for (std::size_t i = 0; i < parts.size(); ++i)
-    if (!is_done(parts[i])) out.insert(i + 1);
+    if (count_status(parts[i], "ok") < parts[i].size()) out.insert(i + 1);
   return {out.begin(), out.end()};
 }
 

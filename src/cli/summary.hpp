@@ -33,6 +33,9 @@ struct Summary {
   std::string list;  ///< of a shard: what the whole list is known by (list_mark); empty: not known
 };
 
+/// How many rows have a status.
+std::size_t count_status(const std::vector<SummaryRow>& rows, const std::string& status);
+
 /// What a list of inputs is known by: their number and a fingerprint, "12:0123456789abcdef".
 std::string list_mark(const std::vector<std::string>& inputs);
 
