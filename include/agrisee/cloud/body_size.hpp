@@ -4,8 +4,8 @@
 #pragma once
 
 #include <agrisee/cloud/body_counts.hpp>
+#include <agrisee/cloud/body_shape.hpp>
 #include <agrisee/cloud/parameters.hpp>
-#include <agrisee/geometry/ellipsoid.hpp>
 
 #include <cstddef>
 
