@@ -60,8 +60,9 @@ void take_over(const ClosedSurface& surface, const Ellipsoid& ellipsoid, const M
   body.rms = v * body.rms + w * surface.rms;
   const double error = surface.volume * std::hypot(surface.volume_error, mass.shape_error);
   const double between = surface.volume - volume.value;
-  volume = {v * volume.value + w * surface.volume,
-            std::sqrt(v * volume.error * volume.error + w * error * error + v * w * between * between)};
+  for (double* of : {&volume.error, &body.volume_error_by_shape})
+    *of = std::sqrt(v * *of * *of + w * error * error + v * w * between * between);
+  volume.value = v * volume.value + w * surface.volume;
 }
 
 /// The body of a fruit: its size, how much of it was seen, how far it can be trusted, its volume and mass.
@@ -75,8 +76,9 @@ Body body_of(const Cloud& cloud, const Indices& points, const FoundBody& found, 
   body.center_covariance = found.fit.center_covariance;
   body.center_covariance_by_shape = found.fit.center_covariance_by_shape;
   body.rms = found.fit.rms;
-  const double fit_error = relative_volume_error(cloud, points, ellipsoid, parameters.split.bodies.fit);
-  Estimate volume = volume_of(ellipsoid, fit_error, parameters.mass);
+  const VolumeError fit_error = relative_volume_error(cloud, points, ellipsoid, parameters.split.bodies.fit);
+  Estimate volume = volume_of(ellipsoid, fit_error.total, parameters.mass);
+  body.volume_error_by_shape = volume_of(ellipsoid, fit_error.by_shape, parameters.mass).error;
   if (surface) take_over(*surface, ellipsoid, parameters.mass, body, volume);
   body.completeness = completeness_of(cloud, points, body.center);
   body.confidence = found.confidence;

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <agrisee/cloud/volume.hpp>
 #include <agrisee/core/cancellation.hpp>
 #include <agrisee/core/rigid_pose.hpp>
 #include <agrisee/core/stopwatch.hpp>
@@ -180,7 +181,7 @@ ScanResult Pipeline::result() const {
   ScanResult out = process(cloud_, parameters, origin, seen_through, threads_);
   out.raw = raw();
   const double located = out.seconds.locate;
-  timed(out.seconds.locate, [&] { tell_center_errors(out); });
+  timed(out.seconds.locate, [&] { tell_body_errors(out); });
   center_on_reported_poses(out);
   if (parameters_.picking.enabled) timed(out.seconds.locate, [&] { plan_picking(out); });
   out.views = views_;
@@ -289,8 +290,8 @@ void Pipeline::read_masks() {
   masks_ = fuse::mask_evidence(detected_views(), bodies, parameters_.masks, fuse::MaskOrder::points_first);
 }
 
-/// Tell from how far the views disagree how far the centers of the bodies may be off.
-void Pipeline::tell_center_errors(ScanResult& out) const {
+/// Tell from how far the views disagree how far centers, volumes and masses of the bodies may be off.
+void Pipeline::tell_body_errors(ScanResult& out) const {
   std::vector<Body*> bodies;
   std::vector<Ellipsoid> ellipsoids;
   for (Fruit& f : out.fruits) {
@@ -298,9 +299,14 @@ void Pipeline::tell_center_errors(ScanResult& out) const {
     bodies.push_back(&*f.body);
     ellipsoids.push_back(ellipsoid_of(*f.body));
   }
-  const std::vector<Eigen::Matrix3d> errors = map_->center_errors(ellipsoids, parameters_.split.bodies.fit);
-  for (std::size_t i = 0; i < bodies.size(); ++i)
-    if (!errors[i].isZero()) bodies[i]->center_covariance = bodies[i]->center_covariance_by_shape + errors[i];
+  const std::vector<fuse::BodyErrors> errors = map_->body_errors(ellipsoids, parameters_.split.bodies.fit);
+  for (std::size_t i = 0; i < bodies.size(); ++i) {
+    if (errors[i].center.isZero()) continue;
+    Body& body = *bodies[i];
+    body.center_covariance = body.center_covariance_by_shape + errors[i].center;
+    body.volume_error = std::hypot(body.volume_error_by_shape, body.volume * errors[i].volume);
+    body.mass_error = mass_of({body.volume, body.volume_error}, parameters_.mass).error;
+  }
 }
 
 /// Move the result to where all views together, by their reported poses, put it.

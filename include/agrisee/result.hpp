@@ -64,8 +64,10 @@ struct Body {
   double confidence = 0.0;    ///< probability that it is a fruit, 0..1
   double volume = 0.0;        ///< m3
   double volume_error = 0.0;  ///< standard error of the volume (m3); 0 = unknown
-  double mass = 0.0;          ///< kg, with the density of MassParameters
-  double mass_error = 0.0;    ///< standard error of the mass (kg), including that of the density; 0 = unknown
+  /// The part of volume_error due to the unknown shape of the unseen side; the rest is due to the sensor (m3).
+  double volume_error_by_shape = 0.0;
+  double mass = 0.0;        ///< kg, with the density of MassParameters
+  double mass_error = 0.0;  ///< standard error of the mass (kg), including that of the density; 0 = unknown
 };
 
 /// Whether a fruit can be picked, or what prevents it. Each direction of approach is tested in this order; the reason

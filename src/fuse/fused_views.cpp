@@ -2,7 +2,7 @@
 #include <agrisee/cloud/icp.hpp>
 #include <agrisee/core/cancellation.hpp>
 #include <agrisee/core/parallel.hpp>
-#include <agrisee/fuse/center_errors.hpp>
+#include <agrisee/fuse/body_errors.hpp>
 #include <agrisee/fuse/fused_views.hpp>
 #include <agrisee/sensor/reconstruct_surface.hpp>
 
@@ -98,12 +98,12 @@ Eigen::Vector3d FusedViews::shift_to_reported(const Eigen::Vector3d& center) con
   return shift / static_cast<double>(std::max<std::size_t>(used, 1));
 }
 
-std::vector<Eigen::Matrix3d> FusedViews::center_errors(const std::vector<Ellipsoid>& bodies,
-                                                       const FitParameters& parameters) const {
+std::vector<BodyErrors> FusedViews::body_errors(const std::vector<Ellipsoid>& bodies,
+                                                const FitParameters& parameters) const {
   std::vector<RegisteredView> views;
   for (std::size_t v = 0; v < images_.size(); ++v)
     if (!views_[v].discarded) views.push_back({&images_[v], views_[v].reported});
-  return fuse::center_errors(bodies, views, parameters);
+  return fuse::body_errors(bodies, views, parameters);
 }
 
 /// A new view, of which only the pose is known so far.

@@ -18,7 +18,7 @@ void members(A& a, View& v) {
 template <typename A>
 void members(A& a, Body& b) {
   a(b.center, b.radii, b.axes, b.center_covariance, b.center_covariance_by_shape, b.rms, b.completeness, b.confidence,
-    b.volume, b.volume_error, b.mass, b.mass_error);
+    b.volume, b.volume_error, b.volume_error_by_shape, b.mass, b.mass_error);
 }
 template <typename A>
 void members(A& a, Picking& p) {

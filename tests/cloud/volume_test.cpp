@@ -43,7 +43,7 @@ TEST_CASE("the standard error of a volume is the scatter of repeated fits") {
       const auto fit = fit_ellipsoid(cloud, all_of(cloud), Ellipsoid(Sphere{{0.102, 0.5, 0.2}, 0.034}), parameters);
       REQUIRE(fit);
       squares += std::pow(volume(fit->body) / (4.0 / 3.0 * kPi * std::pow(0.035, 3)) - 1.0, 2);
-      expected += relative_volume_error(cloud, all_of(cloud), fit->body, parameters);
+      expected += relative_volume_error(cloud, all_of(cloud), fit->body, parameters).total;
     }
     const double scatter = std::sqrt(squares / kTrials), estimated = expected / kTrials;
     INFO("scatter " << scatter << ", estimated " << estimated);
@@ -57,17 +57,19 @@ TEST_CASE("the less is seen, the less a volume is known") {
   for (const double lowest : {-1.1, 0.0, 0.4, 0.8}) {
     Cloud cloud;
     test::add_sphere(cloud, {{0, 0, 0}, 0.035}, 0.002, [&](const Eigen::Vector3d& d) { return d.y() > lowest; });
-    const double error = relative_volume_error(cloud, all_of(cloud), Ellipsoid(Sphere{{0, 0, 0}, 0.035}));
-    CHECK(error > last);
-    last = error;
+    const VolumeError error = relative_volume_error(cloud, all_of(cloud), Ellipsoid(Sphere{{0, 0, 0}, 0.035}));
+    CHECK(error.total > last);
+    CHECK(error.by_shape < error.total);
+    CHECK((lowest < -1.0 ? error.by_shape < 0.1 * error.total : error.by_shape > 0.1 * error.total));
+    last = error.total;
   }
-  CHECK(relative_volume_error(Cloud{}, {}, Ellipsoid(Sphere{{0, 0, 0}, 0.035})) == 1.0);
+  CHECK(relative_volume_error(Cloud{}, {}, Ellipsoid(Sphere{{0, 0, 0}, 0.035})).total == 1.0);
 }
 
 TEST_CASE("a volume without points that agree with its body is not known at all, parameters are checked") {
   Cloud cloud;
   test::add_sphere(cloud, {{0, 0, 0}, 0.035}, 0.01, test::everywhere);
-  CHECK(relative_volume_error(cloud, all_of(cloud), Ellipsoid(Sphere{{0.2, 0, 0}, 0.035})) == 1.0);
+  CHECK(relative_volume_error(cloud, all_of(cloud), Ellipsoid(Sphere{{0.2, 0, 0}, 0.035})).total == 1.0);
   FitParameters parameters;
   parameters.noise = 0.0;
   CHECK_THROWS_AS(relative_volume_error(cloud, all_of(cloud), Ellipsoid(Sphere{{0, 0, 0}, 0.035}), parameters),

@@ -14,8 +14,27 @@ struct Estimate {
   double error = 0.0;  ///< standard error, in the same unit
 };
 
+/// Standard error of a volume, relative to it.
+struct VolumeError {
+  double total = 1.0;
+  double by_shape = 1.0;  ///< the part of it that is due to the unknown shape of the unseen side
+};
+
 /// Volume (m3) of an ellipsoid.
 inline double volume(const Ellipsoid& body) { return 4.0 / 3.0 * kPi / body.A.determinant(); }
+
+namespace detail {
+
+/// Derivatives of the logarithm of det A, the inverse of the volume, by the unknowns of EllipsoidRow.
+/// @param size the unknowns are scaled by this length (m)
+inline Vector9 log_volume_gradient(const Ellipsoid& body, double size) {
+  const Eigen::Matrix3d inverse = body.A.inverse() / size;
+  return (Vector9() << 0.0, 0.0, 0.0, inverse(0, 0), inverse(1, 1), inverse(2, 2), 2.0 * inverse(0, 1),
+          2.0 * inverse(0, 2), 2.0 * inverse(1, 2))
+      .finished();
+}
+
+}  // namespace detail
 
 /// Relative standard error of a fitted body's volume. This is the standard error of the logarithm of 1 / det A, whose
 /// derivative by A is -A^-1, under the joint covariance of center and A. Points, derivatives, weights and prior are
@@ -27,12 +46,12 @@ inline double volume(const Ellipsoid& body) { return 4.0 / 3.0 * kPi / body.A.de
 /// @param parameters those of the fit
 /// @throws InputError if the cloud has no normals; ParameterError
 template <typename S>
-double relative_volume_error(const PointCloud<S>& cloud, const Indices& indices, const Ellipsoid& body,
-                             const FitParameters& parameters = {}) {
+VolumeError relative_volume_error(const PointCloud<S>& cloud, const Indices& indices, const Ellipsoid& body,
+                                  const FitParameters& parameters = {}) {
   parameters.check();
   check_input(cloud.normals.size() == cloud.points.size(), "relative_volume_error: the cloud has no normals");
   using detail::Matrix9, detail::Vector9;
-  if (indices.empty()) return 1.0;
+  if (indices.empty()) return {};
   const std::size_t used = std::min(indices.size(), static_cast<std::size_t>(parameters.max_points));
   const double share = static_cast<double>(indices.size()) / static_cast<double>(used);
   const double size = body.mean_radius(), cos_max = std::cos(parameters.max_angle);
@@ -47,17 +66,16 @@ double relative_volume_error(const PointCloud<S>& cloud, const Indices& indices,
     information.noalias() += (row.weight * row.derivatives).lazyProduct(row.derivatives.transpose());
     weights += row.weight;
   }
-  if (!(weights > 0.0)) return 1.0;
+  if (!(weights > 0.0)) return {};
   information *= std::min(share, parameters.independent / weights) / (parameters.noise * parameters.noise);
-  information += detail::shape_information(body, size, parameters.shape_prior);
+  const Matrix9 prior = detail::shape_information(body, size, parameters.shape_prior);
+  information += prior;
   information.diagonal().array() += 1e-9 * information.diagonal().maxCoeff();
-  const Eigen::Matrix3d inverse = body.A.inverse() / size;
-  Vector9 gradient = Vector9::Zero();
-  gradient.tail<6>() << inverse(0, 0), inverse(1, 1), inverse(2, 2), 2.0 * inverse(0, 1), 2.0 * inverse(0, 2),
-      2.0 * inverse(1, 2);
+  const Vector9 gradient = detail::log_volume_gradient(body, size);
   const Vector9 spread = Eigen::LDLT<Matrix9>(information).solve(gradient);
   const double variance = gradient.dot(spread);
-  return variance > 0.0 && variance < 1.0 ? std::sqrt(variance) : 1.0;
+  if (!(variance > 0.0) || !(variance < 1.0)) return {};
+  return {std::sqrt(variance), std::sqrt(spread.dot(prior * spread))};
 }
 
 /// Volume (m3) of a fitted body. Its standard error combines that of the fit and the deviation of real fruit from an

@@ -35,8 +35,8 @@ class FusedViews : public Views {
   const std::vector<sensor::SurfaceImage>& images() const override { return images_; }
   bool discarded(std::size_t view) const override { return views_[view].discarded; }
   Eigen::Vector3d shift_to_reported(const Eigen::Vector3d& center) const override;
-  std::vector<Eigen::Matrix3d> center_errors(const std::vector<Ellipsoid>& bodies,
-                                             const FitParameters& parameters) const override;
+  std::vector<BodyErrors> body_errors(const std::vector<Ellipsoid>& bodies,
+                                      const FitParameters& parameters) const override;
 
  private:
   struct Taken {

@@ -30,9 +30,8 @@ class MergedViews : public Views {
   const std::vector<sensor::SurfaceImage>& images() const override { return images_; }
   bool discarded(std::size_t view) const override { return discarded_[view]; }
   Eigen::Vector3d shift_to_reported(const Eigen::Vector3d&) const override { return Eigen::Vector3d::Zero(); }
-  std::vector<Eigen::Matrix3d> center_errors(const std::vector<Ellipsoid>& bodies,
-                                             const FitParameters&) const override {
-    return std::vector<Eigen::Matrix3d>(bodies.size(), Eigen::Matrix3d::Zero());
+  std::vector<BodyErrors> body_errors(const std::vector<Ellipsoid>& bodies, const FitParameters&) const override {
+    return std::vector<BodyErrors>(bodies.size());
   }
 
  private:

@@ -10,6 +10,7 @@
 #include <agrisee/cloud/parameters.hpp>
 #include <agrisee/core/cloud.hpp>
 #include <agrisee/core/pose.hpp>
+#include <agrisee/fuse/body_errors.hpp>
 #include <agrisee/geometry/aabb.hpp>
 #include <agrisee/sensor/depth_frame.hpp>
 #include <agrisee/sensor/surface_image.hpp>
@@ -84,10 +85,9 @@ class Views {
   /// @return the shift (m)
   virtual Eigen::Vector3d shift_to_reported(const Eigen::Vector3d& center) const = 0;
 
-  /// Covariances of the centers of bodies fitted to the map due to errors of the views, see fuse::center_errors; zero
-  /// for a body for which they cannot be estimated.
-  virtual std::vector<Eigen::Matrix3d> center_errors(const std::vector<Ellipsoid>& bodies,
-                                                     const FitParameters& parameters) const = 0;
+  /// Errors of bodies fitted to the map due to errors of the views, see fuse::body_errors.
+  virtual std::vector<BodyErrors> body_errors(const std::vector<Ellipsoid>& bodies,
+                                              const FitParameters& parameters) const = 0;
 };
 
 }  // namespace agrisee::fuse

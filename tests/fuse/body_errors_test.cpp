@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <agrisee/fuse/center_errors.hpp>
+#include <agrisee/cloud/volume.hpp>
+#include <agrisee/fuse/body_errors.hpp>
 #include <agrisee/geometry/direction_bins.hpp>
 
 #include <cmath>
@@ -59,7 +60,7 @@ EllipsoidFit fit_of(const Scan& scan, int max_points = FitParameters().max_point
   return *fit_ellipsoid(scan.cloud, all, Ellipsoid(Sphere{kCenter, kRadius}), parameters);
 }
 
-Eigen::Matrix3d errors_of(const Scan& scan) { return center_errors({fit_of(scan).body}, scan.views, {})[0]; }
+Eigen::Matrix3d errors_of(const Scan& scan) { return body_errors({fit_of(scan).body}, scan.views, {})[0].center; }
 
 // Balls that are seen at the ends of their axes alone, so that all can be worked out by hand. Binary fractions.
 const Sphere kSmall{{0.25, 0.5, -0.125}, 0.03125}, kOther{{0.5, 0.5, -0.125}, 0.03125};
@@ -116,7 +117,7 @@ TEST_CASE("centers are as far off as the views' shared errors say") {
     for (int k = 0; k < kScans; ++k) {
       const Scan scan = scan_of_ball(10, shared, 0.0002, static_cast<unsigned>(k));
       const EllipsoidFit fit = fit_of(scan);
-      const Eigen::Matrix3d covariance = center_errors({fit.body}, scan.views, {})[0];
+      const Eigen::Matrix3d covariance = body_errors({fit.body}, scan.views, {})[0].center;
       squares += (fit.body.center - kCenter).squaredNorm() / kScans;
       variances += covariance.trace() / kScans;
     }
@@ -147,7 +148,7 @@ TEST_CASE("centers are as far off as errors say that only neighboring points sha
     }
     const EllipsoidFit fit = fit_of(scan, static_cast<int>(scan.cloud.size()));
     squares += (fit.body.center - kCenter).squaredNorm() / kScans;
-    variances += center_errors({fit.body}, scan.views, {})[0].trace() / kScans;
+    variances += body_errors({fit.body}, scan.views, {})[0].center.trace() / kScans;
   }
   INFO("errors of " << 1e3 * std::sqrt(squares) << " mm, predicted " << 1e3 * std::sqrt(variances) << " mm");
   CHECK(variances / squares > 0.8);
@@ -187,10 +188,13 @@ TEST_CASE("poses that registration had to put right make a center less certain")
 
 TEST_CASE("what too few views saw is not told") {
   CHECK(errors_of(scan_of_ball(2, 0.001, 0.0001, 4)).isZero());
-  CHECK(center_errors({Ellipsoid(Sphere{kCenter + Eigen::Vector3d(1.0, 0.0, 0.0), kRadius})},
-                      scan_of_ball(5, 0.001, 0.0001, 4).views, {})[0]
-            .isZero());
-  CHECK(center_errors({}, {}, {}).empty());
+  const Scan scan = scan_of_ball(5, 0.001, 0.0001, 4);
+  const Ellipsoid ball(Sphere{kCenter, kRadius}), nothing(Sphere{kCenter + Eigen::Vector3d(1.0, 0.0, 0.0), kRadius});
+  const auto errors = body_errors({ball, nothing}, scan.views, {});
+  CHECK(errors[0].volume > 0.0);
+  CHECK(errors[1].center.isZero());
+  CHECK(errors[1].volume == 0.0);
+  CHECK(body_errors({}, {}, {}).empty());
 }
 
 TEST_CASE("skin that is uneven is all that is wrong with views that agree") {
@@ -198,17 +202,17 @@ TEST_CASE("skin that is uneven is all that is wrong with views that agree") {
   for (const int independent : {1, 150}) {
     FitParameters parameters;
     parameters.independent = independent;
-    check_variance(center_errors({Ellipsoid(kSmall)}, registered(images), parameters)[0], uneven(independent));
+    check_variance(body_errors({Ellipsoid(kSmall)}, registered(images), parameters)[0].center, uneven(independent));
   }
 }
 
 TEST_CASE("the variance of views that disagree is shared by bodies and doubled") {
   // Six residuals of a size have the variance 6/5 of its square about 0. Twice that, of the mean of two views.
   const auto one = six_ends({kSmall}, {kOff});
-  check_variance(center_errors({Ellipsoid(kSmall)}, registered(one), {})[0], 1.2 * kOff * kOff + uneven());
+  check_variance(body_errors({Ellipsoid(kSmall)}, registered(one), {})[0].center, 1.2 * kOff * kOff + uneven());
   const auto two = six_ends({kSmall, kOther}, {kOff, 0.0});
-  const auto both = center_errors({Ellipsoid(kSmall), Ellipsoid(kOther)}, registered(two), {});
-  for (const Eigen::Matrix3d& covariance : both) check_variance(covariance, 0.6 * kOff * kOff + uneven());
+  for (const BodyErrors& errors : body_errors({Ellipsoid(kSmall), Ellipsoid(kOther)}, registered(two), {}))
+    check_variance(errors.center, 0.6 * kOff * kOff + uneven());
 }
 
 TEST_CASE("what registration moved counts as disagreement and as an error of its own") {
@@ -217,14 +221,14 @@ TEST_CASE("what registration moved counts as disagreement and as an error of its
     const auto images = six_ends({kSmall}, {outwards});
     for (const double too_far : {-0.5 * kOff, 3.0 * kOff}) {
       const double before = outwards + too_far;
-      check_variance(center_errors({Ellipsoid(kSmall)}, registered(images, too_far), {})[0],
+      check_variance(body_errors({Ellipsoid(kSmall)}, registered(images, too_far), {})[0].center,
                      1.2 * before * before + too_far * too_far / 3.0 / 6.0 + uneven());
     }
   }
   // Of two bodies, the shifts of one are those of the other.
   const auto two = six_ends({kSmall, kOther}, {0.0, 0.0});
-  for (const auto& covariance : center_errors({Ellipsoid(kSmall), Ellipsoid(kOther)}, registered(two, kOff), {}))
-    check_variance(covariance, 1.2 * kOff * kOff + kOff * kOff / 18.0 + uneven());
+  for (const BodyErrors& errors : body_errors({Ellipsoid(kSmall), Ellipsoid(kOther)}, registered(two, kOff), {}))
+    check_variance(errors.center, 1.2 * kOff * kOff + kOff * kOff / 18.0 + uneven());
 }
 
 TEST_CASE("errors of poses, which show across the sight lines, are no errors that the points of a view share") {
@@ -237,14 +241,14 @@ TEST_CASE("errors of poses, which show across the sight lines, are no errors tha
     }
     // Six shifts of this length have the variance 6/5 of its square about 0, on two axes.
     const double shared = std::max(0.0, 1.2 * kOff * kOff - 0.6 * aside * aside);
-    check_variance(center_errors({Ellipsoid(kSmall)}, views, {})[0], shared + aside * aside / 18.0 + uneven());
+    check_variance(body_errors({Ellipsoid(kSmall)}, views, {})[0].center, shared + aside * aside / 18.0 + uneven());
   }
 }
 
 TEST_CASE("smoothing more noise makes a center less certain") {
   auto images = six_ends({kSmall}, {0.0});
   for (std::size_t v = 0; v < images.size(); ++v) images[v].noise = v % 2 ? 0.001 : 0.003;
-  check_variance(center_errors({Ellipsoid(kSmall)}, registered(images), {})[0], uneven(150, 0.002));
+  check_variance(body_errors({Ellipsoid(kSmall)}, registered(images), {})[0].center, uneven(150, 0.002));
 }
 
 TEST_CASE("ends that are off in one view are errors of patches") {
@@ -254,7 +258,48 @@ TEST_CASE("ends that are off in one view are errors of patches") {
   for (int axis = 0; axis < 3; ++axis)
     for (const double side : {-1.0, 1.0})
       add_end(images[static_cast<std::size_t>(axis)], kSmall, axis, side, side * kOff, 5);
-  check_variance(center_errors({Ellipsoid(kSmall)}, registered(images), {})[0], kOff * kOff + uneven());
+  check_variance(body_errors({Ellipsoid(kSmall)}, registered(images), {})[0].center, kOff * kOff + uneven());
+}
+
+TEST_CASE("what one or two views saw has errors of the size that others tell") {
+  // The second ball is seen by three of the six views, and by two.
+  for (const std::size_t seen : {2u, 3u}) {
+    auto images = six_ends({kSmall}, {kOff});
+    for (std::size_t v = 0; v < seen; ++v) add_end(images[v], kOther, static_cast<int>(v), 1.0, 0.0, 10);
+    const auto errors = body_errors({Ellipsoid(kSmall), Ellipsoid(kOther)}, registered(images), {});
+    const double counted = seen == 2 ? 6.0 / 5.0 : 6.0 / 7.0;  // squares over degrees of freedom
+    check_variance(errors[0].center, counted * kOff * kOff + uneven());
+    CHECK(errors[1].center(0, 0) > 0.0);
+    CHECK(errors[1].volume > 0.0);
+  }
+}
+
+TEST_CASE("volumes are as far off as the lengths of three axes") {
+  // Each semi-axis is the mean of two ends. Errors of the three add up in the logarithm of the volume.
+  const auto volume_variance = [](double outwards, double noise) {
+    auto images = six_ends({kSmall}, {outwards});
+    for (sensor::SurfaceImage& image : images) image.noise = noise;
+    const double error = body_errors({Ellipsoid(kSmall)}, registered(images), {})[0].volume;
+    return error * error * kSmall.radius * kSmall.radius;
+  };
+  CHECK(volume_variance(0.0, 0.0) == Approx(3.0 * uneven()).epsilon(1e-3));
+  CHECK(volume_variance(kOff, 0.0) == Approx(3.0 * (1.2 * kOff * kOff + uneven())).epsilon(1e-3));
+  const double flattened = 0.1 * 0.002;  // all ends at once: three times as much of the volume
+  CHECK(volume_variance(0.0, 0.002) == Approx(9.0 * flattened * flattened + 3.0 * uneven(150, 0.002)).epsilon(1e-3));
+}
+
+TEST_CASE("volumes are as far off as the views' shared errors say") {
+  double squares = 0.0, variances = 0.0;
+  constexpr int kScans = 80;
+  for (int k = 0; k < kScans; ++k) {
+    const Scan scan = scan_of_ball(10, 0.001, 0.0002, static_cast<unsigned>(k));
+    const EllipsoidFit fit = fit_of(scan);
+    squares += std::pow(volume(fit.body) / volume(Ellipsoid(Sphere{kCenter, kRadius})) - 1.0, 2) / kScans;
+    variances += std::pow(body_errors({fit.body}, scan.views, {})[0].volume, 2) / kScans;
+  }
+  INFO("errors of " << std::sqrt(squares) << ", predicted " << std::sqrt(variances));
+  CHECK(variances / squares > 1.0);  // doubled, as those of centers
+  CHECK(variances / squares < 4.0);
 }
 
 TEST_CASE("three views of ten points are enough, of nine they are not") {
@@ -264,7 +309,7 @@ TEST_CASE("three views of ten points are enough, of nine they are not") {
       add_end(images[v], kSmall, static_cast<int>(v), 1.0, 0.0, v == 0 ? count : 10);
       add_end(images[v], kSmall, static_cast<int>(v), 1.0, 0.01, 5);  // too far off to count
     }
-    return center_errors({Ellipsoid(kSmall)}, registered(images), {})[0].trace();
+    return body_errors({Ellipsoid(kSmall)}, registered(images), {})[0].center.trace();
   };
   CHECK(with(10, 3) > 0.0);
   CHECK(with(9, 3) == 0.0);
@@ -278,12 +323,12 @@ TEST_CASE("points with other normals than the body's do not count, parameters ar
       const Eigen::Vector3f n = image.normals[i];
       image.normals[i] = (0.6f * n + 0.8f * Eigen::Vector3f(n.y(), n.z(), n.x())).normalized();
     }
-  CHECK(center_errors({Ellipsoid(kSmall)}, registered(images), {})[0].isZero());
+  CHECK(body_errors({Ellipsoid(kSmall)}, registered(images), {})[0].center.isZero());
   FitParameters wide;
   wide.max_angle = deg(60.0);
-  CHECK_FALSE(center_errors({Ellipsoid(kSmall)}, registered(images), wide)[0].isZero());
+  CHECK_FALSE(body_errors({Ellipsoid(kSmall)}, registered(images), wide)[0].center.isZero());
   wide.noise = 0.0;
-  CHECK_THROWS_AS(center_errors({}, {}, wide), ParameterError);
+  CHECK_THROWS_AS(body_errors({}, {}, wide), ParameterError);
 }
 
 TEST_CASE("points count up to four standard deviations or a twentieth of the radius from the body") {
@@ -291,7 +336,7 @@ TEST_CASE("points count up to four standard deviations or a twentieth of the rad
   sharp.noise = 0.0001;
   const auto counts = [](double outwards, const FitParameters& parameters) {
     const auto images = six_ends({kSmall}, {outwards});
-    return !center_errors({Ellipsoid(kSmall)}, registered(images), parameters)[0].isZero(0.0);
+    return !body_errors({Ellipsoid(kSmall)}, registered(images), parameters)[0].center.isZero(0.0);
   };
   for (const double side : {-1.0, 1.0}) {
     CHECK(counts(side * 0.0039, {}));  // 4 x 1 mm

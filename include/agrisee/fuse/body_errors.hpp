@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// @file
-/// The uncertainty of fitted centers due to errors of the views, estimated from how far the views of a scan disagree.
+/// The uncertainty of fitted bodies due to errors of the views, estimated from how far the views of a scan disagree.
 ///
 /// Errors of neighboring pixels are correlated, so the mean of a view's points on a body is off, however many points
 /// there are. The mean residual of each view on each body, before registration, measures this shared error together
@@ -10,8 +10,10 @@
 /// in all views causes no disagreement; half of the variance of an L515's correlated noise is of this kind, so the
 /// variance is doubled. Errors that only points near each other share are propagated in the same way, patch by patch of
 /// 15 degrees; their variance is that of the mean residuals of the patches about that of their view. Two terms are
-/// added: the scatter of the registration's shifts, divided by the number of views, and what is the same in all views:
-/// uneven skin, and steep surfaces that smoothing flattens, more so the more noise there is. Metres, world.
+/// added: the scatter of the registration's shifts, divided by the number of views (to centers), and what is the same
+/// in all views: uneven skin, and steep surfaces that smoothing flattens, more so the more noise there is. Volumes
+/// change most if the whole surface is flattened at once, which is added as well. A body that only one or two views
+/// show takes over the variances of the others. Metres, world.
 #pragma once
 
 #include <agrisee/cloud/fit.hpp>
@@ -27,14 +29,20 @@ struct RegisteredView {
   Pose reported = Pose::Identity();             ///< world_T_optical as reported
 };
 
-/// Covariances (m2) of the centers of fitted bodies due to errors of the sensor, its poses and registration. The
-/// uncertainty from the unseen shape (EllipsoidFit::center_covariance_by_shape) is not included.
+/// Errors of a fitted body due to the sensor, its poses and registration; all zero if they are not known.
+struct BodyErrors {
+  Eigen::Matrix3d center = Eigen::Matrix3d::Zero();  ///< covariance of the center (m2)
+  double volume = 0.0;                               ///< standard error of the volume, relative to it
+};
+
+/// The errors of fitted bodies. The uncertainty from the unseen shape (EllipsoidFit::center_covariance_by_shape,
+/// VolumeError::by_shape) is not included.
 /// @param bodies fitted to the fused points of the views
 /// @param views the views of the fused points; others may have images without points
 /// @param parameters of the fit of the bodies
-/// @return one per body; zero for a body of which fewer than three views have points
+/// @return one per body; zero for a body of which no view has points, and for all if no body has points of three views
 /// @throws ParameterError; Cancelled. Defined in `agrisee::agrisee`.
-std::vector<Eigen::Matrix3d> center_errors(const std::vector<Ellipsoid>& bodies,
-                                           const std::vector<RegisteredView>& views, const FitParameters& parameters);
+std::vector<BodyErrors> body_errors(const std::vector<Ellipsoid>& bodies, const std::vector<RegisteredView>& views,
+                                    const FitParameters& parameters);
 
 }  // namespace agrisee::fuse

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <agrisee/cloud/volume.hpp>
 #include <agrisee/core/cancellation.hpp>
-#include <agrisee/fuse/center_errors.hpp>
+#include <agrisee/fuse/body_errors.hpp>
 #include <agrisee/geometry/direction_bins.hpp>
 
 #include <algorithm>
@@ -97,7 +98,6 @@ template <typename Square>
 double variance_of(const std::vector<std::vector<Share>>& shares, Square&& square) {
   double squares = 0.0, count = 0.0;
   for (const auto& of_body : shares) {
-    if (of_body.empty()) continue;
     for (const Share& s : of_body) squares += square(s);
     count += static_cast<double>(of_body.size() - 1);
   }
@@ -134,67 +134,73 @@ double patch_variance(const std::vector<std::vector<Share>>& shares) {
 
 /// Variance of the shifts of the views on one body along an axis (m2), in the mean over the axes and bodies.
 double shift_variance(const std::vector<std::vector<Share>>& shares) {
-  double sum = 0.0, count = 0.0;
-  for (const auto& of_body : shares) {
-    if (of_body.empty()) continue;
+  double sum = 0.0;
+  for (const auto& of_body : shares)
     for (const Share& s : of_body) sum += s.shift.squaredNorm() / (3.0 * static_cast<double>(of_body.size()));
-    count += 1.0;
-  }
-  return count > 0.0 ? sum / count : 0.0;
+  return sum / static_cast<double>(shares.size());
 }
 
-/// Variance of a surfel's distance from its body by errors that are the same in all views (m2).
-double variance_in_all_views(const std::vector<RegisteredView>& views) {
+/// Variance of a surfel's distance from its body by smoothing (m2).
+double flattened_variance(const std::vector<RegisteredView>& views) {
   double noise = 0.0;
   for (const RegisteredView& view : views) noise += view.image->noise / static_cast<double>(views.size());
-  return kUneven * kUneven + std::pow(kFlattened * noise, 2);
+  return std::pow(kFlattened * noise, 2);
 }
 
-Eigen::Matrix3d covariance_of(const Ellipsoid& body, const std::vector<Share>& shares, double variance,
-                              double of_patches, double same_in_all, const FitParameters& parameters) {
+/// Variances that all bodies of a scan share (m2).
+struct Variances {
+  double of_views = 0.0;    ///< of the mean residuals of views
+  double of_patches = 0.0;  ///< of the mean residuals of patches about those of their views
+  double of_shifts = 0.0;   ///< of the shifts of registration along an axis
+  double flattened = 0.0;   ///< of a surfel by smoothing, the same in all views
+};
+
+BodyErrors errors_of(const Ellipsoid& body, const std::vector<Share>& shares, const Variances& variances,
+                     const FitParameters& parameters) {
   const double size = body.mean_radius(), noise = parameters.noise_of(size);
   Matrix9 normal_matrix = Matrix9::Zero();
+  Vector9 sum = Vector9::Zero();
   double weights = 0.0;
-  for (const Share& s : shares) normal_matrix += s.normal_matrix, weights += s.all.weights;
+  for (const Share& s : shares) normal_matrix += s.normal_matrix, sum += s.all.sum, weights += s.all.weights;
   const double certainty = parameters.independent / (weights * noise * noise);
   Matrix9 information = certainty * normal_matrix + detail::shape_information(body, size, parameters.shape_prior);
   information.diagonal().array() += 1e-9 * information.diagonal().maxCoeff();
-  Matrix9 scatter = same_in_all / (noise * noise) * certainty * normal_matrix;
+  Matrix9 scatter = (kUneven * kUneven + variances.flattened) / (noise * noise) * certainty * normal_matrix;
   for (const Share& s : shares)
-    scatter += kUnseen * variance * certainty * certainty * s.all.sum * s.all.sum.transpose();
+    scatter += kUnseen * variances.of_views * certainty * certainty * s.all.sum * s.all.sum.transpose();
   for (const Share& s : shares)
     for (const Pull& patch : s.patches)
-      scatter += of_patches * certainty * certainty * patch.sum * patch.sum.transpose();
+      scatter += variances.of_patches * certainty * certainty * patch.sum * patch.sum.transpose();
   const Matrix9 inverse = Eigen::LDLT<Matrix9>(information).solve(Matrix9::Identity());
   const Matrix9 covariance = inverse * scatter * inverse.transpose();
   const Eigen::Matrix3d of_center = size * size * covariance.topLeftCorner<3, 3>();
-  return 0.5 * (of_center + of_center.transpose());
+  const Vector9 gradient = detail::log_volume_gradient(body, size);
+  const double by_flattening = certainty * gradient.dot(inverse * sum);  // of the volume's logarithm by all residuals
+  return {0.5 * (of_center + of_center.transpose()) +
+              variances.of_shifts / static_cast<double>(shares.size()) * Eigen::Matrix3d::Identity(),
+          std::sqrt(gradient.dot(covariance * gradient) + variances.flattened * by_flattening * by_flattening)};
 }
 
 }  // namespace
 
-std::vector<Eigen::Matrix3d> center_errors(const std::vector<Ellipsoid>& bodies,
-                                           const std::vector<RegisteredView>& views, const FitParameters& parameters) {
+std::vector<BodyErrors> body_errors(const std::vector<Ellipsoid>& bodies, const std::vector<RegisteredView>& views,
+                                    const FitParameters& parameters) {
   parameters.check();
-  std::vector<std::vector<Share>> shares(bodies.size());
-  for (std::size_t b = 0; b < bodies.size(); ++b)
+  std::vector<std::vector<Share>> shares(bodies.size()), measured;  // of all bodies; of those that several views show
+  for (std::size_t b = 0; b < bodies.size(); ++b) {
     for (const RegisteredView& view : views) {
       throw_if_cancelled();
       if (const auto share = share_of(bodies[b], view, parameters)) shares[b].push_back(*share);
     }
-  for (auto& of_body : shares) {
-    if (of_body.size() < kLeastViews) of_body.clear();
-    center_shifts(of_body);
+    center_shifts(shares[b]);
+    if (shares[b].size() >= kLeastViews) measured.push_back(shares[b]);
   }
-  const double of_patches = patch_variance(shares);
-  const double variance = std::max(0.0, shared_variance(shares) - pose_variance(shares));
-  const double shifted = shift_variance(shares), same_in_all = variance_in_all_views(views);
-  std::vector<Eigen::Matrix3d> out(bodies.size(), Eigen::Matrix3d::Zero());
-  for (std::size_t b = 0; b < bodies.size(); ++b) {
-    if (shares[b].empty()) continue;
-    out[b] = covariance_of(bodies[b], shares[b], variance, of_patches, same_in_all, parameters);
-    out[b].diagonal().array() += shifted / static_cast<double>(shares[b].size());
-  }
+  std::vector<BodyErrors> out(bodies.size());
+  if (measured.empty()) return out;
+  const Variances variances{std::max(0.0, shared_variance(measured) - pose_variance(measured)),
+                            patch_variance(measured), shift_variance(measured), flattened_variance(views)};
+  for (std::size_t b = 0; b < bodies.size(); ++b)
+    if (!shares[b].empty()) out[b] = errors_of(bodies[b], shares[b], variances, parameters);
   return out;
 }
 
