@@ -188,6 +188,7 @@ ScanResult Pipeline::result() const {
   out.stop_reason = stop_reason_;
   out.completeness = completeness();
   out.warnings = warnings();
+  timed(out.seconds.locate, [&] { doubt_calibration(out); });
   out.seconds.plan = seconds_.plan;
   out.seconds.fuse = seconds_.fuse;
   out.seconds.filter += seconds_.filter;
@@ -307,6 +308,18 @@ void Pipeline::tell_body_errors(ScanResult& out) const {
     body.volume_error = std::hypot(body.volume_error_by_shape, body.volume * errors[i].volume);
     body.mass_error = mass_of({body.volume, body.volume_error}, parameters_.mass).error;
   }
+}
+
+/// Warn if the views show the fruit in other places, and another calibration would make them agree.
+void Pipeline::doubt_calibration(ScanResult& out) const {
+  std::vector<Ellipsoid> bodies;
+  for (const Fruit& f : out.fruits)
+    if (f.body) bodies.push_back(ellipsoid_of(*f.body));
+  const fuse::CalibrationCheck check = map_->check_calibration(bodies);
+  if (check.mistake.empty()) return;
+  out.warnings.push_back("the views show the surface of the fruit " + metres(check.apart) +
+                         " apart, so places and sizes are wrong. They would agree to " + metres(check.mended) + " if " +
+                         check.mistake);
 }
 
 /// Move the result to where all views together, by their reported poses, put it.

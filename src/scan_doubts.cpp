@@ -26,21 +26,39 @@ std::optional<std::string> doubt_of_camera(const sensor::Intrinsics& frame, cons
 
 /// A sentence if our model of the arm puts the sensor elsewhere than the reported poses do.
 std::optional<std::string> doubt_of_joints(const std::vector<View>& views, const Workcell& workcell) {
-  constexpr double kFar = 0.05;  // m; more than arms and hand-eye transforms are off
+  constexpr double kFar = 0.02, kTurned = deg(5.0);  // m, rad; more than arms and hand-eye transforms are off
   std::size_t far = 0;
-  double farthest = 0.0;
+  double farthest = 0.0, most_turned = 0.0;
   for (const View& v : views) {
     if (!v.joints) continue;
     const Pose by_joints = optical_pose(workcell, *v.joints);
     const double off = (by_joints.translation() - v.world_T_optical.translation()).norm();
-    far += off > kFar;
+    const double turned = Eigen::AngleAxisd(by_joints.linear().transpose() * v.world_T_optical.linear()).angle();
+    far += off > kFar || turned > kTurned;
     farthest = std::max(farthest, off);
+    most_turned = std::max(most_turned, turned);
   }
   if (far == 0) return std::nullopt;
   return "by the joints of " + std::to_string(far) + " of " + std::to_string(views.size()) +
-         " views the sensor was up to " + metres(farthest) +
-         " away from the reported pose: are the joints those of the moment, in radians? Are the arm, its base and the "
+         " views the sensor was up to " + metres(farthest) + " and " + number_text(most_turned / deg(1.0), 2) +
+         " degrees away from the reported pose: are the joints those of the moment, in radians? Are the arm, its base "
+         "and the "
          "hand-eye transform right?";
+}
+
+/// A sentence if a third or more of the views that have points show none in the scan volume, but not all.
+std::optional<std::string> doubt_of_aim(const std::vector<View>& views) {
+  std::size_t with_points = 0, beside = 0;
+  std::string numbers;
+  for (std::size_t i = 0; i < views.size(); ++i) {
+    if (!(views[i].median_depth > 0.0)) continue;
+    ++with_points;
+    if (views[i].points_in > 0) continue;
+    numbers += (beside++ ? "," : "") + std::to_string(i);
+  }
+  if (beside == 0 || 3 * beside < with_points || beside == with_points) return std::nullopt;
+  return std::to_string(beside) + " of " + std::to_string(views.size()) + " views show nothing of the scan volume (" +
+         numbers + "): are their poses right? " + fuse::kRuleOfPoses;
 }
 
 /// A sentence if many views contradict the others, or none shows the volume: with the mistake, if changed poses agree.
@@ -87,6 +105,7 @@ std::vector<std::string> ScanDoubts::sentences(const std::vector<View>& views, c
     if (text) all.push_back(std::move(*text));
   };
   add(doubt_of_poses(views, samples_, workcell.scan_volume));
+  add(doubt_of_aim(views));
   if (own_arm) add(doubt_of_joints(views, workcell));
   for (const Doubt* d : {&masks_, &intrinsics_, &other_camera_})
     if (d->views > 0) all.push_back(d->first + (d->views > 1 ? " (so in " + std::to_string(d->views) + " views)" : ""));

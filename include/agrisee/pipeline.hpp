@@ -136,6 +136,7 @@ class Pipeline {
   bool repeats_last_frame(const sensor::DepthFrame& frame) const;
   plan::Progress progress(const fuse::Change& change) const;
   void tell_body_errors(ScanResult& out) const;
+  void doubt_calibration(ScanResult& out) const;
   std::vector<fuse::DetectedView> detected_views() const;
   void read_masks();
   void center_on_reported_poses(ScanResult& out) const;

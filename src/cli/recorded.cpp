@@ -108,9 +108,6 @@ Aabb all_that_is_seen(const std::string& path, Aabb seen) {
   return seen;
 }
 
-constexpr const char* kRuleOfPoses =
-    "Poses have to be world_T_optical: z forward, x right, y down; quaternions are x y z w";
-
 /// @throws FileError if the poses are all alike, but not the images
 void check_poses_differ(const std::string& path, const ViewSource& source, const Survey& first) {
   const auto same = [&](const Pose& pose) { return pose.matrix() == source.poses.front().matrix(); };
@@ -120,26 +117,12 @@ void check_poses_differ(const std::string& path, const ViewSource& source, const
                     "when its image was taken");
 }
 
-/// A warning if a third or more of the views that have points show none in the scan volume, but not all.
-std::optional<std::string> doubt_of_aim(const std::vector<View>& views) {
-  std::size_t with_points = 0;
-  std::vector<std::size_t> beside;
-  for (std::size_t i = 0; i < views.size(); ++i) {
-    if (!(views[i].median_depth > 0.0)) continue;
-    ++with_points;
-    if (views[i].points_in == 0) beside.push_back(i);
-  }
-  if (beside.empty() || 3 * beside.size() < with_points || beside.size() == with_points) return std::nullopt;
-  return std::to_string(beside.size()) + " of " + std::to_string(views.size()) +
-         " views show nothing of the scan volume (" + comma_list(beside) + "): are their poses right? " + kRuleOfPoses;
-}
-
 /// Test the poses. @return a warning if the views hardly agree
 /// @throws FileError if the poses are not world_T_optical
 std::optional<std::string> doubt_of_poses(const std::string& path, const Survey& first, const Aabb& volume) {
   constexpr double kHardly = 0.1;
   const fuse::PoseCheck check = fuse::check_poses(first.samples, volume);
-  const std::string rule = kRuleOfPoses;
+  const std::string rule = fuse::kRuleOfPoses;
   if (!check.mistake.empty())
     throw FileError(path + ": it seems that the poses " + check.mistake +
                     (check.mended > 0.0
@@ -205,8 +188,7 @@ Processed process_recording(const std::string& path, const CommonOptions& option
   check_contradictions(path, out.result.views);
   const std::vector<std::string> notes = shortened(source.warnings);
   out.result.warnings.insert(out.result.warnings.begin(), notes.begin(), notes.end());
-  for (const auto& text : {doubt, doubt_of_aim(out.result.views)})
-    if (text) out.result.warnings.push_back(*text);
+  if (doubt) out.result.warnings.push_back(*doubt);
   return out;
 }
 

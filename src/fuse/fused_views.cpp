@@ -100,10 +100,19 @@ Eigen::Vector3d FusedViews::shift_to_reported(const Eigen::Vector3d& center) con
 
 std::vector<BodyErrors> FusedViews::body_errors(const std::vector<Ellipsoid>& bodies,
                                                 const FitParameters& parameters) const {
+  return fuse::body_errors(bodies, registered_views(), parameters);
+}
+
+CalibrationCheck FusedViews::check_calibration(const std::vector<Ellipsoid>& bodies) const {
+  return fuse::check_calibration(registered_views(), bodies);
+}
+
+/// The views of the map.
+std::vector<RegisteredView> FusedViews::registered_views() const {
   std::vector<RegisteredView> views;
   for (std::size_t v = 0; v < images_.size(); ++v)
     if (!views_[v].discarded) views.push_back({&images_[v], views_[v].reported});
-  return fuse::body_errors(bodies, views, parameters);
+  return views;
 }
 
 /// A new view, of which only the pose is known so far.

@@ -183,6 +183,26 @@ TEST_CASE("frames of another camera than the workcell's, and unusual intrinsics,
   CHECK(warnings_after(2, calibrated).empty());
 }
 
+TEST_CASE("a wrong scale of the depths, and a hand-eye transform that is left out, are told") {
+  CHECK(warnings_after(8, [](sensor::DepthFrame&, Pose&) {}).empty());
+  const std::string scale = warnings_after(8, [](sensor::DepthFrame& frame, Pose&) {
+    for (float& z : frame.depth) z *= 0.96f;
+  });
+  CHECK_THAT(scale, test::says("the views show the surface of the fruit"));
+  CHECK_THAT(scale, test::says("all depths were multiplied by 1.04 (is the depth scale right?)"));
+  const std::string aside =
+      warnings_after(8, [](sensor::DepthFrame&, Pose& pose) { pose.translate(Eigen::Vector3d(0.008, 0.0, 0.0)); });
+  CHECK_THAT(aside, test::says("if the camera were 8 mm further left in its own frame"));
+}
+
+TEST_CASE("views that look beside the scan volume are told") {
+  int view = 0;
+  const std::string told = warnings_after(9, [&](sensor::DepthFrame&, Pose& pose) {
+    if (view++ % 3 == 0) pose.linear() = pose.linear() * Eigen::DiagonalMatrix<double, 3>(-1.0, 1.0, -1.0);
+  });
+  CHECK_THAT(told, test::says("3 of 9 views show nothing of the scan volume (0,3,6): are their poses right?"));
+}
+
 TEST_CASE("a mask of the background is told, a depth image as masks is refused") {
   const auto as_masks = [](auto&& value) {
     return [value](sensor::DepthFrame& frame, Pose&) {

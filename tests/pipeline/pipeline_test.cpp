@@ -367,6 +367,12 @@ TEST_CASE("joints that cannot be are refused, and those of another posture than 
   pipeline.observe(frame, next->world_T_optical, Joints(Joints::Zero()));
   REQUIRE(pipeline.result().warnings.size() == 1);
   CHECK_THAT(pipeline.result().warnings[0], test::says("by the joints of 1 of 3 views the sensor was up to"));
+  Pipeline turned(w);
+  Pose pose = next->world_T_optical;
+  pose.rotate(Eigen::AngleAxisd(deg(6.0), Eigen::Vector3d::UnitZ()));
+  turned.observe(frame, pose, next->joints);
+  REQUIRE(turned.warnings().size() == 1);
+  CHECK_THAT(turned.warnings()[0], test::says("and 6 degrees away from the reported pose"));
   PipelineOptions own;
   own.reach = [](const plan::ViewRequest&, const Joints&) { return std::optional<plan::ReachableView>(); };
   Pipeline other(w, {}, std::move(own));  // only this robot knows what its joints mean

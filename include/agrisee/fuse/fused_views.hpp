@@ -37,6 +37,7 @@ class FusedViews : public Views {
   Eigen::Vector3d shift_to_reported(const Eigen::Vector3d& center) const override;
   std::vector<BodyErrors> body_errors(const std::vector<Ellipsoid>& bodies,
                                       const FitParameters& parameters) const override;
+  CalibrationCheck check_calibration(const std::vector<Ellipsoid>& bodies) const override;
 
  private:
   struct Taken {
@@ -53,6 +54,7 @@ class FusedViews : public Views {
 
   std::size_t begin(const Pose& world_T_optical, std::size_t points_in, bool discarded);
   bool agree(const Evidence& evidence) const;
+  std::vector<RegisteredView> registered_views() const;
   bool contradicted(const sensor::SurfaceImage& image) const;
   std::vector<std::size_t> views_that_agree(const sensor::SurfaceImage& image) const;
   std::size_t views_in_map() const;

@@ -33,6 +33,7 @@ class MergedViews : public Views {
   std::vector<BodyErrors> body_errors(const std::vector<Ellipsoid>& bodies, const FitParameters&) const override {
     return std::vector<BodyErrors>(bodies.size());
   }
+  CalibrationCheck check_calibration(const std::vector<Ellipsoid>&) const override { return {}; }
 
  private:
   Aabb scan_volume_;

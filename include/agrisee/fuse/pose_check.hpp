@@ -15,6 +15,10 @@
 
 namespace agrisee::fuse {
 
+/// What poses have to be, for messages.
+inline constexpr const char* kRuleOfPoses =
+    "Poses have to be world_T_optical: z forward, x right, y down; quaternions are x y z w";
+
 /// Some points of a view.
 struct ViewSample {
   std::vector<Eigen::Vector3f> points;      ///< m, optical frame

@@ -11,6 +11,7 @@
 #include <agrisee/core/cloud.hpp>
 #include <agrisee/core/pose.hpp>
 #include <agrisee/fuse/body_errors.hpp>
+#include <agrisee/fuse/calibration_check.hpp>
 #include <agrisee/geometry/aabb.hpp>
 #include <agrisee/sensor/depth_frame.hpp>
 #include <agrisee/sensor/surface_image.hpp>
@@ -88,6 +89,9 @@ class Views {
   /// Errors of bodies fitted to the map due to errors of the views, see fuse::body_errors.
   virtual std::vector<BodyErrors> body_errors(const std::vector<Ellipsoid>& bodies,
                                               const FitParameters& parameters) const = 0;
+
+  /// Whether the views agree on the bodies, see fuse::check_calibration.
+  virtual CalibrationCheck check_calibration(const std::vector<Ellipsoid>& bodies) const = 0;
 };
 
 }  // namespace agrisee::fuse

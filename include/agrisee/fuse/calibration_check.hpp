@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// @file
+/// Tests after a scan whether the camera is calibrated: do the views show the surface of a fruit in the same place?
+///
+/// If they do so only after the same change of every view, such as depths 5 % larger or a camera 30 mm further ahead on
+/// the flange, then this is the mistake. Points of different views that are near each other and face the same way are
+/// taken for the same surface, and the change is the least-squares solution for their distances along the normals, as
+/// in point-to-plane ICP (Chen & Medioni, Image and Vision Computing 1992), with matches found again after every step.
+/// Only fruit count: cameras that look into leaves measure them too deep, from every side. World frame, metres. Cost:
+/// some 10 ms; if the views disagree, some 0.2 s. Defined in `agrisee::agrisee`.
+#pragma once
+
+#include <agrisee/fuse/body_errors.hpp>
+
+#include <string>
+#include <vector>
+
+namespace agrisee::fuse {
+
+/// How well the views of a scan agree on the fruit with the calibration as it is, and with another.
+struct CalibrationCheck {
+  double apart = 0.0;   ///< median distance along the normals of what two views show (m); 0 = nothing to compare
+  double mended = 0.0;  ///< the same after the best change (m)
+  /// The change in words, if the views agree so much better that it must be right. If several are as good, all of them:
+  /// views from one distance cannot tell a wrong scale from a camera further ahead.
+  std::string mistake;
+};
+
+/// Test whether a wrong scale of the depths, distances along the rays in place of depths z, wrong focal lengths or a
+/// wrong hand-eye transform explain that the views disagree.
+/// @param views of a scan, with some of their points and normals
+/// @param bodies of the fruit; what is farther from each than half of its radius does not count
+/// @throws Cancelled
+CalibrationCheck check_calibration(const std::vector<RegisteredView>& views, const std::vector<Ellipsoid>& bodies);
+
+}  // namespace agrisee::fuse

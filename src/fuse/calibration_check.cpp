@@ -1,0 +1,243 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <agrisee/core/cancellation.hpp>
+#include <agrisee/core/error.hpp>
+#include <agrisee/core/median.hpp>
+#include <agrisee/fuse/calibration_check.hpp>
+#include <agrisee/neighbors/kdtree.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+namespace agrisee::fuse {
+namespace {
+
+/// A change of the calibration: what is to be added to it.
+struct Change {
+  static constexpr Eigen::Index kUnknowns = 8;
+  using Vector = Eigen::Matrix<double, kUnknowns, 1>;
+  Vector unknowns = Vector::Zero();  ///< depth scale - 1, 1 / focal scale - 1, shift (m) and turn (rad) of the camera
+  bool along_rays = false;           ///< depths are distances along the rays
+
+  double depth() const { return unknowns[0]; }
+  double spread() const { return unknowns[1]; }
+  Eigen::Vector3d shift() const { return unknowns.segment<3>(2); }
+  Eigen::Vector3d turn() const { return unknowns.tail<3>(); }
+  Eigen::Matrix3d rotation() const {
+    return Eigen::AngleAxisd(turn().norm(), turn().stableNormalized()).toRotationMatrix();
+  }
+};
+
+/// What a view shows of the fruit, in its optical frame.
+struct Sample {
+  Pose world_T_optical = Pose::Identity();
+  std::vector<Eigen::Vector3d> points, normals;
+};
+
+/// Points of a view after a change: in the changed optical frame, and in the world.
+struct Placed {
+  Eigen::Matrix3d rotation;  ///< of the optical frame in the world
+  std::vector<Eigen::Vector3d> points, normals;
+  PointCloud<float> in_world;  ///< with normals
+};
+
+/// Two points of different views on the same surface, as a row of the least squares.
+struct Match {
+  double residual = 0.0;       ///< their distance along the normal (m)
+  Change::Vector derivatives;  ///< of the residual by the unknowns
+};
+
+bool on_fruit(const std::vector<Ellipsoid>& bodies, const Eigen::Vector3d& p, const Eigen::Vector3d& normal) {
+  constexpr double kNear = 0.5;  // of the radius
+  constexpr double kFacing = 0.5;
+  return std::any_of(bodies.begin(), bodies.end(), [&](const Ellipsoid& body) {
+    const Eigen::Vector3d d = p - body.center;
+    return std::abs(body.distance(p)) < kNear * body.mean_radius() && normal.dot(d) > kFacing * d.norm();
+  });
+}
+
+/// What the views show of the fruit. Of many views or points some, evenly picked.
+std::vector<Sample> samples_of(const std::vector<RegisteredView>& views, const std::vector<Ellipsoid>& bodies) {
+  constexpr std::size_t kViews = 12, kPoints = 250, kFew = 20;
+  std::vector<Sample> all;
+  for (const RegisteredView& view : views) {
+    const Pose registered_T_world = view.image->world_T_optical.inverse(Eigen::Isometry);
+    std::vector<std::size_t> seen;
+    for (std::size_t i = 0; i < view.image->points.size(); ++i)
+      if (on_fruit(bodies, view.image->points[i].cast<double>(), view.image->normals[i].cast<double>()))
+        seen.push_back(i);
+    if (seen.size() < kFew) continue;
+    Sample sample;
+    sample.world_T_optical = view.reported;
+    const std::size_t used = std::min(kPoints, seen.size());
+    for (std::size_t k = 0; k < used; ++k) {
+      const std::size_t i = seen[k * seen.size() / used];
+      sample.points.push_back(registered_T_world * view.image->points[i].cast<double>());
+      sample.normals.push_back(registered_T_world.linear() * view.image->normals[i].cast<double>());
+    }
+    all.push_back(std::move(sample));
+  }
+  if (all.size() <= kViews) return all;
+  std::vector<Sample> some;
+  for (std::size_t k = 0; k < kViews; ++k) some.push_back(std::move(all[k * all.size() / kViews]));
+  return some;
+}
+
+Placed placed(const Sample& sample, const Change& change) {
+  Placed out;
+  const Eigen::Matrix3d turned = change.rotation();
+  out.rotation = sample.world_T_optical.linear();
+  for (std::size_t i = 0; i < sample.points.size(); ++i) {
+    Eigen::Vector3d p = sample.points[i];
+    if (change.along_rays) p *= p.z() / p.norm();
+    p *= 1.0 + change.depth();
+    p.head<2>() *= 1.0 + change.spread();
+    out.points.push_back(turned * p + change.shift());
+    out.normals.push_back(turned * sample.normals[i]);
+    out.in_world.points.push_back((sample.world_T_optical * out.points.back()).cast<float>());
+    out.in_world.normals.push_back((out.rotation * out.normals.back()).cast<float>());
+  }
+  return out;
+}
+
+/// Derivatives of a point's place along a normal (world) by the unknowns.
+Change::Vector derivatives(const Placed& view, std::size_t i, const Eigen::Vector3d& normal) {
+  const Eigen::Vector3d& p = view.points[i];
+  const Eigen::Vector3d n = view.rotation.transpose() * normal;
+  return (Change::Vector() << n.dot(p), n.head<2>().dot(p.head<2>()), n, p.cross(n)).finished();
+}
+
+std::vector<Match> matches(const std::vector<Sample>& samples, const Change& change) {
+  constexpr std::size_t kEvery = 3;  // of the points of a view
+  constexpr float kReach = 0.02f, kAlike = 0.8f;
+  std::vector<Placed> views;
+  std::vector<KdTree<float>> trees;
+  for (const Sample& sample : samples) {
+    throw_if_cancelled();
+    views.push_back(placed(sample, change));
+    trees.emplace_back(views.back().in_world);
+  }
+  std::vector<Match> out;
+  Neighbors<float> found;
+  for (const Placed& a : views)
+    for (std::size_t i = 0; i < a.points.size(); i += kEvery)
+      for (std::size_t b = 0; b < views.size(); ++b) {
+        if (&views[b] == &a) continue;
+        trees[b].knn(a.in_world.points[i], 1, found);
+        if (found.empty() || found[0].distance > kReach) continue;
+        const auto j = static_cast<std::size_t>(found[0].index);
+        const Eigen::Vector3f& m = a.in_world.normals[i];
+        const Eigen::Vector3f& n = views[b].in_world.normals[j];
+        if (m.dot(n) < kAlike) continue;
+        const Eigen::Vector3d normal = (m + n).normalized().cast<double>();
+        out.push_back({normal.dot((a.in_world.points[i] - views[b].in_world.points[j]).cast<double>()),
+                       derivatives(a, i, normal) - derivatives(views[b], j, normal)});
+      }
+  return out;
+}
+
+double median_distance(const std::vector<Match>& matches) {
+  std::vector<double> distances;
+  for (const Match& m : matches) distances.push_back(std::abs(m.residual));
+  return median(distances);
+}
+
+/// The change of some unknowns that makes the views agree best.
+/// @param first,count the unknowns
+void improve(const std::vector<Sample>& samples, Eigen::Index first, Eigen::Index count, Change& change) {
+  constexpr int kSteps = 10;
+  constexpr double kConverged = 1e-5;
+  constexpr double kLeastGate = 0.002, kGate = 4.5;  // m; in median distances
+  for (int step = 0; count > 0 && step < kSteps; ++step) {
+    const std::vector<Match> all = matches(samples, change);
+    const double gate = std::max(kLeastGate, kGate * median_distance(all));
+    Eigen::MatrixXd information = Eigen::MatrixXd::Zero(count, count);
+    Eigen::VectorXd rhs = Eigen::VectorXd::Zero(count);
+    for (const Match& m : all) {
+      const double t = m.residual / gate, weight = std::abs(t) < 1.0 ? (1.0 - t * t) * (1.0 - t * t) : 0.0;
+      const auto row = m.derivatives.segment(first, count);
+      information.noalias() += weight * row * row.transpose();
+      rhs -= weight * m.residual * row;
+    }
+    information.diagonal().array() += 1e-9 * (1.0 + information.diagonal().maxCoeff());
+    const Eigen::VectorXd d = information.ldlt().solve(rhs);
+    change.unknowns.segment(first, count) += d;
+    if (d.cwiseAbs().maxCoeff() < kConverged) break;
+  }
+}
+
+/// Where the camera sits, in its own image: "30 mm further ahead", for example. Less than a millimetre is left out.
+std::string shift_in_words(const Eigen::Vector3d& shift) {
+  constexpr const char* kBehind[] = {"further left", "further up", "further back"};
+  constexpr const char* kAhead[] = {"further right", "further down", "further ahead"};
+  std::string text;
+  for (Eigen::Index i = 0; i < 3; ++i) {
+    const long length = std::lround(1e3 * shift[i]);
+    if (length == 0) continue;
+    if (!text.empty()) text += ", ";
+    text += std::to_string(std::abs(length)) + " mm " + (length < 0 ? kBehind : kAhead)[i];
+  }
+  return text;
+}
+
+std::string in_words(const Change& change) {
+  if (change.along_rays) return "the images held distances along the rays, not depths z";
+  if (change.depth() != 0.0)
+    return "all depths were multiplied by " + number_text(1.0 + change.depth(), 3) + " (is the depth scale right?)";
+  if (change.spread() != 0.0)
+    return "the focal lengths were multiplied by " + number_text(1.0 / (1.0 + change.spread()), 3) +
+           " (are the intrinsics those of the depth images?)";
+  std::string text = shift_in_words(change.shift());
+  if (const double turn = change.turn().norm(); turn > 0.0) {
+    const Eigen::Vector3d axis = change.turn() / turn;
+    text += (text.empty() ? "turned by " : ", turned by ") + number_text(turn / deg(1.0), 2) + " degrees about (" +
+            number_text(axis.x(), 2) + ", " + number_text(axis.y(), 2) + ", " + number_text(axis.z(), 2) + ")";
+  }
+  return "the camera were " + text + " in its own frame (is the hand-eye transform right?)";
+}
+
+}  // namespace
+
+CalibrationCheck check_calibration(const std::vector<RegisteredView>& views, const std::vector<Ellipsoid>& bodies) {
+  constexpr std::size_t kFew = 200;              // matches that tell nothing
+  constexpr double kDoubt = 0.0015;              // m; views of a calibrated camera are not as far apart
+  constexpr double kBetter = 0.5;                // share of the distance that may be left after a correction
+  constexpr double kAsGood = 1.1, kSame = 1e-4;  // m; changes up to this ratio, and more, are as likely as the best
+  const std::vector<Sample> samples = samples_of(views, bodies);
+  const std::vector<Match> reported = matches(samples, {});
+  CalibrationCheck out;
+  if (reported.size() < kFew) return out;
+  out.apart = out.mended = median_distance(reported);
+  if (out.apart < kDoubt) return out;
+
+  struct Tried {
+    Change change;
+    double apart;
+  };
+  std::vector<Tried> all;  // those of fewer unknowns first
+  struct Unknowns {
+    bool along_rays;
+    Eigen::Index first, count;
+  };
+  for (const Unknowns& u : {Unknowns{true, 0, 0}, {false, 0, 1}, {false, 1, 1}, {false, 2, 3}, {false, 2, 6}}) {
+    Tried tried{{}, out.apart};
+    tried.change.along_rays = u.along_rays;
+    improve(samples, u.first, u.count, tried.change);
+    const std::vector<Match> after = matches(samples, tried.change);
+    if (2 * after.size() < reported.size()) continue;  // it only tears the views apart
+    tried.apart = median_distance(after);
+    out.mended = std::min(out.mended, tried.apart);
+    all.push_back(tried);
+  }
+  if (out.mended > kBetter * out.apart) return out;
+  bool shift_told = false;
+  for (const Tried& t : all) {
+    if (t.apart > kAsGood * out.mended + kSame) continue;
+    const bool moved = !t.change.shift().isZero();
+    if (moved && shift_told) continue;  // its turn explains nothing more
+    shift_told |= moved;
+    out.mistake += (out.mistake.empty() ? "" : ", or if ") + in_words(t.change);
+  }
+  return out;
+}
+
+}  // namespace agrisee::fuse
