@@ -47,11 +47,14 @@ struct Match {
 };
 
 bool on_fruit(const std::vector<Ellipsoid>& bodies, const Eigen::Vector3d& p, const Eigen::Vector3d& normal) {
-  constexpr double kNear = 0.5;  // of the radius
+  constexpr double kNear = 0.5;      // of the radius
+  constexpr double kFarthest = 4.0;  // of the radius; no ellipsoid is so long
   constexpr double kFacing = 0.5;
   return std::any_of(bodies.begin(), bodies.end(), [&](const Ellipsoid& body) {
     const Eigen::Vector3d d = p - body.center;
-    return std::abs(body.distance(p)) < kNear * body.mean_radius() && normal.dot(d) > kFacing * d.norm();
+    const double size = body.mean_radius();
+    if (d.squaredNorm() > kFarthest * kFarthest * size * size) return false;
+    return std::abs(body.distance(p)) < kNear * size && normal.dot(d) > kFacing * d.norm();
   });
 }
 
