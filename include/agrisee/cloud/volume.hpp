@@ -16,7 +16,7 @@ struct Estimate {
 
 /// Standard error of a volume, relative to it.
 struct VolumeError {
-  double total = 1.0;
+  double total = 1.0;     ///< all of it
   double by_shape = 1.0;  ///< the part of it that is due to the unknown shape of the unseen side
 };
 
