@@ -103,9 +103,10 @@ Processed process_cloud(const ProcessOptions& options, const Parameters& paramet
   try {
     out.result = process(cloud, parameters, origin, {}, threads_of(options.threads));
   } catch (const InputError& e) {  // the rest was checked before
-    throw FileError(options.cloud + ": " + e.what() +
-                    ". If several views saw the cloud, leave --viewpoint out, or give their positions (--views); if "
-                    "--viewpoint is right, add --turn-normals");
+    const char* advice =
+        ". If several views saw the cloud, leave --viewpoint out, or give their positions (--views); if --viewpoint is "
+        "right, add --turn-normals";
+    throw FileError(options.cloud + ": " + e.what() + (origin.viewpoint ? advice : ""));
   }
   return out;
 }

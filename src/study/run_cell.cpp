@@ -81,7 +81,8 @@ void judge_stages(const Subject& subject, const ScanResult& result, const SplitP
   if (cloud.empty()) return;
   const auto stages = stages_for(estimate_spacing(cloud), parameters);
   if (!stages) return;
-  Labels regions = grow_regions(cloud, cloud.normals, stages->growing, {}, threads);
+  Labels regions = grow_regions(cloud, cloud.normals, stages->growing,
+                                detail::curvatures_for(cloud, stages->growing, threads), threads);
   record.residual = residual(regions).size();
   record.growing = judge_alone(subject, result, std::move(regions), threads);
   Labels clusters = dbscan(cloud, stages->clustering);

@@ -15,6 +15,12 @@ case $3 in
     expect 0 '' export-views r -o png --npy --force && [ ! -e png/depth/0000.png ] || fail "images of the call before"
     expect 0 '' export-views r -o png --force && [ ! -e png/depth/0000.npy ] && expect 0 '' process png -o b --force
     grep -qE '^4 fruit, [0-9]+ points from 6 views, ' out.txt || fail "summary: $(head -1 out.txt)"
+    printf 'split:\n  growing:\n    seeds_by_curvature: true\n    max_curvature: 0.2\n' >curved.yaml
+    for preset in default paper; do
+      expect 0 '' process exact -o curved_$preset --preset $preset --params curved.yaml --no-picture --no-report
+      grep -qE '^[1-9] fruit' out.txt || fail "growing by curvature, $preset: $(cat out.txt)"
+    done
+    expect 0 '' process r/cloud_raw.ply --views r/views.csv -o curved_cloud --params curved.yaml --no-picture --no-report
     cmp r/cloud.ply a/cloud.ply || fail "the exact frames give another cloud than the scan"
     cmp r/cloud_raw.ply a/cloud_raw.ply || fail "the exact frames give another merged cloud than the scan"
     python3 - <<'PY' || fail "the recorded views give other fruit than the scan"

@@ -55,6 +55,23 @@ TEST_CASE("the bodies of a split are fitted to all their points, not to some") {
   CHECK(found.labels == Labels(cloud.size(), 1));
 }
 
+TEST_CASE("region growing by curvature needs nothing but the cloud") {
+  const Cloud smooth = rough_front(0.0, 0.0015);
+  SplitParameters stages = SplitParameters::paper(), bodies;
+  for (SplitParameters* p : {&stages, &bodies}) {
+    const Split usual = split(smooth, *p);
+    p->growing.seeds_by_curvature = true;
+    p->growing.max_curvature = 0.3;
+    const Split found = split(smooth, *p);  // a ball is as smooth everywhere
+    CHECK(found.regions_found == 1);
+    CHECK(found.regions == usual.regions);
+    CHECK(found.labels == usual.labels);
+    CHECK(split(smooth, *p, {}, 3).labels == found.labels);
+    p->growing.max_curvature = 0.0;  // no point of a curved surface grows a region
+    CHECK(split(smooth, *p).regions_found == 0);
+  }
+}
+
 TEST_CASE("the last fit moves a body to its points, those of masks stay") {
   const Cloud cloud = rough_front(0.0);
   Split out;

@@ -14,6 +14,7 @@
 #include <agrisee/cloud/dbscan.hpp>
 #include <agrisee/cloud/free_points.hpp>
 #include <agrisee/cloud/labels.hpp>
+#include <agrisee/cloud/normals.hpp>
 #include <agrisee/cloud/parameters.hpp>
 #include <agrisee/cloud/proposals.hpp>
 #include <agrisee/cloud/region_growing.hpp>
@@ -48,11 +49,24 @@ struct Segments {
   }
 };
 
+/// The surface variation of each point, from at most 25 neighbors within the radius of region growing. Empty unless
+/// region growing needs it.
+template <typename S>
+std::vector<S> curvatures_for(const PointCloud<S>& cloud, const RegionGrowingParameters& growing, int threads) {
+  std::vector<S> curvatures;
+  if (!growing.needs_curvature()) return curvatures;
+  NormalParameters within;
+  within.radius = growing.radius;
+  estimate_normals(cloud, within, threads, &curvatures);
+  return curvatures;
+}
+
 /// Run region growing, then DBSCAN on what it leaves.
 /// @param out receives the regions and the counts
 template <typename S>
 Segments find_segments(const PointCloud<S>& cloud, const StageParameters& stages, int threads, Split& out) {
-  out.regions = grow_regions(cloud, cloud.normals, stages.growing, {}, threads);
+  out.regions =
+      grow_regions(cloud, cloud.normals, stages.growing, curvatures_for(cloud, stages.growing, threads), threads);
   out.regions_found = *std::max_element(out.regions.begin(), out.regions.end());
   const Indices rest = residual(out.regions);
   out.residual = rest.size();
