@@ -22,8 +22,13 @@ TEST_CASE("volume and mass of an ellipsoid by hand") {
   CHECK(v.error == Approx(0.05 * v.value));
   CHECK(m.value == Approx(1000.0 * v.value));
   CHECK(m.error == Approx(std::hypot(0.05, 0.03) * m.value));
-  p.density = 0.0;
-  CHECK_THROWS_AS(p.check(), ParameterError);
+  for (const double bad : {0.0, 99.0, 5001.0}) {
+    p.density = bad;
+    CHECK_THROWS_AS(p.check(), ParameterError);
+  }
+  p.density = 0.98;
+  CHECK_THROWS_WITH(p.check(),
+                    "density must be from 100 to 5000, got 0.98: densities are in kg/m3; 0.98 g/cm3 are 980");
 }
 
 TEST_CASE("the standard error of a volume is the scatter of repeated fits") {

@@ -129,6 +129,10 @@ TEST_CASE("a number that looks like millimetres or degrees is said to be so") {
   const Range length = Range::positive().up_to(1.0).in_metres(), angle = Range::between(0.0, 3.2).in_radians();
   CHECK(length.likely_cause(25.0) == ": lengths are in metres; 25 mm are 0.025");
   CHECK(angle.likely_cause(90.0) == ": angles are in radians; 90 degrees are 1.57079633");
+  const Range density = Range::between(100.0, 5000.0).in_kilograms_per_cubic_metre();
+  CHECK(density.likely_cause(0.98) == ": densities are in kg/m3; 0.98 g/cm3 are 980");
+  CHECK(density.likely_cause(0.01).empty());  // too small in either unit
+  CHECK(angle.likely_cause(-90.0).empty());
   CHECK(length.likely_cause(0.5).empty());     // in the range
   CHECK(length.likely_cause(-25.0).empty());   // too small
   CHECK(length.likely_cause(2500.0).empty());  // too large in either unit

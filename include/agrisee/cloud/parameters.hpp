@@ -326,7 +326,7 @@ struct MassParameters {
   /// f(name, field, range) for every field.
   template <typename P, typename F>
   static void fields(P& p, F&& f) {
-    f("density", p.density, Range::positive());
+    f("density", p.density, Range::between(100.0, 5000.0).in_kilograms_per_cubic_metre());
     f("density_error", p.density_error, Range::not_negative());
     f("shape_error", p.shape_error, Range::not_negative());
   }

@@ -94,6 +94,10 @@ class Range {
 
   /// This range for a length in metres: messages point out a number that would be valid in millimetres.
   constexpr Range in_metres() const { return with_unit("lengths are in metres; ", "mm", 1e-3); }
+  /// This range for a density in kg/m3: messages point out a number that would be valid in g/cm3.
+  constexpr Range in_kilograms_per_cubic_metre() const {
+    return with_unit("densities are in kg/m3; ", "g/cm3", 1000.0);
+  }
   /// This range for an angle in radians: messages point out a number that would be valid in degrees.
   constexpr Range in_radians() const { return with_unit("angles are in radians; ", "degrees", 0.017453292519943295); }
 
@@ -117,10 +121,10 @@ class Range {
     return has_high ? low + " and " + high : low;
   }
 
-  /// The likely cause of a number that is too large, to be put behind a message: ": lengths are in metres; 25 mm are
+  /// The likely cause of a number outside the range, to be put behind a message: ": lengths are in metres; 25 mm are
   /// 0.025". Empty where none is known.
   std::string likely_cause(double x) const {
-    if (!unit_rule_ || contains(x) || !(x > high_.value) || !contains(other_unit_ * x)) return "";
+    if (!unit_rule_ || contains(x) || !contains(other_unit_ * x)) return "";
     return std::string(": ") + unit_rule_ + number(x) + " " + other_name_ + " are " + number(other_unit_ * x);
   }
 
