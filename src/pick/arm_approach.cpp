@@ -54,9 +54,11 @@ struct StraightApproach {
   PickingReason follow(Joints q, int roll) const {
     constexpr int kHalvings = 4;
     PickingReason reason = collision(q);
-    for (int step = 1; step <= parameters.steps && reason == PickingReason::reachable; ++step)
+    for (int step = 1; step <= parameters.steps && reason == PickingReason::reachable; ++step) {
+      throw_if_cancelled();
       reason = advance(q, static_cast<double>(step - 1) / parameters.steps,
                        static_cast<double>(step) / parameters.steps, roll, kHalvings);
+    }
     return reason;
   }
 

@@ -266,6 +266,9 @@ PY
     for limit in 'total.*1 - 12' 'leaflets.*0 - 6' 'elongation.*0.5 - 2' 'at most half' '0.005 to 0.06'; do
       "$agrisee" make-truss --help | grep -q -- "$limit" || fail "make-truss --help does not state $limit"
     done
+    for word in 'split: {bodies: {fit: {iterations: 2147483647}}}' 'picking: {steps: 2147483647}'; do
+      echo "$word" >p.yaml && expect 2 "p.yaml:1: '.*' must be from 1 to 1000, got 2.14748365e\+09" scan s.yaml -o b --params p.yaml
+    done
     printf 'gain:\n  min_gian: 1\n' >p.yaml && expect 2 "p.yaml:2: unknown key 'gain.min_gian'; did you mean 'min_gain'" scan s.yaml -o b --params p.yaml
     [ ! -e b ] || fail "a wrong word wrote something"
     ;;

@@ -515,6 +515,21 @@ TEST_CASE("picking: the largest change of a joint counts from step to step, not 
     CHECK((q - *plan[0].joints).cwiseAbs().maxCoeff() > 2.0 * p.max_joint_step);
 }
 
+TEST_CASE("picking: an approach of many steps can be cancelled") {
+  PickingParameters p;
+  p.steps = 1000;
+  const std::vector<KeepOut> none;
+  const std::vector<OrientedEllipsoid> alone;
+  const Vector3d center(0.1, 0.5, 0.2), direction = Vector3d::UnitY();
+  const ReachApproach reach = approach_of(ur3(), Pose::Identity(), p);
+  const pick::ApproachRequest request{direction, center - p.stand_off * direction, center, none, alone};
+  CHECK_NOTHROW(reach(request, kStart));
+  const Cancellation stop;
+  stop.request();
+  const CancellationScope scope(stop);
+  CHECK_THROWS_AS(reach(request, kStart), Cancelled);
+}
+
 TEST_CASE("picking: the arm gets from each step to the next along the line") {
   // A gripper on the last axis and a camera off it: near the stretched wrist other postures with the same pose are
   // close.
@@ -590,6 +605,7 @@ TEST_CASE("picking: bad input by name") {
   refused([](auto& p) { p.rolls = 0; });
   refused([](auto& p) { p.rolls = 3601; });
   refused([](auto& p) { p.steps = 0; });
+  refused([](auto& p) { p.steps = 1001; });
   refused([](auto& p) { p.max_joint_step = 0.0; });
   refused([](auto& p) { p.pedicel_angle = 3.0; });
   refused([](auto& p) { p.front_weight = kNan; });

@@ -195,7 +195,7 @@ struct FitParameters {
     f("shape_prior", p.shape_prior, Range::positive());
     f("max_angle", p.max_angle, Range::above(0.0).up_to({kPi, "pi"}).in_radians());
     f("independent", p.independent, Range::at_least(1));
-    f("iterations", p.iterations, Range::at_least(1));
+    f("iterations", p.iterations, Range::between(1, 1000));
     f("max_points", p.max_points, Range::at_least(1));
   }
 };

@@ -48,7 +48,7 @@ struct PickingParameters {
     f("pedicel_angle", p.pedicel_angle, Range::between(0.0, {0.5 * kPi, "pi/2"}).in_radians());
     f("directions", p.directions, Range::between(6, 100000));
     f("rolls", p.rolls, Range::between(1, 3600));
-    f("steps", p.steps, Range::at_least(1));
+    f("steps", p.steps, Range::between(1, 1000));
     f("max_joint_step", p.max_joint_step, Range::positive());
     f("depth_tie", p.depth_tie, Range::not_negative());
     f("front_weight", p.front_weight, Range::finite());
