@@ -62,6 +62,8 @@ PY
     expect 2 'pose.yaml:[0-9]+: views\[0\].pose: is not a rigid transform' process png/pose.yaml -o d
     sed 's/camera:/kamera:/' png/views.yaml >png/key.yaml
     expect 2 "key.yaml:[0-9]+: unknown key 'kamera'; did you mean 'camera'" process png/key.yaml -o d
+    sed 's/^camera:/&\n  distortion: [10, 0, 0, 0, 0]/' png/views.yaml >png/lens.yaml
+    expect 2 'lens.yaml:[0-9]+: camera.distortion: .*are these the coefficients of this camera' process png/lens.yaml -o d
     # Poses that are stated in another way are refused; where nothing is in the scan volume, figures say why.
     python3 - <<'PY'
 import json, re

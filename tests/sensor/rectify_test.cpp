@@ -103,3 +103,18 @@ TEST_CASE("a distortion that cannot be is refused") {
   CHECK(!distortion_from(std::array<double, 0>{}).any());
   CHECK_THROWS_WITH(rectified(plane_seen_through({}), Distortion{{-2.0}}), Catch::Contains("folds the image"));
 }
+
+TEST_CASE("a distortion that no lens has is refused") {
+  const auto refused = [](const Distortion& lens) {
+    CHECK_THROWS_WITH(check(lens, kCamera), Catch::Contains("are these the coefficients of this camera"));
+  };
+  refused({{100.0}});
+  refused({{10.0}});
+  refused({{0.0, 0.0, 0.5}});  // tangential: the radial part grows
+  refused({{0.0, 0.0, 0.0, 0.5}});
+  // Those of depth and color cameras, the last one seen at 120 degrees, and none.
+  CHECK_NOTHROW(check({{0.12, -0.24, 0.0, 0.001, 0.1}}, kCamera));
+  CHECK_NOTHROW(check({{0.46, -2.4, 0.0004, 0.0001, 1.4, 0.34, -2.2, 1.3}}, kCamera));
+  CHECK_NOTHROW(check({{-0.28, 0.07, 0.0003, 0.0, -0.008}}, Intrinsics{1280, 720, 700.0, 700.0, 640.0, 360.0}));
+  CHECK_NOTHROW(check({}, kCamera));
+}

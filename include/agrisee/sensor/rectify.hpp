@@ -63,9 +63,9 @@ Distortion distortion_from(const List& coefficients) {
   return out;
 }
 
-/// Check that the radial distortion grows from the middle of the image to its corners, which wrong coefficients often
-/// violate. The tangential terms are not checked.
-/// @throws InputError if two radii would be seen as one
+/// Check that the radial distortion grows from the middle of the image to its corners, and that no pixel is moved by
+/// more than half of the way from the middle to a corner. Wrong coefficients often violate one of both.
+/// @throws InputError if two radii would be seen as one, or a pixel is moved too far
 inline void check(const Distortion& lens, const Intrinsics& k) {
   const Eigen::Vector3d a = k.ray(-0.5, -0.5), b = k.ray(k.width - 0.5, k.height - 0.5);
   const double farthest = Eigen::Vector2d(std::max(-a.x(), b.x()), std::max(-a.y(), b.y())).norm();
@@ -78,6 +78,19 @@ inline void check(const Distortion& lens, const Intrinsics& k) {
                        " pixels from the principal point: are the coefficients in the order k1, k2, p1, p2, k3, ...?");
     last = seen;
   }
+  constexpr int kCells = 16;  // along each side of the image
+  const double most = 0.25 * std::hypot(k.width, k.height);
+  for (int i = 0; i <= kCells; ++i)
+    for (int j = 0; j <= kCells; ++j) {
+      const Eigen::Vector2d uv((k.width - 1) * i / double(kCells), (k.height - 1) * j / double(kCells));
+      const Eigen::Vector2d seen = k.project(lens.distorted(k.ray(uv.x(), uv.y()).head<2>()).homogeneous());
+      const double moved = (seen - uv).norm();
+      if (!(moved <= most))
+        throw InputError("distortion: it moves parts of the image by " +
+                         std::to_string(std::lround(std::min(1e6, moved))) +
+                         " pixels, more than half of the way from the middle of the image to a corner: are these the "
+                         "coefficients of this camera, in the order k1, k2, p1, p2, k3, ...?");
+    }
 }
 
 /// The frame that a pinhole camera with the same intrinsics would have taken. Each pixel takes the values of the
