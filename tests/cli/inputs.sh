@@ -58,6 +58,8 @@ PY
     expect 2 'size.yaml:[0-9]+: views\[0\].depth: .*512 x 384 pixels, but the camera 640 x 384' process png/size.yaml -o d
     sed 's/0003.png/0009.png/' png/views.yaml >png/file.yaml
     expect 2 'file.yaml:[0-9]+: views\[3\].depth: no such file' process png/file.yaml -o d
+    sed 's/^  - depth: .*/&\n    camera: {width: 512}/' png/views.yaml >png/two.yaml
+    expect 2 'two.yaml:[0-9]+: views\[0\].camera: all views of a file share its one camera: write a file for each' process png/two.yaml -o d
     sed 's/    pose: \[\[[^,]*/    pose: [[5/' png/views.yaml >png/pose.yaml
     expect 2 'pose.yaml:[0-9]+: views\[0\].pose: is not a rigid transform' process png/pose.yaml -o d
     sed 's/camera:/kamera:/' png/views.yaml >png/key.yaml

@@ -60,6 +60,9 @@ fs::path existing(const YamlValue& value, const RecordedViews& recorded) {
 }
 
 RecordedView read_view(const YamlValue& value, RecordedViews& recorded) {
+  if (value.has("camera"))
+    value.at("camera").fail(
+        "all views of a file share its one camera: write a file for each camera, and process them one by one");
   value.check_keys({"depth", "pose", "color", "masks", "boxes"});
   RecordedView view;
   const YamlValue depth = value.at("depth");
