@@ -59,16 +59,34 @@ fs::path image_name(const char* folder, std::size_t i, const char* extension) {
   return fs::path(folder) / name;
 }
 
-/// Removes the images that an earlier call left in a folder: 0000.png, 0001.npy and so on.
-void remove_images(const fs::path& folder) {
+constexpr const char* kImageFolders[] = {"depth", "color", "masks"};
+
+/// The images in a folder that are named as those of views: 0000.png, 0001.npy and so on.
+std::vector<fs::path> images_in(const fs::path& folder) {
   std::error_code error;
-  std::vector<fs::path> old;
+  std::vector<fs::path> images;
   for (fs::directory_iterator i(folder, error), end; !error && i != end; i.increment(error)) {
     const std::string number = i->path().stem().string(), extension = i->path().extension().string();
-    if (number.size() >= 4 && io::to_integer(number) && (extension == ".png" || extension == ".npy"))
-      old.push_back(i->path());
+    if (number.size() >= 4 && io::to_integer(number) &&
+        (extension == ".png" || extension == ".npy" || extension == ".json"))
+      images.push_back(i->path());
   }
-  for (const fs::path& path : old) fs::remove(path, error);
+  std::sort(images.begin(), images.end());
+  return images;
+}
+
+/// Make room for views in a folder. The images of an earlier call are removed, as fewer may follow.
+/// @throws UsageError if it holds recorded views, or images that could be overwritten, and `force` is off
+void make_room(const fs::path& to, bool force) {
+  const bool has_views = fs::exists(to / "views.yaml");
+  if (has_views && !force)
+    throw UsageError(to.string() + ": already holds recorded views; use --force to overwrite them");
+  for (const char* folder : kImageFolders)
+    for (const fs::path& image : images_in(to / folder)) {
+      if (!force) throw UsageError(image.string() + ": exists; use --force to overwrite it");
+      std::error_code error;
+      if (has_views) fs::remove(image, error);
+    }
 }
 
 /// Reads the frames of a scan with the colors and masks that it simulated, which the records leave out.
@@ -131,11 +149,7 @@ int run_export(const ExportOptions& options) {
   recorded.workcell.sensor.range_min = 0.0;
   recorded.workcell.sensor.range_max = 1e6;  // the images hold only what was in range
   recorded.depth_scale = options.npy ? 1.0 : kScale;
-  if (fs::exists(to / "views.yaml")) {
-    if (!options.force)
-      throw UsageError(options.output + ": already holds recorded views; use --force to overwrite them");
-    for (const char* folder : {"depth", "color", "masks"}) remove_images(to / folder);
-  }
+  make_room(to, options.force);
   make_folder((to / "depth").string());
   if (frames.images().any()) make_folder((to / "color").string());
   if (frames.images().detector) make_folder((to / "masks").string());
@@ -171,7 +185,7 @@ void add_export_views(CLI::App& app, Run& run) {
   command->add_option("-o,--output", options->output, "folder for views.yaml and the images")->required();
   command->add_option("--scene", options->scene, "scene of the scan, if its file was moved");
   command->add_flag("--npy", options->npy, "write depth as NPY with floats (exact), not as PNG in steps of 0.1 mm");
-  command->add_flag("--force", options->force, "overwrite recorded views");
+  command->add_flag("--force", options->force, "overwrite recorded views and images");
   command->footer(
       "Example:\n"
       "  agrisee export-views result -o recorded\n"

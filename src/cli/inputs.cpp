@@ -73,7 +73,7 @@ const char* text_of(Kind kind) {
       return "the result of a scan, which `agrisee export-views` and, after the scene, `agrisee evaluate` take; its "
              "cloud is cloud.ply";
     case Kind::processed:
-      return "a result of `agrisee process`, which holds a cloud (cloud.ply) but no frames";
+      return "a result that holds a cloud (cloud.ply) but no frames, as `agrisee process` and Python write it";
     case Kind::unknown:
       break;
   }

@@ -43,6 +43,9 @@ PY
     truncate -s 1000 gap/views/0004.view
     expect 2 '0004.view: is damaged; .*run.json.*--resume.*the others are exported' export-views gap -o damaged && [ ! -e damaged ] || fail "a half export"
     rm gap/views/0004.view gap/run.json && expect 0 '' scan --resume gap && cmp gap/fruits.json r/fruits.json || fail "the views are not taken again"
+    mkdir -p mine/depth && echo mine >mine/depth/0000.png
+    expect 1 'mine/depth/0000.png: exists; use --force to overwrite it' export-views r -o mine && grep -q mine mine/depth/0000.png && [ ! -e mine/views.yaml ] || fail "a foreign image"
+    expect 0 '' export-views r -o mine --force && cmp mine/depth/0000.png png/depth/0000.png || fail "a foreign image with --force"
     # Without a scan volume all that is seen counts; poses may be stated in other forms.
     python3 - <<'PY'
 import re
@@ -215,7 +218,7 @@ PY
     for input in v v/views.yaml; do
       expect 2 "$input: is not a scene, but a list of recorded views .*, which .agrisee process. takes" scan $input -o d
     done
-    expect 2 'p: is not the result of a scan, but a result of .agrisee process., .*no frames' export-views p -o d
+    expect 2 'p: is not the result of a scan, but a result that holds a cloud .cloud.ply. but no frames' export-views p -o d
     expect 2 't: is not the result of a scan, but a scene' export-views t -o d && expect 2 'v: is not the .*, but a list' export-views v -o d
     expect 2 'bare: is not the result of a scan: there is no bare/scan.json' export-views bare -o d
     small_truss other --total 2 --hidden 0 --seed 2 && mv t moved
