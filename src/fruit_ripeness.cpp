@@ -52,4 +52,31 @@ void add_ripeness(ScanResult& result, const RipenessParameters& parameters) {
   }
 }
 
+std::optional<std::string> doubt_of_colors(const ScanResult& result, const RipenessParameters& parameters) {
+  constexpr int kGray = 8;                                    // steps of 255; compression tints gray images by less
+  constexpr double kBlueFrom = deg(200), kBlueTo = -deg(30);  // hue angles; blue lies about -pi/2, where they begin
+  const Cloud& cloud = result.cloud;
+  if (cloud.colors.empty()) return std::nullopt;
+  std::size_t with_hue = 0, blue = 0;  // points of fruit
+  bool gray = true;
+  for (std::size_t i = 0; i < cloud.size(); ++i) {
+    const auto [least, most] = std::minmax_element(cloud.colors[i].begin(), cloud.colors[i].end());
+    if (*most - *least < kGray) continue;
+    gray = false;
+    if (result.labels[i] == 0) continue;
+    const Eigen::Vector3d lab = to_lab(cloud.colors[i]);
+    if (lab.tail<2>().norm() < parameters.min_chroma) continue;
+    const double hue = hue_of(lab);
+    ++with_hue;
+    blue += hue > kBlueFrom || hue < kBlueTo;
+  }
+  if (gray)
+    return "the color of every point is gray or black, so nothing is known of ripeness: is the color image "
+           "empty, or that of a gray camera?";
+  if (2 * blue > with_hue)
+    return "most of the surface of the fruit is blue: are red and blue swapped in the color image (BGR instead of "
+           "RGB)? Then ripeness is wrong";
+  return std::nullopt;
+}
+
 }  // namespace agrisee

@@ -187,7 +187,8 @@ ScanResult Pipeline::result() const {
   out.views = views_;
   out.stop_reason = stop_reason_;
   out.completeness = completeness();
-  out.warnings = warnings();
+  const std::vector<std::string> of_views = warnings();
+  out.warnings.insert(out.warnings.begin(), of_views.begin(), of_views.end());
   timed(out.seconds.locate, [&] { doubt_calibration(out); });
   out.seconds.plan = seconds_.plan;
   out.seconds.fuse = seconds_.fuse;

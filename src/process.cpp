@@ -286,6 +286,9 @@ ScanResult process(Cloud&& cloud, const Parameters& parameters, const CloudOrigi
   if (origin.volume && parameters.split.fit_bodies)
     timed(t.segment, [&] { forget_cut_bodies(result.cloud, *origin.volume, found); });
   result.bodies = found.bodies;
+  const auto has_color = [](const fuse::DetectedView& v) { return !v.frame->color.empty(); };
+  if (parameters.color_prior.enabled && std::none_of(origin.detected.begin(), origin.detected.end(), has_color))
+    result.warnings.push_back("color_prior.enabled is true, but no view has a color image, so it changes nothing");
 
   // Locate: centroids, pose frames, fitted bodies.
   timed(t.locate, [&] {
@@ -295,6 +298,7 @@ ScanResult process(Cloud&& cloud, const Parameters& parameters, const CloudOrigi
   timed(t.locate, [&] {
     if (result.cloud.colors.empty()) result.cloud.colors = fuse::colors_of(result.cloud, origin.detected);
     add_ripeness(result, parameters.ripeness);
+    if (auto doubt = doubt_of_colors(result, parameters.ripeness)) result.warnings.push_back(std::move(*doubt));
   });
   t.total = t.filter + t.normals + t.segment + t.locate;
   return result;

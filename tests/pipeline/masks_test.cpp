@@ -5,6 +5,10 @@
 #include <agrisee/study/simulated_scan.hpp>
 #include <agrisee/study/truss.hpp>
 
+#include <algorithm>
+#include <string>
+#include <utility>
+
 #include "catch.hpp"
 
 using namespace agrisee;
@@ -101,6 +105,15 @@ TEST_CASE("a pipeline takes masks and colors with its frames") {
   CHECK(result.fruits.front().body->radii.mean() == Approx(0.035).margin(0.003));
   REQUIRE(result.fruits.front().ripeness);
   CHECK(result.fruits.front().ripeness->grade == RipenessClass::red);
+  options = {};
+  options.reach = [](const plan::ViewRequest&, const Joints&) { return std::nullopt; };
+  Pipeline gray(workcell, parameters, std::move(options));
+  sensor::DepthFrame frame = ball_frame(110);
+  frame.color.assign(frame.color.size(), {90, 90, 90});
+  gray.observe(frame, Pose::Identity());
+  const std::vector<std::string> told = gray.result().warnings;
+  REQUIRE(told.size() == result.warnings.size() + 1);
+  CHECK(told.back().find("is gray or black") != std::string::npos);
 }
 
 TEST_CASE("frames may be shared, and are not copied") {
@@ -154,4 +167,29 @@ TEST_CASE("masks reach a simulated scan, and its planner") {
     CHECK(f.ripeness);
     CHECK(f.body->confidence > 0.5);
   }
+}
+
+TEST_CASE("colors that are asked for and missing, gray, or of swapped channels are told of") {
+  const auto tells = [](const sensor::DepthFrame& frame, const char* what, const Parameters& parameters = {}) {
+    const ScanResult result = processed(frame, parameters);
+    CHECK(result.fruits.size() == 1);
+    const auto says = [&](const std::string& text) { return text.find(what) != std::string::npos; };
+    return std::count_if(result.warnings.begin(), result.warnings.end(), says) == 1;
+  };
+  const sensor::DepthFrame frame = ball_frame(240);
+  CHECK_FALSE(tells(frame, "gray"));
+  CHECK_FALSE(tells(frame, "swapped"));
+  Parameters colors;
+  colors.color_prior.enabled = true;
+  CHECK_FALSE(tells(frame, "color_prior.enabled is true, but", colors));
+  sensor::DepthFrame changed = frame;
+  for (Rgb& c : changed.color) std::swap(c[0], c[2]);
+  CHECK(tells(changed, "are red and blue swapped"));
+  for (Rgb& c : changed.color) c = {c[1], c[1], static_cast<std::uint8_t>(c[1] + 4)};
+  CHECK(tells(changed, "is gray or black"));
+  changed.color.assign(changed.color.size(), {0, 0, 0});
+  CHECK(tells(changed, "is gray or black"));
+  changed.color.clear();
+  CHECK_FALSE(tells(changed, "gray"));
+  CHECK(tells(changed, "color_prior.enabled is true, but no view has a color image", colors));
 }
