@@ -29,7 +29,10 @@ TEST_CASE("tables of numbers, whatever separates them") {
   for (const char* text :
        {"1 2 3\n4 5 -6.5\n", "1,2,3\n4,5,-6.5", "1;2;3\r\n4; 5 ;-6.5\r\n", "\t1\t2  3\n\n 4 5 -65e-1 \n",
         "# made by hand\n1 2 3\n// more\n4 5 -6.5\n", "1 2 3 255 0 0\n4 5 -6.5 0 255 0\n", "X,Y,Z\n1,2,3\n4,5,-6.5\n",
-        "//X Y Z R\n1 2 3 9\n4 5 -6.5 9\n", "z;name;\"x\";y\n3;\"a b\";1;2\n-6.5;b;4;5\n"}) {
+        "//X Y Z R\n1 2 3 9\n4 5 -6.5 9\n", "z;name;\"x\";y\n3;\"a b\";1;2\n-6.5;b;4;5\n",
+        "\xEF\xBB\xBFx,y,z\r\n1,2,3\r\n4,5,-6.5\r\n",
+        "\xEF\xBB\xBF"
+        "1;2;3\n4;5;-6.5\n"}) {
     INFO(text);
     for (const char* name : {"a.xyz", "a.csv", "a.txt", "a"}) {
       const io::CloudFile file = io::read_cloud(folder.file(name, text));

@@ -139,6 +139,18 @@ TEST_CASE("detections are read from CSV and JSON") {
   require_file_error(folder.file("h.json", R"([{"instance": "one"}])"), "expected a number", read);
 }
 
+TEST_CASE("detections may come from a spreadsheet or with a byte order mark") {
+  const TempFolder folder;
+  const std::string mark = "\xEF\xBB\xBF";
+  for (const std::string& text : {mark + "instance,score\r\n4,0.5\r\n", std::string("instance;score\n4;0.5\n"),
+                                  mark + R"([{"instance": 4, "score": 0.5}])"}) {
+    const auto read = io::read_detections(folder.file("a.csv", text));
+    REQUIRE(read.size() == 1);
+    CHECK(read[0].instance == 4);
+    CHECK(read[0].score == 0.5);
+  }
+}
+
 TEST_CASE("boxes that name no instance belong to none of the masks") {
   const TempFolder folder;
   sensor::DepthFrame frame = tiny_frame();

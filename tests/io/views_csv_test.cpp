@@ -17,6 +17,16 @@ TEST_CASE("views.csv needs numbers and positions alone") {
   CHECK(views[0].points_in == 0);
 }
 
+TEST_CASE("views.csv may come from a spreadsheet") {
+  const TempFolder folder;
+  for (const char* text :
+       {"\xEF\xBB\xBFview,x,y,z\r\n0,1,2,3\r\n", "view;x;y;z\n0;1;2;3\n", "\xEF\xBB\xBFview;x;y;z\r\n0;1;2;3\r\n"}) {
+    const std::vector<View> views = io::read_views(folder.file("views.csv", text));
+    REQUIRE(views.size() == 1);
+    CHECK(views[0].world_T_optical.translation() == Eigen::Vector3d(1, 2, 3));
+  }
+}
+
 TEST_CASE("groups of columns in views.csv are whole or absent") {
   const TempFolder folder;
   const auto refused = [&](const std::string& head, const std::string& what) {

@@ -18,7 +18,12 @@ void CsvWriter::cell(std::string_view text) {
   text_ += '"';
 }
 
-bool split_csv(std::string_view line, std::vector<std::string>& cells) {
+char csv_separator(std::string_view head) {
+  const auto has = [&](char c) { return head.find(c) != std::string_view::npos; };
+  return has(';') && !has(',') ? ';' : ',';
+}
+
+bool split_csv(std::string_view line, std::vector<std::string>& cells, char separator) {
   cells.assign(1, "");
   bool quoted = false;
   for (std::size_t i = 0; i < line.size(); ++i) {
@@ -28,7 +33,7 @@ bool split_csv(std::string_view line, std::vector<std::string>& cells) {
       ++i;
     } else if (c == '"') {
       quoted = !quoted;
-    } else if (c == ',' && !quoted) {
+    } else if (c == separator && !quoted) {
       cells.emplace_back();
     } else {
       cells.back() += c;

@@ -38,7 +38,10 @@ class CsvWriter {
   bool first_ = true;
 };
 
+/// The separator of a table's cells, by its first line: a semicolon if it has one and no comma, otherwise a comma.
+char csv_separator(std::string_view head);
+
 /// Split a line into its cells. @return false if a quote is not closed
-bool split_csv(std::string_view line, std::vector<std::string>& cells);
+bool split_csv(std::string_view line, std::vector<std::string>& cells, char separator = ',');
 
 }  // namespace agrisee::io

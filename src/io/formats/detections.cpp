@@ -108,7 +108,8 @@ std::vector<sensor::Detection> from_csv(const fs::path& path, std::string_view b
   std::string_view line;
   if (!lines.next_filled(line)) fail(path, "is empty");
   std::vector<std::string> names, cells;
-  split_csv(line, names);
+  const char separator = csv_separator(line);
+  split_csv(line, names, separator);
   std::map<std::size_t, std::size_t> columns;  // of each value
   for (std::size_t k = 0; k < kColumnNames.size(); ++k)
     for (const char* name : kColumnNames[k])
@@ -119,7 +120,7 @@ std::vector<sensor::Detection> from_csv(const fs::path& path, std::string_view b
   Collector out(first);
   while (lines.next_filled(line)) {
     const auto complain = [&](const std::string& message) { fail(path, lines.number(), message); };
-    if (!split_csv(line, cells) || cells.size() != names.size())
+    if (!split_csv(line, cells, separator) || cells.size() != names.size())
       complain("expected " + std::to_string(names.size()) + " cells, got " + std::to_string(cells.size()));
     const auto number = [&](std::size_t k) -> std::optional<double> {
       if (!columns.count(k) || trimmed(cells[columns[k]]).empty()) return std::nullopt;
@@ -192,7 +193,7 @@ LabelImage read_label_image(const fs::path& path) { return decode_png_labels(pat
 std::vector<sensor::Detection> read_detections(const fs::path& path, std::size_t first) {
   const Bytes bytes = read_bytes(path);
   if (bytes.size == 0) fail(path, "is empty");
-  const std::string_view text = trimmed(bytes.view());
+  const std::string_view text = trimmed(without_byte_order_mark(bytes.view()));
   return !text.empty() && (text.front() == '[' || text.front() == '{') ? from_json(path, bytes, first)
                                                                        : from_csv(path, bytes.view(), first);
 }

@@ -27,6 +27,8 @@ std::string format(float value);
 
 /// `text` without blanks at either end.
 std::string_view trimmed(std::string_view text);
+/// `text` without the byte order mark of UTF-8 at its beginning, as spreadsheets write it.
+std::string_view without_byte_order_mark(std::string_view text);
 /// `text` in lower case (ASCII).
 std::string lower(std::string_view text);
 /// `text` in quotes for an error message: at most 40 characters, unprintable ones replaced by `?`.
@@ -48,11 +50,11 @@ inline bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\r' || c ==
 /// Remove the next word from the front of `text` and return it; empty when none is left.
 std::string_view next_word(std::string_view& text);
 
-/// Iterates over the lines of a text and counts them.
+/// Iterates over the lines of a text and counts them. A byte order mark is no part of the first line.
 class Lines {
  public:
   /// @param first number of the first line
-  explicit Lines(std::string_view text, std::size_t first = 1) : rest_(text), next_(first) {}
+  explicit Lines(std::string_view text, std::size_t first = 1) : rest_(without_byte_order_mark(text)), next_(first) {}
   /// Get the next line, without its line break. @return false at the end of the text
   bool next(std::string_view& line);
   /// Get the next line that is not blank, without blanks at its ends. @return false at the end of the text

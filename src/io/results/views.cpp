@@ -64,7 +64,8 @@ class ViewTable {
   explicit ViewTable(const std::filesystem::path& path) : path_(path), bytes_(read_bytes(path)), lines_(bytes_.view()) {
     std::string_view line;
     if (!lines_.next_filled(line)) fail(path, "is empty");
-    split_csv(line, cells_);
+    separator_ = csv_separator(line);
+    split_csv(line, cells_, separator_);
     for (std::string& cell : cells_) cell = std::string(trimmed(cell));
     width_ = cells_.size();
     for (std::size_t c = 0; c < kColumns.size(); ++c) {
@@ -81,7 +82,7 @@ class ViewTable {
   bool next() {
     std::string_view line;
     if (!lines_.next_filled(line)) return false;
-    if (!split_csv(line, cells_) || cells_.size() != width_)
+    if (!split_csv(line, cells_, separator_) || cells_.size() != width_)
       bad("expected " + std::to_string(width_) + " cells, got " + std::to_string(cells_.size()));
     return true;
   }
@@ -115,6 +116,7 @@ class ViewTable {
   const Bytes bytes_;
   Lines lines_;
   std::vector<std::string> cells_;
+  char separator_ = ',';
   std::size_t width_ = 0;
   std::array<std::optional<std::size_t>, kColumns.size()> where_;  // of each column in a row, where it is there
 };
