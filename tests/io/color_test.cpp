@@ -182,6 +182,20 @@ TEST_CASE("channels are added to a frame, with what is known of their instances"
   CHECK_THROWS_WITH(io::add_channels(other, files), Catch::Contains("has 2 x 1 pixels, but the depth image 1 x 1"));
 }
 
+TEST_CASE("NaN is not JSON, and an error says so") {
+  const TempFolder folder;
+  const auto read = [](const std::filesystem::path& path) { return io::read_detections(path); };
+  for (const char* value : {"NaN", "Infinity", "-Infinity"})
+    require_file_error(folder.file("a.json", std::string(R"([{"instance": 1, "score": )") + value + "}]"),
+                       "JSON has no NaN and no Infinity", read);
+  try {
+    read(folder.file("a.json", R"([{"instance": 1, "score": x}])"));
+    FAIL();
+  } catch (const FileError& e) {
+    CHECK(std::string(e.what()).find("NaN") == std::string::npos);
+  }
+}
+
 TEST_CASE("the channels of a frame that are written are read again") {
   const TempFolder folder;
   sensor::DepthFrame frame = tiny_frame();

@@ -4,6 +4,7 @@
 #include <agrisee/io/files.hpp>
 #include <agrisee/io/mcap.hpp>
 
+#include <cstring>
 #include <filesystem>
 
 #include "catch.hpp"
@@ -103,6 +104,27 @@ TEST_CASE("a recording that is cut off before its first image, or of another for
   }
   test::require_file_error(folder.file("b.mcap", "#"), "is not an MCAP file", read);
   test::require_file_error(folder.file("c.mcap", ""), "is not an MCAP file", read);
+}
+
+TEST_CASE("a camera_info without focal lengths is told of as such") {
+  const test::TempFolder folder;
+  const auto path = folder / "scan.mcap";
+  write_three_views(path);
+  std::string bytes(io::read_bytes(path).view());
+  const sensor::Intrinsics k = mcap_view(0).frame.intrinsics;
+  for (const double value : {k.fx, k.fy})
+    for (std::size_t at; (at = bytes.find(test::bytes_of(value))) != std::string::npos;)
+      bytes.replace(at, sizeof value, sizeof value, '\0');
+  std::size_t chunk = 8;  // the first record; a head of 9 bytes holds opcode and length
+  while (bytes[chunk] != 6) {
+    std::uint64_t length = 0;
+    std::memcpy(&length, &bytes[chunk + 1], sizeof length);
+    chunk += 9 + length;
+  }
+  bytes.replace(chunk + 9 + 24, 4, 4, '\0');  // a checksum of 0: none
+  io::write_file(path, bytes);
+  test::require_file_error(path, "has no focal length: 0 and 0",
+                           [](const std::filesystem::path& p) { io::McapRecording recording(p); });
 }
 
 TEST_CASE("poses between transforms are interpolated along the chain of frames") {

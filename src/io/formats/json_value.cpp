@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "io/formats/json_value.hpp"
 
+#include <algorithm>
+
 namespace agrisee::io {
 namespace {
 
@@ -10,6 +12,16 @@ bool is_short_list(const Json& json) {
   for (const Json& item : json)
     if (!item.is_number() && !is_short_list(item)) return false;
   return true;
+}
+
+/// Whether the parser stopped at a number that is not finite, as Python's json.dump writes it.
+/// @param byte the one that it read last, counted from 1
+bool is_not_finite(std::string_view text, std::size_t byte) {
+  const std::string_view before = text.substr(0, std::min(byte, text.size()));
+  const std::size_t last = before.find_last_of("NI");
+  if (last == std::string_view::npos || byte - last > 2) return false;
+  const std::string_view rest = text.substr(last);
+  return rest.substr(0, 3) == "NaN" || rest.substr(0, 8) == "Infinity";
 }
 
 std::string one_line(const Json& json) { return json.dump(-1, ' ', false, Json::error_handler_t::replace); }
@@ -52,7 +64,10 @@ Json parse_json(const std::filesystem::path& path, std::string_view text) {
   try {
     return parse_json(text);
   } catch (const nlohmann::json::parse_error& e) {
-    fail(path, "not JSON, at byte " + std::to_string(e.byte));
+    fail(path,
+         "not JSON, at byte " + std::to_string(e.byte) +
+             (is_not_finite(text, e.byte) ? ": JSON has no NaN and no Infinity; leave such a value out, or write null"
+                                          : ""));
   } catch (const nlohmann::json::exception& e) {
     fail(path, std::string("not JSON: ") + e.what());
   } catch (const InputError& e) {

@@ -115,8 +115,11 @@ ros::CameraInfo camera_of(const fs::path& path, const mcap::Contents& contents, 
   }
   if (!found) fail(path, "has no sensor_msgs/msg/CameraInfo for " + topic + " (" + beside + ")");
   const sensor::Intrinsics& k = found->intrinsics;
-  if (k.width != static_cast<int>(image.width) || k.height != static_cast<int>(image.height) || !(k.fx > 0.0) ||
-      !(k.fy > 0.0))
+  if (!(k.fx > 0.0 && k.fy > 0.0))
+    fail(path, "the camera of " + topic + " has no focal length: " + number_text(k.fx, 4) + " and " +
+                   number_text(k.fy, 4) +
+                   " in its CameraInfo (k[0] and k[4]; for rectified images p[0] and p[5]): is it calibrated?");
+  if (k.width != static_cast<int>(image.width) || k.height != static_cast<int>(image.height))
     fail(path, "the camera of " + topic + " does not fit its images: " + std::to_string(k.width) + " x " +
                    std::to_string(k.height) + " pixels against " + std::to_string(image.width) + " x " +
                    std::to_string(image.height));
