@@ -71,6 +71,23 @@ std::size_t far_parts(const std::vector<MaskPart>& parts) {
   return apart.size();
 }
 
+/// A sentence if a detection that needs a mask has no pixel. @param masks the instances that have pixels
+std::optional<std::string> doubt_of_list(const std::vector<Detection>& detections,
+                                         const std::map<std::uint16_t, std::vector<MaskPart>>& masks) {
+  std::size_t listed = 0, missing = 0;
+  int first = 0;
+  for (const Detection& d : detections) {
+    ++listed;
+    if (d.box || masks.count(static_cast<std::uint16_t>(d.instance))) continue;
+    if (missing++ == 0) first = d.instance;
+  }
+  if (missing == 0) return std::nullopt;
+  if (masks.empty())
+    return "the masks are empty: all pixels are 0, although " + std::to_string(listed) + " detections are listed";
+  return std::to_string(missing) + " of " + std::to_string(listed) + " listed detections have no pixel in the masks (" +
+         std::to_string(first) + (missing > 1 ? ", for instance" : "") + "), so they are not used";
+}
+
 }  // namespace
 
 void check_masks(const DepthFrame& frame) {
@@ -110,7 +127,7 @@ std::optional<std::string> doubt_of_masks(const DepthFrame& frame) {
     torn += apart > 1;
     if (apart > most) most = apart, first = instance;
   }
-  if (torn == 0 || 2 * torn < masks.size()) return std::nullopt;
+  if (torn == 0 || 2 * torn < masks.size()) return doubt_of_list(frame.detections, masks);
   return "instance " + std::to_string(first) + " of the masks lies in " + std::to_string(most) +
          " places far apart: does it stand for all fruit? Each fruit needs a number of its own";
 }

@@ -163,6 +163,23 @@ TEST_CASE("boxes that name no instance belong to none of the masks") {
   CHECK(frame.detections[1].instance == 4);
 }
 
+TEST_CASE("a misspelled name of a detection is refused, other names pass") {
+  const TempFolder folder;
+  const auto read = [](const std::filesystem::path& path) { return io::read_detections(path); };
+  const auto json = [&](const std::string& text) { return folder.file("a.json", text); };
+  require_file_error(json(R"([{"instance": 1, "scor": 0.5}])"), "[0]: unknown key 'scor'; did you mean 'score'?", read);
+  require_file_error(json(R"([{"instance": 1, "Class": "leaf"}])"), "did you mean 'class'?", read);
+  require_file_error(json(R"([{"instanse": 1, "score": 0.5}])"), "did you mean 'instance'?", read);
+  require_file_error(json(R"([{"instance": 1, "bbox": [1, 2, 3, 4]}])"), "did you mean 'box'?", read);
+  require_file_error(folder.file("b.csv", "instance,scores\n1,0.5\n"), ":1: unknown column 'scores'; did you mean",
+                     read);
+  // What is known already is not misspelled, and detectors have keys of their own.
+  CHECK(read(json(R"([{"instance": 1, "score": 0.5, "scores": [0.5], "class": "apple", "class_id": 7, "area": 3,
+                       "category": "fruit", "name": "apple", "idx": 0, "x1": 3, "mask": [], "track": 2}])"))
+            .size() == 1);
+  CHECK(read(folder.file("c.csv", "label,confidence,Name,area,x1\n1,0.5,apple,3,4\n")).size() == 1);
+}
+
 TEST_CASE("channels are added to a frame, with what is known of their instances") {
   const TempFolder folder;
   sensor::DepthFrame frame = tiny_frame();
@@ -235,6 +252,10 @@ TEST_CASE("boxes that are shares of the image or corners, and masks that are a d
   require_file_error(folder.file("f.csv", head + "2,2,10,10\n40,10,50,18\n"),
                      "ends outside of the image: are the numbers corners", add);
   require_file_error(folder.file("g.csv", head + "2,2,8,8\n10,2,16,8\n2,10,8,16\n10,10,16,16\n"), "corners", add);
+  CHECK_NOTHROW(add(folder.file("h.csv", head + "-5,10,8,8\n60,44,8,8\n")));
+  for (const char* box : {"5000,10,8,8", "64,10,8,8", "10,48,8,8", "-9,10,8,8", "10,-8,8,8"})
+    require_file_error(folder.file("i.csv", head + "10,10,8,8\n" + box + "\n"),
+                       "box of detection 2 (u " + std::string(box).substr(0, std::string(box).find(',')), add);
   sensor::DepthFrame frame;
   frame.intrinsics = {64, 48, 50.0, 50.0, 31.5, 23.5};
   frame.depth.assign(frame.intrinsics.size(), 1.0f);

@@ -67,3 +67,22 @@ TEST_CASE("one number for all fruit, or for the background, is doubted") {
   fill(frame, 0, 0, 64, 40, 1);
   CHECK_THAT(*sensor::doubt_of_masks(frame), Catch::Contains("covers 83 % of the image"));
 }
+
+TEST_CASE("a listed detection without pixels is doubted, one with a box is not") {
+  sensor::DepthFrame frame = blank_frame();
+  const auto list = [&](int instance, bool box = false) {
+    sensor::Detection d;
+    d.instance = instance;
+    if (box) d.box = sensor::PixelBox{1.0, 1.0, 5.0, 5.0};
+    frame.detections.push_back(d);
+  };
+  list(3), list(5);
+  CHECK(sensor::doubt_of_masks(frame).value() ==
+        "the masks are empty: all pixels are 0, although 2 detections are listed");
+  fill(frame, 2, 2, 8, 8, 5);
+  CHECK(sensor::doubt_of_masks(frame).value() ==
+        "1 of 2 listed detections have no pixel in the masks (3), so they are not used");
+  fill(frame, 22, 2, 8, 8, 3);
+  list(9, true);
+  CHECK_FALSE(sensor::doubt_of_masks(frame));
+}

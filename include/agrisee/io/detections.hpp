@@ -22,17 +22,18 @@ struct ChannelFiles {
 ///
 /// Columns or keys: `instance` (or `label`, `id`; in a table of boxes it may be missing: rows are counted from 1),
 /// `class` (default: a fruit without a name), `score` (or `confidence`; default 1), and a box as `u v width height` in
-/// pixels (or `x y w h`, or `box_u box_v box_w box_h`; in JSON also `box: [u, v, width, height]`). Others are skipped.
+/// pixels (or `x y w h`, or `box_u box_v box_w box_h`; in JSON also `box: [u, v, width, height]`). Others are skipped,
+/// unless they look like a misspelled `instance`, `class`, `score` or `box` that is missing.
 /// The classes leaf, stem, branch, other and background are no fruit, all others are.
 /// @param first the instance of the first detection if the file names none; those of the others follow
 /// @throws FileError, which names the line or key, for a file that cannot be read, an instance outside 1..65535 or
-/// listed twice, a score outside 0..1, or an empty box
+/// listed twice, a score outside 0..1, an empty box, or a misspelled name
 std::vector<sensor::Detection> read_detections(const std::filesystem::path& path, std::size_t first = 1);
 
 /// Add the channels of some files to a depth frame. A box is used if its instance has no mask; otherwise both are the
 /// same detection. Boxes that name no instance belong to none of the masks.
 /// @throws FileError as the readers, for an image of another size than the depth image, for masks that are none
-/// (sensor::check_masks), and for boxes that are shares of the image or corners
+/// (sensor::check_masks), and for boxes that are shares of the image, corners, or wholly outside of the image
 void add_channels(sensor::DepthFrame& frame, const ChannelFiles& files);
 
 /// Write the channels of a depth frame so that add_channels reads the same: colors, masks, and detections in a file of

@@ -16,7 +16,7 @@ namespace agrisee::sensor {
 void check_masks(const DepthFrame& frame);
 
 /// What speaks against the masks of a frame: one number for all fruit, whose parts lie far apart, or for the
-/// background, which fills most of the image. Empty for usual masks.
+/// background, which fills most of the image; or a detection without a box that no pixel shows. Empty for usual masks.
 std::optional<std::string> doubt_of_masks(const DepthFrame& frame);
 
 }  // namespace agrisee::sensor

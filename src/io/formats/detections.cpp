@@ -28,6 +28,23 @@ const std::vector<std::vector<const char*>> kColumnNames = {{"instance", "label"
                                                             {"height", "box_h", "h"}};
 constexpr std::size_t kInstance = 0, kClass = 1, kScore = 2, kBoxFirst = 3;
 
+/// The known name that an unknown one probably means, if the value with the known one is missing; empty otherwise.
+/// Detectors write other keys of their own. Names of a box are left out: too few of them is an error anyway.
+/// @param has(k) whether there is a value with the names kColumnNames[k]
+template <typename Has>
+std::string misspelled(const std::string& name, bool has_box, Has&& has) {
+  std::vector<std::string> missing;
+  for (std::size_t k = 0; k < kBoxFirst; ++k) {
+    const std::vector<const char*>& names = kColumnNames[k];
+    if (std::find(names.begin(), names.end(), name) != names.end()) return "";
+    if (has(k)) continue;
+    for (const char* known : names)
+      if (std::string(known) != "id") missing.emplace_back(known);  // too short to tell what is near
+  }
+  if (!has_box && name != "box") missing.emplace_back("box");
+  return did_you_mean(name, missing);
+}
+
 bool is_fruit(const std::string& name) {
   static const std::set<std::string> kOthers{"leaf", "stem", "branch", "other", "background"};
   return kOthers.count(lower(name)) == 0;
@@ -97,6 +114,13 @@ std::vector<sensor::Detection> from_json(const fs::path& path, const Bytes& byte
       const Eigen::Vector4d b = value.at("box").numbers<4>();
       box = sensor::PixelBox{b[0], b[1], b[2], b[3]};
     }
+    const auto has = [&](std::size_t k) {
+      const std::vector<const char*>& names = kColumnNames[k];
+      return std::any_of(names.begin(), names.end(), [&](const char* name) { return value.has(name); });
+    };
+    for (const auto& item : value.json().items())
+      if (const std::string meant = misspelled(item.key(), box || has(kBoxFirst), has); !meant.empty())
+        value.fail("unknown key " + excerpt(item.key()) + meant);
     out.add(number, value.has("class") ? value.at("class").text() : "", box,
             [&](const std::string& message) { value.fail(message); });
   }
@@ -115,6 +139,10 @@ std::vector<sensor::Detection> from_csv(const fs::path& path, std::string_view b
     for (const char* name : kColumnNames[k])
       for (std::size_t c = 0; c < names.size(); ++c)
         if (!columns.count(k) && lower(trimmed(names[c])) == name) columns[k] = c;
+  const auto has = [&](std::size_t k) { return columns.count(k) > 0; };
+  for (const std::string& name : names)
+    if (const std::string meant = misspelled(lower(trimmed(name)), has(kBoxFirst), has); !meant.empty())
+      fail(path, lines.number(), "unknown column " + excerpt(trimmed(name)) + meant);
   if (!columns.count(kInstance) && !columns.count(kBoxFirst))
     fail(path, "holds no detections: its first line names neither 'instance' nor a box (u, v, width, height)");
   Collector out(first);
@@ -159,6 +187,19 @@ void check_boxes(const fs::path& path, const std::vector<sensor::Detection>& box
   if (corners && (beyond || boxes.size() >= kMany))
     fail(path, std::string(beyond ? "a box ends outside of the image" : "all boxes reach across each other") +
                    ": are the numbers corners (left, upper, right, lower)? u, v, width, height are expected");
+}
+
+/// @throws FileError if a box shows nothing of the image
+void check_inside(const fs::path& path, const std::vector<sensor::Detection>& detections, const sensor::Intrinsics& k) {
+  for (const sensor::Detection& d : detections) {
+    if (!d.box) continue;
+    const sensor::PixelBox& b = *d.box;
+    if (b.u < k.width && b.v < k.height && b.u + b.width > 0.0 && b.v + b.height > 0.0) continue;
+    fail(path, "the box of detection " + std::to_string(d.instance) + " (u " + format(b.u) + ", v " + format(b.v) +
+                   ", width " + format(b.width) + ", height " + format(b.height) + ") lies outside of the image, " +
+                   std::to_string(k.width) + " x " + std::to_string(k.height) +
+                   " pixels: are the boxes those of a larger image? They have to be in pixels of the depth image");
+  }
 }
 
 /// The file with classes and scores beside a label image; empty if there is none.
@@ -215,7 +256,11 @@ void add_channels(sensor::DepthFrame& frame, const ChannelFiles& files) {
     } catch (const InputError& e) {
       fail(files.masks, e.what());
     }
-    if (const fs::path table = table_beside(files.masks); !table.empty()) add_detections(frame, read_detections(table));
+    if (const fs::path table = table_beside(files.masks); !table.empty()) {
+      std::vector<sensor::Detection> listed = read_detections(table);
+      check_inside(table, listed, k);
+      add_detections(frame, std::move(listed));
+    }
   }
   if (!files.boxes.empty()) {
     frame.detected = true;
@@ -227,6 +272,7 @@ void add_channels(sensor::DepthFrame& frame, const ChannelFiles& files) {
     for (const sensor::Detection& d : boxes)
       if (!d.box) fail(files.boxes, "detection " + std::to_string(d.instance) + " has no box (u, v, width, height)");
     check_boxes(files.boxes, boxes, k);
+    check_inside(files.boxes, boxes, k);
     add_detections(frame, std::move(boxes));
   }
 }
