@@ -152,7 +152,13 @@ TEST_CASE("poses between transforms are interpolated along the chain of frames")
   CHECK(x(900, true) == -1.0);  // where only what lies between counts
   CHECK(x(700) == -1.0);        // too early
   CHECK(x(2000) == -1.0);       // transforms 1.6 s apart
+  CHECK(x(3000) == 9.5);
+  CHECK(x(3100) == -1.0);  // behind the last, which is far from the one before: it may be moving
+  add("world", "arm", 2600 * kMs, 9.0, false);
+  tree.finish();
   CHECK(x(3100) == 9.5);
+  CHECK(x(3300) == -1.0);
+  CHECK(x(2500) == -1.0);
   CHECK_FALSE(tree.pose("map", "camera", 1000 * kMs));
   CHECK(tree.chain("camera") == std::vector<std::string>{"camera", "arm", "world"});
 }

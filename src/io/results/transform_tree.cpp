@@ -37,6 +37,12 @@ std::optional<Pose> TransformTree::at(const Edge& edge, std::uint64_t time, bool
   if (!has_after || !has_before) {
     const auto& only = has_after ? *after : edge.poses.back();
     const std::uint64_t away = has_after ? only.first - time : time - only.first;
+    // If the neighbor is far away in time, the frame may have been moving, and still be.
+    if (edge.poses.size() > 1) {
+      const auto& first = has_after ? edge.poses.front() : edge.poses[edge.poses.size() - 2];
+      const auto& second = has_after ? edge.poses[1] : edge.poses.back();
+      if (second.first - first.first > kGap) return std::nullopt;
+    }
     return away <= kFar && !between ? std::optional(only.second) : std::nullopt;
   }
   const auto& before = *(after - 1);

@@ -23,7 +23,8 @@ class TransformTree {
   /// The frames from `frame` up to its root, with both.
   std::vector<std::string> chain(const std::string& frame) const;
   /// world_T_frame at a time (ns), between two transforms by interpolation. None between transforms that are more than
-  /// half a second apart, more than 0.2 s before the first or behind the last, or if `world` is not above `frame`.
+  /// half a second apart, more than 0.2 s before the first or behind the last, before the first or behind the last if
+  /// the next one is more than half a second away, or if `world` is not above `frame`.
   /// @param between none at all before the first and behind the last
   std::optional<Pose> pose(const std::string& world, const std::string& frame, std::uint64_t time,
                            bool between = false) const;
