@@ -169,13 +169,16 @@ std::vector<CellJob> list_cells(const ExperimentOptions& options, const std::vec
 }
 
 /// Read a record. None if it is missing, damaged, or does not belong to what would be run now.
+/// @param others if given, counts the records that belong to something else
 template <typename Record, typename Read>
-std::optional<Record> finished(const fs::path& path, const std::string& fingerprint, Read&& read) {
+std::optional<Record> finished(const fs::path& path, const std::string& fingerprint, Read&& read,
+                               std::size_t* others = nullptr) {
   std::error_code error;
   if (!fs::exists(path, error)) return std::nullopt;
   try {
     Record record = read(path);
     if (record.fingerprint == fingerprint) return record;
+    if (others) ++*others;
   } catch (const FileError&) {  // a damaged record counts as missing
   }
   return std::nullopt;
@@ -213,12 +216,17 @@ std::string run_and_record(CellJob& job, SceneJob& scene, study::JudgedAfterView
 std::vector<std::string> run_cells(std::vector<CellJob>& cells, std::vector<SceneJob>& scenes,
                                    study::JudgedAfterViews judged, int threads) {
   std::vector<std::size_t> open;
+  std::size_t replaced = 0;
   for (std::size_t i = 0; i < cells.size(); ++i) {
-    cells[i].record = finished<study::CellRecord>(cells[i].path, cells[i].fingerprint, report::read_cell_record);
+    cells[i].record =
+        finished<study::CellRecord>(cells[i].path, cells[i].fingerprint, report::read_cell_record, &replaced);
     if (!cells[i].record) open.push_back(i);
   }
   const StopMessage message("agrisee: stopped; the same command goes on: cells with a record are not run again");
   std::cerr << cells.size() << " cells, " << open.size() << " of them to run\n";
+  if (replaced > 0)
+    std::cerr << "agrisee: " << replaced << " cells have a record of other parameters (--params, --max-views, "
+              << "--scanned-only), of another scene or version; it is replaced\n";
   const auto start = std::chrono::steady_clock::now();
   std::mutex mutex;
   std::size_t done = 0;

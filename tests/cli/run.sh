@@ -301,6 +301,9 @@ PY
     run '4 cells, 4 of them to run' --threads 1
     [ "$(tail -n +2 e/report/scanning.csv | wc -l)" = 4 ] || fail "not a row a cell"
     cp -r e first && run '4 cells, 0 of them to run'
+    grep -q 'replaced' err.txt && fail "nothing is replaced"
+    cp -r e few && expect 0 '^agrisee: 2 cells have a record of other parameters \(--params, --max-views, .*replaced' experiment -o few \
+      --presets default --scenes t3/scene.yaml,t4/scene.yaml --noise l515 --trials 1 --max-views 2
     for f in report.md report/scanning.csv report/segmentation.csv report/scanning.svg; do
       cmp "e/$f" "first/$f" || fail "$f did not come back as it was"
     done
