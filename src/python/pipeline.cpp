@@ -3,8 +3,10 @@
 #include <agrisee/sensor/rectify.hpp>
 
 #include <cstring>
+#include <limits>
 #include <mutex>
 #include <pybind11/stl.h>
+#include <type_traits>
 #include <vector>
 
 #include "arrays.hpp"
@@ -66,7 +68,7 @@ std::unique_ptr<Scan> make_scan(const py::object& workcell, const py::object& pa
   return std::make_unique<Scan>(workcell_of(workcell), values, std::move(options));
 }
 
-/// z (m) of each pixel: the items of an image times a scale.
+/// z (m) of each pixel: the items of an image times a scale. As in files, the largest whole number is no return.
 template <typename T>
 std::vector<float> scaled(const py::array& image, double scale) {
   std::vector<float> depth;
@@ -76,7 +78,8 @@ std::vector<float> scaled(const py::array& image, double scale) {
     for (py::ssize_t u = 0; u < image.shape(1); ++u) {
       T item;  // fields of packed records need not be aligned
       std::memcpy(&item, image.data(v, u), sizeof item);
-      depth.push_back(factor * static_cast<float>(item));
+      const bool no_return = std::is_integral_v<T> && item == std::numeric_limits<T>::max();
+      depth.push_back(no_return ? 0.0f : factor * static_cast<float>(item));
     }
   return depth;
 }
@@ -166,7 +169,7 @@ void bind_calls(py::class_<Scan>& scan) {
            R"(Add a depth image to the scan and return the View as recorded.
 
 depth: H x W, float32 or uint16: z along the optical axis, in metres after multiplication by depth_scale (0.001 for
-  millimetres). Zero, negative, NaN and infinite values mean no return.
+  millimetres). Zero, negative, NaN and infinite values mean no return, and so does 65535 in uint16.
 pose: 4 x 4, world_T_optical, at which the image was really taken.
 joints: six numbers (rad) at that moment, if an arm is known; warnings tell if they put the sensor elsewhere.
 distortion: k1, k2, p1, p2, k3 of the lens (or 4 of them, or 8 with k4, k5, k6), to be removed; empty for a pinhole.

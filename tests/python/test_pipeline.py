@@ -95,6 +95,18 @@ def test_millimetres(scene, camera):
     assert len(pipeline.result().fruits) == 3
 
 
+def test_the_largest_whole_number_is_no_return(scene, camera):
+    first = agrisee.Pipeline(scene).next_view()
+    depth = camera.capture(first.pose)
+    seen = []
+    for code in (0, 65535):  # 65535 units are 1.6 m, within the camera's range
+        units = np.where(depth > 0, np.round(depth / 25e-6), code).astype(np.uint16)
+        units[::2] = code
+        pipeline = agrisee.Pipeline(scene)
+        seen.append((pipeline.observe(units, first.pose, depth_scale=25e-6).points_in, pipeline.points.tobytes(), pipeline.next_view().pose.tobytes()))
+    assert seen[0] == seen[1] and seen[0][0] > 100
+
+
 def test_candidates_refusals_and_planners(scene):
     pipeline = agrisee.Pipeline(scene, planner="random", seed=3)
     first = pipeline.next_view(joints=pipeline_start(scene))
