@@ -15,7 +15,20 @@ std::string shape_text(const py::array& a) { return py::str(a.attr("shape")).cas
 
 }  // namespace
 
+bool has_mask(const py::handle& argument) {
+  const py::module_ masked = py::module_::import("numpy.ma");
+  return py::isinstance(argument, masked.attr("MaskedArray")) && masked.attr("is_masked")(argument).cast<bool>();
+}
+
+void refuse_mask(const py::handle& argument, const char* name) {
+  if (has_mask(argument))
+    throw InputError(std::string(name) +
+                     " has masked items: fill them (its method `filled`), or leave their rows out "
+                     "(numpy.ma.compress_rows)");
+}
+
 py::array array_of_rows(const py::handle& argument, const char* name) {
+  refuse_mask(argument, name);
   py::array a = py::array::ensure(argument);
   if (!a) {
     PyErr_Clear();
@@ -34,6 +47,7 @@ py::array array_of_rows(const py::handle& argument, const char* name) {
 }
 
 std::vector<double> numbers_of(const py::handle& argument, std::size_t count, const char* name) {
+  refuse_mask(argument, name);
   using Numbers = py::array_t<double, py::array::c_style | py::array::forcecast>;
   const Numbers a = Numbers::ensure(argument);
   const std::string wanted = std::string(name) + " must be " + std::to_string(count) + " numbers, got ";

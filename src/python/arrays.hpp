@@ -44,9 +44,16 @@ struct ArrayCloud {
   ArrayPoints<S> normals;  ///< unit, or zero if unknown; as many as points
 };
 
+/// Whether an argument is a masked array of numpy.ma, some of whose items are masked.
+bool has_mask(const py::handle& argument);
+
+/// @param name of the argument, for messages
+/// @throws InputError for what has_mask
+void refuse_mask(const py::handle& argument, const char* name);
+
 /// An argument that has to be an N x 3 array of float32 or float64, as it is. Lists of lists of floats become one.
 /// @param name of the argument, for messages
-/// @throws pybind11::type_error for other types, InputError for another shape
+/// @throws pybind11::type_error for other types, InputError for another shape or masked items
 py::array array_of_rows(const py::handle& argument, const char* name);
 
 /// The rows, copied to the type of `other` if theirs differs.
@@ -59,7 +66,8 @@ py::array normals_of(const py::handle& argument, const py::array& points, const 
 
 /// An argument that has to be a list or an array of `count` numbers.
 /// @param name of the argument, for messages
-/// @throws pybind11::type_error for what holds no numbers, InputError for another count or numbers that are not finite
+/// @throws pybind11::type_error for what holds no numbers, InputError for another count, masked items or numbers that
+///   are not finite
 std::vector<double> numbers_of(const py::handle& argument, std::size_t count, const char* name);
 
 /// The same as a vector; None is no vector.

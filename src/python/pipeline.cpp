@@ -84,12 +84,13 @@ std::vector<float> scaled(const py::array& image, double scale) {
   return depth;
 }
 
-/// A depth frame from an H x W array.
+/// A depth frame from an H x W array; masked items are no return.
 sensor::DepthFrame frame_of(const py::handle& argument, const sensor::Intrinsics& intrinsics, double scale) {
   if (!py::isinstance<py::array>(argument))
     throw py::type_error("depth must be an array of float32 or uint16, got " +
                          py::str(py::type::of(argument).attr("__name__")).cast<std::string>());
-  const auto image = py::reinterpret_borrow<py::array>(argument);
+  const auto image =
+      has_mask(argument) ? py::array(argument.attr("filled")(0)) : py::reinterpret_borrow<py::array>(argument);
   const std::string shape = py::str(image.attr("shape")).cast<std::string>();
   if (image.ndim() != 2 || image.shape(0) != intrinsics.height || image.shape(1) != intrinsics.width)
     throw InputError("depth must have the shape (" + std::to_string(intrinsics.height) + ", " +
@@ -169,7 +170,8 @@ void bind_calls(py::class_<Scan>& scan) {
            R"(Add a depth image to the scan and return the View as recorded.
 
 depth: H x W, float32 or uint16: z along the optical axis, in metres after multiplication by depth_scale (0.001 for
-  millimetres). Zero, negative, NaN and infinite values mean no return, and so does 65535 in uint16.
+  millimetres). Zero, negative, NaN and infinite values mean no return, and so do 65535 in uint16 and masked
+  items.
 pose: 4 x 4, world_T_optical, at which the image was really taken.
 joints: six numbers (rad) at that moment, if an arm is known; warnings tell if they put the sensor elsewhere.
 distortion: k1, k2, p1, p2, k3 of the lens (or 4 of them, or 8 with k4, k5, k6), to be removed; empty for a pinhole.

@@ -25,6 +25,7 @@ struct Input {
 /// For each point the number of the view that saw it. @throws pybind11::type_error, InputError
 std::vector<int> views_of(const py::object& argument, const py::array& points, std::size_t sensors) {
   if (argument.is_none()) return {};
+  refuse_mask(argument, "views");
   const auto a = py::array::ensure(argument);
   if (!a || (a.dtype().kind() != 'i' && a.dtype().kind() != 'u')) {
     PyErr_Clear();

@@ -23,6 +23,7 @@ std::vector<Eigen::Vector3f> floats(const py::object& argument, const char* name
 std::shared_ptr<Bvh> make_bvh(const py::object& vertices, const py::object& triangles, int threads) {
   Mesh mesh;
   mesh.vertices = floats(vertices, "vertices");
+  refuse_mask(triangles, "triangles");
   using Corners = py::array_t<std::int64_t, py::array::c_style>;
   const auto given = py::array::ensure(triangles);
   if (!given || (given.dtype().kind() != 'i' && given.dtype().kind() != 'u')) {

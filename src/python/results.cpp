@@ -322,6 +322,7 @@ std::vector<std::string> warnings_of(std::vector<std::string> warnings, const st
 }
 
 Pose pose_of(const py::handle& argument, const char* name) {
+  refuse_mask(argument, name);
   using Numbers = py::array_t<double, py::array::c_style | py::array::forcecast>;
   const Numbers a = Numbers::ensure(argument);
   const std::string wanted = std::string(name) + " must be a 4 x 4 matrix";

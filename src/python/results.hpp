@@ -33,8 +33,8 @@ std::vector<std::string> warnings_of(std::vector<std::string> warnings, const st
 
 /// A pose from an argument that has to be a homogeneous 4 x 4 matrix; whether it is rigid is tested where it is used.
 /// @param name of the argument, for messages
-/// @throws pybind11::type_error for what holds no numbers; InputError for another shape, for numbers that are not
-///   finite, or for a last row that is not 0 0 0 1
+/// @throws pybind11::type_error for what holds no numbers; InputError for another shape, for masked items, for numbers
+///   that are not finite, or for a last row that is not 0 0 0 1
 Pose pose_of(const py::handle& argument, const char* name);
 
 }  // namespace agrisee::python

@@ -107,6 +107,18 @@ def test_the_largest_whole_number_is_no_return(scene, camera):
     assert seen[0] == seen[1] and seen[0][0] > 100
 
 
+def test_masked_depths_are_no_return(scene, camera):
+    pose = agrisee.Pipeline(scene).next_view().pose
+    depth = camera.capture(pose)
+    assert agrisee.Pipeline(scene).observe(np.ma.masked_array(depth, mask=True), pose).points_in == 0
+    half = np.arange(depth.shape[0])[:, None] % 2 * np.ones_like(depth)
+    for image, scale in ((depth, 1.0), (np.round(1000 * depth).astype(np.uint16), 0.001)):
+        twins = [agrisee.Pipeline(scene), agrisee.Pipeline(scene), agrisee.Pipeline(scene)]
+        masked, zeros, plain = (np.ma.masked_array(image, mask=half), (image * half == 0) * image, np.ma.masked_array(image))
+        seen = [p.observe(given, pose, depth_scale=scale).points_in for p, given in zip(twins, (masked, zeros, plain))]
+        assert twins[0].points.tobytes() == twins[1].points.tobytes() and 100 < seen[0] == seen[1] < seen[2]
+
+
 def test_candidates_refusals_and_planners(scene):
     pipeline = agrisee.Pipeline(scene, planner="random", seed=3)
     first = pipeline.next_view(joints=pipeline_start(scene))

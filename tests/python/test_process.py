@@ -190,6 +190,21 @@ def test_bad_input_is_refused(arguments, error, words):
     assert words in str(caught.value)
 
 
+def test_masked_items_are_refused(points, result):
+    masked = np.ma.masked_array(points, mask=points > 0)
+    views = np.ma.masked_array(np.zeros(len(points), int), mask=points[:, 0] > 0)
+    for name, arguments in (("points", dict(points=masked)), ("normals", dict(points=points, normals=masked)),
+                            ("viewpoint", dict(points=points, viewpoint=np.ma.masked_array([0, 0, 0.2], mask=[1, 0, 0]))),
+                            ("views", dict(points=points, views=views, sensors=[VIEWPOINT]))):
+        with pytest.raises(agrisee.InputError, match=f"^{name} has masked items: fill them"):
+            agrisee.process(**arguments)
+    with pytest.raises(agrisee.InputError, match="^pose has masked items"):
+        agrisee.ReachableView(np.ma.masked_array(np.eye(4), mask=np.eye(4)))
+    with pytest.raises(agrisee.InputError, match="^triangles has masked items"):
+        agrisee.Bvh(points[:3], np.ma.masked_array([[0, 1, 2]], mask=True))
+    assert values(agrisee.process(np.ma.masked_array(points), viewpoint=VIEWPOINT)) == values(result)  # nothing is masked
+
+
 def test_exceptions_are_pythons():
     assert issubclass(agrisee.FileError, OSError) and issubclass(agrisee.FileError, agrisee.Error)
     assert issubclass(agrisee.ParameterError, ValueError) and issubclass(agrisee.InputError, ValueError)
