@@ -22,8 +22,8 @@ namespace {
 /// A pipeline, and where its arm stands.
 class Scan {
  public:
-  Scan(const Workcell& workcell, const Parameters& parameters, PipelineOptions options)
-      : pipeline_(workcell, parameters, std::move(options)), joints_(workcell.start) {}
+  Scan(const Workcell& workcell, const Parameters& parameters, PipelineOptions options, SharedFunction reach)
+      : pipeline_(workcell, parameters, std::move(options)), reach_(std::move(reach)), joints_(workcell.start) {}
 
   /// Call f with the pipeline as interruptible work. @throws std::runtime_error if another call is not over
   template <typename F>
@@ -43,6 +43,8 @@ class Scan {
 
   /// Joints from an argument, or where the arm went last (rad).
   Joints joints_or_last(const py::object& argument) const { return vector_of<6>(argument, "joints").value_or(joints_); }
+  /// The Python function that the pipeline owns; null without one.
+  const SharedFunction& reach() const { return reach_; }
   /// The arm has moved.
   void moved(const std::optional<Joints>& joints) {
     if (joints) joints_ = *joints;
@@ -50,6 +52,7 @@ class Scan {
 
  private:
   Pipeline pipeline_;
+  SharedFunction reach_;  // the one in the pipeline
   Joints joints_;
   std::mutex busy_;
 };
@@ -62,10 +65,11 @@ std::unique_ptr<Scan> make_scan(const py::object& workcell, const py::object& pa
     values.check();
   }
   PipelineOptions options;
-  options.reach = reach_of(reach);
+  const SharedFunction function = function_of(reach, "reach");
+  options.reach = reach_of(function);
   options.seed = seed;
   options.threads = threads_of(threads);
-  return std::make_unique<Scan>(workcell_of(workcell), values, std::move(options));
+  return std::make_unique<Scan>(workcell_of(workcell), values, std::move(options), function);
 }
 
 /// z (m) of each pixel: the items of an image times a scale. As in files, the largest whole number is no return.
@@ -209,11 +213,37 @@ void bind_state(py::class_<Scan>& scan) {
       .def("__repr__", &repr);
 }
 
+/// The function that the pipeline in a Python object owns; null if the object is not complete.
+py::object* owned_function(PyObject* self) {
+  const auto* type = py::detail::get_type_info(typeid(Scan));
+  const auto held = reinterpret_cast<py::detail::instance*>(self)->get_value_and_holder(type, false);
+  if (!held.inst || !held.holder_constructed()) return nullptr;
+  return held.value_ptr<Scan>()->reach().get();
+}
+
+/// Shows the function to Python's garbage collector. It often is a method of the object that keeps the pipeline: a
+/// cycle.
+void collect_cycles(PyHeapTypeObject* heap_type) {
+  PyTypeObject& type = heap_type->ht_type;
+  type.tp_flags |= Py_TPFLAGS_HAVE_GC;
+  type.tp_traverse = [](PyObject* self, visitproc visit, void* arg) {
+    if (const py::object* function = owned_function(self)) Py_VISIT(function->ptr());
+#if PY_VERSION_HEX >= 0x03090000
+    Py_VISIT(Py_TYPE(self));
+#endif
+    return 0;
+  };
+  type.tp_clear = [](PyObject* self) {
+    if (py::object* function = owned_function(self)) *function = py::none();
+    return 0;
+  };
+}
+
 }  // namespace
 
 void bind_pipeline(py::module_& m) {
   py::class_<Scan> scan(
-      m, "Pipeline",
+      m, "Pipeline", py::custom_type_setup(&collect_cycles),
       "One scan of one truss: observe each frame, ask next_view, move, repeat; then take the result.\n\n"
       "Calls raise KeyboardInterrupt within 50 ms of Ctrl-C and leave the scan as it was. Only observe may have taken "
       "the\n"

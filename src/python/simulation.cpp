@@ -29,7 +29,7 @@ SharedResult scan(const fs::path& scene, const std::string& noise, std::uint64_t
   options.noise = study::parse_noise(noise);
   options.seed = seed;
   options.threads = threads_of(threads);
-  options.reach = reach_of(reach);
+  options.reach = reach_of(function_of(reach, "reach"));
   if (!progress.is_none())
     options.on_view = [&](const Pipeline& pipeline) {
       call_back([&] { progress(pipeline.views().size(), pipeline.views().back()); });

@@ -130,14 +130,6 @@ void bind_views(py::module_& m) {
       });
 }
 
-/// A function that may be destroyed by a thread that does not hold Python's lock.
-std::shared_ptr<const py::object> kept(const py::object& function) {
-  return {new py::object(function), [](const py::object* object) {
-            const py::gil_scoped_acquire python;
-            delete object;
-          }};
-}
-
 }  // namespace
 
 std::filesystem::path scene_file(const std::filesystem::path& path) {
@@ -154,12 +146,19 @@ Workcell workcell_of(const py::object& argument) {
                        py::repr(argument).cast<std::string>());
 }
 
-plan::Reach reach_of(const py::object& function) {
-  if (function.is_none()) return {};
-  if (!PyCallable_Check(function.ptr()))
-    throw py::type_error("reach must be a function, got " + py::repr(function).cast<std::string>());
-  return [function = kept(function)](const plan::ViewRequest& request,
-                                     const Joints& current) -> std::optional<plan::ReachableView> {
+SharedFunction function_of(const py::object& argument, const char* name) {
+  if (argument.is_none()) return nullptr;
+  if (!PyCallable_Check(argument.ptr()))
+    throw py::type_error(std::string(name) + " must be a function, got " + py::repr(argument).cast<std::string>());
+  return {new py::object(argument), [](const py::object* object) {
+            const py::gil_scoped_acquire python;
+            delete object;
+          }};
+}
+
+plan::Reach reach_of(const SharedFunction& function) {
+  if (!function) return {};
+  return [function](const plan::ViewRequest& request, const Joints& current) -> std::optional<plan::ReachableView> {
     throw_if_cancelled();
     const py::gil_scoped_acquire python;
     const py::object answer = (*function)(request, current);

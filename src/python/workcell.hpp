@@ -7,6 +7,7 @@
 #include <agrisee/workcell.hpp>
 
 #include <filesystem>
+#include <memory>
 #include <pybind11/pybind11.h>
 
 namespace agrisee::python {
@@ -21,9 +22,17 @@ std::filesystem::path scene_file(const std::filesystem::path& path);
 /// @throws pybind11::type_error for another type, FileError for a file, ParameterError for a dict
 Workcell workcell_of(const py::object& argument);
 
+/// A Python function that threads may destroy without holding Python's lock.
+using SharedFunction = std::shared_ptr<py::object>;
+
+/// A Python function to be shared, or null for None.
+/// @param name of the argument, for messages
+/// @throws pybind11::type_error if it cannot be called
+SharedFunction function_of(const py::object& argument, const char* name);
+
 /// A function of Python that answers whether the arm can take a view, as a plan::Reach. It is called with a ViewRequest
 /// and joints (six numbers, rad), on the thread that does the work, and has to return a ReachableView or None.
-/// @throws pybind11::type_error if `function` cannot be called
-plan::Reach reach_of(const py::object& function);
+/// @param function null for none
+plan::Reach reach_of(const SharedFunction& function);
 
 }  // namespace agrisee::python

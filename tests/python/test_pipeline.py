@@ -1,8 +1,10 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Pipeline, Workcell and the simulation."""
+import gc
 import json
 import os
 import pickle
+import weakref
 
 import agrisee
 import numpy as np
@@ -165,6 +167,34 @@ def test_what_a_reach_raises_is_raised(scene):
     with pytest.raises(TypeError, match="reach must be a function"):
         agrisee.Pipeline(scene, reach=3)
     assert agrisee.Pipeline(scene, reach=lambda request, joints: None).next_view() is None
+
+
+class Robot:
+    """Keeps a pipeline that calls one of its methods."""
+
+    def __init__(self, scene, kind=agrisee.Pipeline):
+        self.pipeline = kind(scene, reach=self.reach)
+
+    def reach(self, request, joints):
+        return None
+
+
+class OwnPipeline(agrisee.Pipeline):
+    def __init__(self, *arguments, **keywords):
+        if gc.collect() >= 0:  # the object is not complete
+            super().__init__(*arguments, **keywords)
+
+
+@pytest.mark.parametrize("kind", [agrisee.Pipeline, OwnPipeline])
+def test_a_pipeline_that_calls_its_owner_is_collected(scene, kind):
+    robot = Robot(scene, kind)
+    assert robot.pipeline.next_view() is None
+    gone = weakref.ref(robot), weakref.ref(robot.pipeline)
+    gc.collect()
+    assert gone[0]() is robot and robot.pipeline.next_view() is None  # in use
+    del robot
+    gc.collect()
+    assert [reference() for reference in gone] == [None, None]
 
 
 def test_progress(scene, scanned):
