@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "arrays.hpp"
 
+#include <cmath>
 #include <string>
 
 namespace agrisee::python {
@@ -12,6 +13,20 @@ bool is_float(const py::array& a) {
 }
 
 std::string shape_text(const py::array& a) { return py::str(a.attr("shape")).cast<std::string>(); }
+
+/// The rows scaled to unit length, as io reads normals of files; zero where there is no direction.
+template <typename S>
+std::vector<Vector3<S>> unit_vectors(const ArrayPoints<S>& rows) {
+  std::vector<Vector3<S>> out = copied(rows);
+  for (Vector3<S>& v : out) {
+    const S norm = v.norm();
+    if (!(std::isfinite(norm) && norm > S(1e-12)))
+      v.setZero();
+    else if (std::abs(norm - S(1)) > S(1e-5))  // a unit vector is not changed, not even in its last bit
+      v /= norm;
+  }
+  return out;
+}
 
 }  // namespace
 
@@ -72,7 +87,7 @@ py::array normals_of(const py::handle& argument, const py::array& points, const 
   if (a.shape(0) != points.shape(0))
     throw InputError(std::string(name) + " must have as many rows as points, got " + std::to_string(a.shape(0)) +
                      " for " + std::to_string(points.shape(0)) + " points");
-  return of_type(a, points);
+  return with_points(of_type(a, points), [](const auto& rows) { return owned(unit_vectors(rows)); });
 }
 
 }  // namespace agrisee::python

@@ -59,7 +59,8 @@ py::array array_of_rows(const py::handle& argument, const char* name);
 /// The rows, copied to the type of `other` if theirs differs.
 py::array of_type(const py::array& rows, const py::array& other);
 
-/// The same for normals of `points`: as many, and copied to the type of the points if theirs differs.
+/// The same for normals of `points`: as many, copied to the type of the points if theirs differs, and scaled to unit
+/// length. As in files, those that have no direction (zero, not finite) become zero.
 /// @param name of the argument, for messages
 /// @throws as above; InputError for another number of rows
 py::array normals_of(const py::handle& argument, const py::array& points, const char* name = "normals");

@@ -121,7 +121,8 @@ void bind_process(py::module_& m) {
 
 points: N x 3 array of float32 or float64 (m, any frame), with any strides, read in place. Rows that are not finite are
   dropped. Other threads must not change it during the call.
-normals: N x 3 unit normals towards the side that was seen, zero where unknown; missing ones are estimated.
+normals: N x 3 normals of any length towards the side that was seen, zero or NaN where unknown; missing ones are
+  estimated.
 viewpoint: x, y, z of the sensor (m) if a single view saw all points.
 radius: (smallest, largest) expected radius of a fruit (m).
 parameters: Parameters, or a dict of them.

@@ -181,7 +181,8 @@ void bind_stage_functions(py::module_& m) {
         "neighbors agree. With curvatures=True also the surface variation of each point (0 to 1/3).\n\nFurther "
         "keywords: radius (m), max_neighbors, as the parameters `normals`.");
   m.def("grow_regions", &regions, arg("points"), arg("normals"), arg("curvatures") = none, arg("threads") = 0,
-        "Labels (int32) of smooth regions, from 1; 0 for no region.\n\nFurther keywords: radius (m), smoothness "
+        "Labels (int32) of smooth regions, from 1; 0 for no region. normals: of any length.\n\nFurther keywords: "
+        "radius (m), smoothness "
         "(rad), min_size and more, as the parameters `split.growing`. Some of them need curvatures.");
   m.def("dbscan", &clusters, arg("points"), arg("threads") = 0,
         "Labels (int32) of clusters, from 1; 0 for noise.\n\nFurther keywords: eps (m), min_points, as the parameters "
@@ -189,11 +190,13 @@ void bind_stage_functions(py::module_& m) {
   m.def("icp", &icp, arg("source"), arg("target"), arg("source_normals") = none, arg("target_normals") = none,
         arg("initial") = none, arg("threads") = 0,
         "The small rigid motion that aligns a source cloud with a target, as an IcpResult. Point to plane, so the "
-        "target needs normals, unless point_to_point=True.\n\ninitial: 4 x 4 target_T_source. Further keywords: "
+        "target needs normals (of any length), unless point_to_point=True.\n\ninitial: 4 x 4 target_T_source. Further "
+        "keywords: "
         "max_distance (m), kernel and more, as the parameters `icp`.");
   m.def(
       "fit_ellipsoid", &fit, arg("points"), arg("normals"),
-      "The ellipsoid that fits points with outward normals as an EllipsoidFit, or None if there are too few points or "
+      "The ellipsoid that fits points with outward normals (of any length) as an EllipsoidFit, or None if there are "
+      "too few points or "
       "no ellipsoid fits.\n\nFurther keywords: noise (m), shape_prior and more, as the parameters `split.bodies.fit`.");
   m.def("count_neighbors", &neighbor_counts, arg("points"), arg("radius"), arg("threads") = 0,
         "The density: how many points (int32) are at most radius (m) away from each point, itself included.");

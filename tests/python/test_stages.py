@@ -57,6 +57,34 @@ def test_normals_and_regions(cloud):
     assert agrisee.fit_ellipsoid(points[:3], normals[:3]) is None
 
 
+@pytest.mark.parametrize("length", [1e-6, 0.5, 10, 1e9])
+def test_normals_may_have_any_length(cloud, length):
+    points = sphere((0, 0.5, 0.2), 0.035).astype(cloud.dtype)
+    normals = ((points - np.array((0, 0.5, 0.2), cloud.dtype)) / 0.035).astype(cloud.dtype)
+    normals /= np.linalg.norm(normals, axis=1)[:, None]
+    longer = length * normals
+    fits = [agrisee.fit_ellipsoid(points, n) for n in (normals, longer)]
+    assert np.allclose(fits[1].radii, fits[0].radii, atol=1e-6) and fits[1].inliers == fits[0].inliers
+    shifted = points + np.array((0.001, -0.002, 0.001), cloud.dtype)
+    moves = [agrisee.icp(points, shifted, n, n) for n in (normals, longer)]
+    assert moves[1].rms_before == pytest.approx(moves[0].rms_before, rel=1e-3) and moves[1].matches == moves[0].matches
+    assert np.array_equal(*(agrisee.grow_regions(points, n, min_size=100) for n in (normals, longer)))
+    results = [agrisee.process(points, n) for n in (normals, longer)]
+    assert np.allclose(results[1].normals, results[0].normals, atol=1e-6)
+
+
+def test_normals_without_direction_are_unknown():
+    points = sphere((0, 0.5, 0.2), 0.035)
+    normals = (points - (0, 0.5, 0.2)) / 0.035
+    unknown = [normals.copy() for _ in range(4)]
+    for array, value in zip(unknown, (0, np.nan, np.inf, 1e-300)):
+        array[::7] = value
+    for call in (lambda n: agrisee.grow_regions(points, n, min_size=100).tolist(), lambda n: agrisee.fit_ellipsoid(points, n).radii.tolist(),
+                 lambda n: agrisee.icp(points, points + 0.001, n, n).rms_before, lambda n: agrisee.process(points, n).normals.tolist()):
+        answers = [call(n) for n in unknown]
+        assert all(answer == answers[0] for answer in answers[1:])
+
+
 def test_icp():
     target = sphere((0, 0.5, 0.2), 0.035)
     target = target * (1.0, 1.3, 0.7)
