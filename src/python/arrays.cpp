@@ -2,7 +2,9 @@
 #include "arrays.hpp"
 
 #include <cmath>
+#include <limits>
 #include <string>
+#include <string_view>
 
 namespace agrisee::python {
 namespace {
@@ -61,15 +63,36 @@ py::array array_of_rows(const py::handle& argument, const char* name) {
   return a;
 }
 
-std::vector<double> numbers_of(const py::handle& argument, std::size_t count, const char* name) {
+std::optional<Numbers> array_of_numbers(const py::handle& argument, const char* name) {
   refuse_mask(argument, name);
-  using Numbers = py::array_t<double, py::array::c_style | py::array::forcecast>;
-  const Numbers a = Numbers::ensure(argument);
-  const std::string wanted = std::string(name) + " must be " + std::to_string(count) + " numbers, got ";
-  if (!a) {
+  const py::array a = py::array::ensure(argument);
+  if (a && std::string_view("fiuO").find(a.dtype().kind()) != std::string_view::npos)
+    if (Numbers out = Numbers::ensure(a)) return out;
+  PyErr_Clear();
+  return std::nullopt;
+}
+
+py::array_t<std::int64_t> array_of_whole_numbers(const py::handle& argument, const char* name) {
+  refuse_mask(argument, name);
+  py::array a = py::array::ensure(argument);
+  if (a && a.size() == 0 && !py::isinstance<py::array>(argument)) a = py::array(a.attr("astype")("int64"));
+  if (!a || (a.dtype().kind() != 'i' && a.dtype().kind() != 'u')) {
     PyErr_Clear();
-    throw py::type_error(wanted + py::repr(argument).cast<std::string>());
+    throw py::type_error(std::string(name) + " must be an array of whole numbers");
   }
+  if (a.dtype().kind() == 'u' && a.itemsize() == sizeof(std::uint64_t) && a.size() > 0) {
+    const auto most = a.attr("max")().cast<std::uint64_t>();
+    if (most > static_cast<std::uint64_t>(std::numeric_limits<std::int64_t>::max()))
+      throw InputError(std::string(name) + " are out of range, got " + std::to_string(most));
+  }
+  return a;
+}
+
+std::vector<double> numbers_of(const py::handle& argument, std::size_t count, const char* name) {
+  const auto given = array_of_numbers(argument, name);
+  const std::string wanted = std::string(name) + " must be " + std::to_string(count) + " numbers, got ";
+  if (!given) throw py::type_error(wanted + py::repr(argument).cast<std::string>());
+  const Numbers& a = *given;
   if (a.ndim() != 1 || static_cast<std::size_t>(a.size()) != count)
     throw InputError(wanted + py::repr(argument).cast<std::string>());
   const std::vector<double> out(a.data(), a.data() + count);

@@ -5,6 +5,7 @@
 
 #include <agrisee/core/cloud.hpp>
 
+#include <cstdint>
 #include <cstring>
 #include <optional>
 #include <pybind11/numpy.h>
@@ -64,6 +65,20 @@ py::array of_type(const py::array& rows, const py::array& other);
 /// @param name of the argument, for messages
 /// @throws as above; InputError for another number of rows
 py::array normals_of(const py::handle& argument, const py::array& points, const char* name = "normals");
+
+/// Numbers in C order.
+using Numbers = py::array_t<double, py::array::c_style | py::array::forcecast>;
+
+/// An argument as an array of numbers. Texts are none, even if they spell numbers, and neither are truth values.
+/// @param name of the argument, for messages
+/// @return none if the argument holds no numbers
+/// @throws InputError for masked items
+std::optional<Numbers> array_of_numbers(const py::handle& argument, const char* name);
+
+/// An argument that has to be a list or an array of whole numbers, of any type that holds such. An empty list is one.
+/// @param name of the argument, for messages
+/// @throws pybind11::type_error for what holds no whole numbers, InputError for masked items or a number above 2^63 - 1
+py::array_t<std::int64_t> array_of_whole_numbers(const py::handle& argument, const char* name);
 
 /// An argument that has to be a list or an array of `count` numbers.
 /// @param name of the argument, for messages

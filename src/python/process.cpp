@@ -25,14 +25,8 @@ struct Input {
 /// For each point the number of the view that saw it. @throws pybind11::type_error, InputError
 std::vector<int> views_of(const py::object& argument, const py::array& points, std::size_t sensors) {
   if (argument.is_none()) return {};
-  refuse_mask(argument, "views");
-  const auto a = py::array::ensure(argument);
-  if (!a || (a.dtype().kind() != 'i' && a.dtype().kind() != 'u')) {
-    PyErr_Clear();
-    throw py::type_error("views must be an array of whole numbers");
-  }
-  check_input(a.ndim() == 1 && a.shape(0) == points.shape(0), "views must be one number a point");
-  const py::array_t<std::int64_t> numbers(a);
+  const py::array_t<std::int64_t> numbers = array_of_whole_numbers(argument, "views");
+  check_input(numbers.ndim() == 1 && numbers.shape(0) == points.shape(0), "views must be one number a point");
   std::vector<int> out;
   for (py::ssize_t i = 0; i < numbers.size(); ++i) {
     const std::int64_t view = numbers.at(i);

@@ -23,15 +23,9 @@ std::vector<Eigen::Vector3f> floats(const py::object& argument, const char* name
 std::shared_ptr<Bvh> make_bvh(const py::object& vertices, const py::object& triangles, int threads) {
   Mesh mesh;
   mesh.vertices = floats(vertices, "vertices");
-  refuse_mask(triangles, "triangles");
-  using Corners = py::array_t<std::int64_t, py::array::c_style>;
-  const auto given = py::array::ensure(triangles);
-  if (!given || (given.dtype().kind() != 'i' && given.dtype().kind() != 'u')) {
-    PyErr_Clear();
-    throw py::type_error("triangles must be an M x 3 array of whole numbers");
-  }
-  check_input(given.ndim() == 2 && given.shape(1) == 3, "triangles must have the shape (M, 3)");
-  const Corners corners(given);
+  const py::array_t<std::int64_t> corners = array_of_whole_numbers(triangles, "triangles");
+  const bool no_list = corners.ndim() == 1 && corners.size() == 0 && !py::isinstance<py::array>(triangles);
+  check_input(no_list || (corners.ndim() == 2 && corners.shape(1) == 3), "triangles must have the shape (M, 3)");
   for (py::ssize_t i = 0; i < corners.shape(0); ++i) {
     std::array<std::uint32_t, 3> triangle;
     for (std::size_t k = 0; k < 3; ++k) {
@@ -39,6 +33,9 @@ std::shared_ptr<Bvh> make_bvh(const py::object& vertices, const py::object& tria
       if (vertex < 0 || vertex >= static_cast<std::int64_t>(mesh.vertices.size()))
         throw InputError("triangle " + std::to_string(i) + " names vertex " + std::to_string(vertex) + " of " +
                          std::to_string(mesh.vertices.size()));
+      if (!is_finite(mesh.vertices[static_cast<std::size_t>(vertex)]))
+        throw InputError("triangle " + std::to_string(i) + " names vertex " + std::to_string(vertex) +
+                         ", which is not finite");
       triangle[k] = static_cast<std::uint32_t>(vertex);
     }
     mesh.triangles.push_back(triangle);

@@ -322,14 +322,10 @@ std::vector<std::string> warnings_of(std::vector<std::string> warnings, const st
 }
 
 Pose pose_of(const py::handle& argument, const char* name) {
-  refuse_mask(argument, name);
-  using Numbers = py::array_t<double, py::array::c_style | py::array::forcecast>;
-  const Numbers a = Numbers::ensure(argument);
+  const auto given = array_of_numbers(argument, name);
   const std::string wanted = std::string(name) + " must be a 4 x 4 matrix";
-  if (!a) {
-    PyErr_Clear();
-    throw py::type_error(wanted + ", got " + py::repr(argument).cast<std::string>());
-  }
+  if (!given) throw py::type_error(wanted + ", got " + py::repr(argument).cast<std::string>());
+  const Numbers& a = *given;
   check_input(a.ndim() == 2 && a.shape(0) == 4 && a.shape(1) == 4, wanted.c_str());
   Pose pose;
   pose.matrix() = Eigen::Map<const Eigen::Matrix<double, 4, 4, Eigen::RowMajor>>(a.data());

@@ -234,6 +234,9 @@ def test_bad_frames_are_refused_and_the_scan_goes_on(scene, camera):
         ((depth, np.nan * view.pose), agrisee.InputError, "pose is not finite"),
         ((depth, np.diag([2.0, 2, 2, 1])), agrisee.InputError, "world_T_optical"),
         ((depth, view.pose, [0, 1]), agrisee.InputError, "joints must be 6 numbers"),
+        ((depth, view.pose, ["1"] * 6), TypeError, "joints must be 6 numbers, got ['1', '1', "),
+        ((depth, view.pose, [True] * 6), TypeError, "joints must be 6 numbers"),
+        ((depth, view.pose.astype(str)), TypeError, "pose must be a 4 x 4 matrix, got "),
         ((depth, view.pose, np.degrees(view.joints)), agrisee.InputError, "are the angles in degrees?"),
         ((depth, view.pose, None, -1.0), agrisee.ParameterError, "depth_scale must be positive"),
     ]:

@@ -94,9 +94,12 @@ def test_views_and_sensors(points):
     assert away.mean() < 0.01
     twin = agrisee.process(both.astype(float), views=views.astype(np.int16), sensors=np.array(sensors, np.float32))
     assert len(twin.fruits) == 2
+    assert agrisee.process([], views=[], sensors=sensors).fruits == []
     for wrong, error in ((dict(views=views), agrisee.InputError), (dict(views=views[1:], sensors=sensors), agrisee.InputError),
                          (dict(views=views + 1, sensors=sensors), agrisee.InputError),
                          (dict(views=views.astype(float), sensors=sensors), TypeError),
+                         (dict(views=np.full(len(both), 2**64 - 1, np.uint64), sensors=sensors), agrisee.InputError),
+                         (dict(views=views.astype(str), sensors=sensors), TypeError),
                          (dict(views=views, sensors=[0.0, 0.0, 0.0]), agrisee.InputError),
                          (dict(views=views, sensors=sensors, viewpoint=VIEWPOINT), agrisee.InputError)):
         with pytest.raises(error):
@@ -178,6 +181,7 @@ def test_few_points_have_no_fruit(make):
     (dict(points=np.zeros((4, 3)), normals=np.zeros((3, 3))), agrisee.InputError, "got 3 for 4 points"),
     (dict(points=np.zeros((4, 3)), viewpoint=(0, 0)), agrisee.InputError, "viewpoint must be 3 numbers"),
     (dict(points=np.zeros((4, 3)), viewpoint=(0, 0, np.nan)), agrisee.InputError, "viewpoint must be finite"),
+    (dict(points=np.zeros((4, 3)), viewpoint=("0", "0", "0")), TypeError, "viewpoint must be 3 numbers, got ('0', '0', '0')"),
     (dict(points=np.zeros((4, 3)), radius=0.03), agrisee.InputError, "radius must be 2 numbers"),
     (dict(points=np.zeros((4, 3)), radius=(0.06, 0.03)), agrisee.ParameterError, "split.bodies.radius_m"),
     (dict(points=np.zeros((4, 3)), threads=-1), agrisee.ParameterError, "threads must be zero or more"),

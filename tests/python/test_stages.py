@@ -118,6 +118,18 @@ def test_rays():
             agrisee.Bvh(vertices, wrong)
 
 
+def test_triangles():
+    vertices = np.array([[0, 0, 1], [1, 0, 1], [0, 1, 1], [np.nan, 0, 0], [0, 1e300, 0]])
+    for none in ([], np.zeros((0, 3), int)):
+        assert len(agrisee.Bvh([], none)) == len(agrisee.Bvh(vertices, none)) == 0
+    assert len(agrisee.Bvh(vertices, np.array([[0, 1, 2]], np.uint64))) == 1  # the others are not used
+    for wrong in (3, 4):
+        with pytest.raises(agrisee.InputError, match=f"triangle 1 names vertex {wrong}, which is not finite"):
+            agrisee.Bvh(vertices, [[0, 1, 2], [0, 1, wrong]])
+    with pytest.raises(agrisee.InputError, match="triangles are out of range, got 18446744073709551615"):
+        agrisee.Bvh(vertices, np.full((1, 3), 2**64 - 1, np.uint64))
+
+
 @pytest.mark.parametrize("call, error, words", [
     (lambda p: agrisee.dbscan(p, eps=-1), agrisee.ParameterError, "eps must be positive"),
     (lambda p: agrisee.dbscan(p, min_point=1), agrisee.ParameterError, "unknown key 'min_point'; did you mean 'min_points'?"),
