@@ -47,7 +47,8 @@ void refuse_mask(const py::handle& argument, const char* name) {
 py::array array_of_rows(const py::handle& argument, const char* name) {
   refuse_mask(argument, name);
   py::array a = py::array::ensure(argument);
-  if (!a) {
+  const bool is_object = a && a.dtype().kind() == 'O' && !py::isinstance<py::array>(argument);  // None, for instance
+  if (!a || is_object) {
     PyErr_Clear();
     throw py::type_error(std::string(name) + " must be an N x 3 array, got " +
                          py::str(py::type::of(argument).attr("__name__")).cast<std::string>());

@@ -6,6 +6,7 @@
 #include <limits>
 #include <mutex>
 #include <pybind11/stl.h>
+#include <string_view>
 #include <type_traits>
 #include <vector>
 
@@ -111,6 +112,18 @@ sensor::DepthFrame frame_of(const py::handle& argument, const sensor::Intrinsics
   return frame;
 }
 
+/// Calls f; where it doubts the unit of depths, the message names the argument that sets it.
+template <typename F>
+View with_advice_on_units(F&& f) {
+  try {
+    return f();
+  } catch (const InputError& e) {
+    if (std::string_view(e.what()).find("its median depth is") == std::string_view::npos) throw;
+    throw InputError(std::string(e.what()) +
+                     " (depth_scale is the length of a unit: 0.001 for millimetres; 1, the default, for metres)");
+  }
+}
+
 View observe(Scan& scan, const py::object& depth, const py::object& pose, const py::object& joints, double depth_scale,
              const std::vector<double>& distortion) {
   const Pose world_T_optical = pose_of(pose, "pose");
@@ -119,7 +132,7 @@ View observe(Scan& scan, const py::object& depth, const py::object& pose, const 
   const sensor::DepthFrame frame =
       sensor::rectified(frame_of(depth, intrinsics, depth_scale), sensor::distortion_from(distortion));
   return scan.run([&](Pipeline& p) {
-    const View view = p.observe(frame, world_T_optical, at);
+    const View view = with_advice_on_units([&] { return p.observe(frame, world_T_optical, at); });
     scan.moved(at);
     return view;
   });

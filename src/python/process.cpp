@@ -31,8 +31,8 @@ std::vector<int> views_of(const py::object& argument, const py::array& points, s
   for (py::ssize_t i = 0; i < numbers.size(); ++i) {
     const std::int64_t view = numbers.at(i);
     if (view < -1 || view >= static_cast<std::int64_t>(sensors))
-      throw InputError("views must be from -1 to " + std::to_string(sensors) + " - 1, the number of sensors, got " +
-                       std::to_string(view));
+      throw InputError("views must be rows of sensors, of which there are " + std::to_string(sensors) +
+                       " (the first is 0), or -1 where unknown, got " + std::to_string(view));
     out.push_back(static_cast<int>(view));
   }
   return out;

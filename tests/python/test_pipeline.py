@@ -228,6 +228,8 @@ def test_bad_frames_are_refused_and_the_scan_goes_on(scene, camera):
         ((depth.astype(float), view.pose), TypeError, "depth must be float32 or uint16, got float64"),
         ((depth.tolist(), view.pose), TypeError, "depth must be an array"),
         ((1000 * depth, view.pose), agrisee.InputError, "is it in millimetres"),
+        (((1000 * depth).astype(np.uint16), view.pose), agrisee.InputError, "depth_scale is the length of a unit: 0.001 for millimetres"),
+        ((depth, view.pose, None, 0.001), agrisee.InputError, "multiplied by the camera's depth unit once more? (depth_scale is"),
         ((depth, view.pose[:3]), agrisee.InputError, "pose must be a 4 x 4 matrix"),
         ((depth, 2 * view.pose), agrisee.InputError, "last row"),
         ((depth, view.pose.T), agrisee.InputError, "last row is 0 0 0 1. Is it transposed?"),

@@ -136,6 +136,7 @@ def test_triangles():
     (lambda p: agrisee.remove_statistical_outliers(p, mean_k=0), agrisee.ParameterError, "mean_k must be at least 1"),
     (lambda p: agrisee.count_neighbors(p, -1), agrisee.ParameterError, "radius must be not negative"),
     (lambda p: agrisee.count_neighbors(p[:, 0], 1), agrisee.InputError, "points must have the shape (N, 3)"),
+    (lambda p: agrisee.fit_ellipsoid(p, None), TypeError, "normals must be an N x 3 array, got NoneType"),
     (lambda p: agrisee.grow_regions(p, p[1:]), agrisee.InputError, "normals must have as many rows"),
 ])
 def test_bad_arguments(cloud, call, error, words):
