@@ -68,7 +68,8 @@ void keep_preset(bool is_set) {
 }
 
 template <typename T>
-void update(Group<T>& group, const py::dict& values) {
+void update(Group<T>& group, const py::object& argument) {
+  const py::dict values = mapping_of(argument, "values");
   keep_preset<T>(values.contains("preset"));
   T changed = *group.value;
   set_fields(changed, values, group.prefix);
@@ -164,9 +165,9 @@ void bind_access(py::class_<Group<T>>& group) {
            })
       .def(
           "to_dict", [](const Group<T>& self) { return value_of(*self.value); }, "All values, as nested dicts.")
-      .def(
-          "update", &update<T>, py::arg("values"),
-          "Set the values of a dict (nested, or with dotted keys), then check all ranges; on an error nothing changes.")
+      .def("update", &update<T>, py::arg("values"),
+           "Set the values of a dict or another mapping (nested, or with dotted keys), then check all ranges; on an "
+           "error nothing changes.")
       .def("__eq__", [](const Group<T>& self, const py::object& other) {
         return py::isinstance<Group<T>>(other) &&
                value_of(*self.value).equal(value_of(*other.cast<const Group<T>&>().value));
@@ -220,6 +221,17 @@ std::string unknown_key(const std::string& prefix, const std::string& name, cons
   return "unknown key '" + prefix + name + "'" + io::did_you_mean(name, names);
 }
 
+std::optional<py::dict> dict_of(const py::handle& value) {
+  if (py::isinstance<py::dict>(value)) return py::reinterpret_borrow<py::dict>(value);
+  if (!py::isinstance(value, py::module_::import("collections.abc").attr("Mapping"))) return std::nullopt;
+  return py::dict(py::reinterpret_borrow<py::object>(value));
+}
+
+py::dict mapping_of(const py::handle& argument, const char* name) {
+  if (auto values = dict_of(argument)) return *std::move(values);
+  throw py::type_error(std::string(name) + " must be a dict or another mapping, got " + shown(argument));
+}
+
 bool bool_of(const py::handle& value, const std::string& key) {
   if (PyBool_Check(value.ptr())) return value.ptr() == Py_True;
   const std::string type = py::type::of(value).attr("__name__").cast<std::string>();
@@ -254,7 +266,7 @@ std::string text_of(const py::handle& value, const std::string& key) {
 Parameters parameters_of(const py::object& argument) {
   if (argument.is_none()) return {};
   if (py::isinstance<ParametersObject>(argument)) return *argument.cast<const ParametersObject&>().value;
-  if (py::isinstance<py::dict>(argument)) return from_dict(argument.cast<py::dict>());
+  if (const auto values = dict_of(argument)) return from_dict(*values);
   throw py::type_error("parameters must be agrisee.Parameters or a dict, got " + shown(argument));
 }
 
@@ -276,8 +288,9 @@ void bind_parameters(py::module_& m) {
            "The values of a preset (default, paper, see). Keyword arguments replace values: numbers, texts, or dicts "
            "for groups.")
       .def_static(
-          "from_dict", [](const py::dict& values) { return object_of(from_dict(values)); }, py::arg("values"),
-          "The values of a nested dict; all others are those of values['preset'], or the defaults.")
+          "from_dict", [](const py::object& values) { return object_of(from_dict(mapping_of(values, "values"))); },
+          py::arg("values"),
+          "The values of a nested dict or other mapping; all others are those of values['preset'], or the defaults.")
       .def_static(
           "from_yaml", [](const py::object& source) { return object_of(from_yaml(source)); }, py::arg("source"),
           "Read YAML from a file (given its path) or from a text. Raises FileError for a file, ParameterError for "

@@ -8,6 +8,7 @@
 
 #include <limits>
 #include <memory>
+#include <optional>
 #include <pybind11/pybind11.h>
 #include <string>
 #include <type_traits>
@@ -49,6 +50,12 @@ bool bool_of(const py::handle& value, const std::string& key);
 /// A text. @throws pybind11::type_error that names the key for what is none
 std::string text_of(const py::handle& value, const std::string& key);
 
+/// A dict, or any other mapping (collections.abc.Mapping) as one; none for other objects.
+std::optional<py::dict> dict_of(const py::handle& value);
+/// The same for an argument that has to be one. @param name of the argument, for messages
+/// @throws pybind11::type_error
+py::dict mapping_of(const py::handle& argument, const char* name);
+
 template <typename T>
 void set_fields(T& out, const py::dict& values, const std::string& prefix);
 
@@ -73,8 +80,8 @@ void set_field(T& out, const py::handle& value, const std::string& key) {
     } catch (const ParameterError&) {
       throw FieldError(key, "must be none, huber or tukey, got " + text_of(value, key));
     }
-  } else if (py::isinstance<py::dict>(value)) {
-    set_fields(out, py::reinterpret_borrow<py::dict>(value), key + ".");
+  } else if (const auto values = dict_of(value)) {
+    set_fields(out, *values, key + ".");
   } else if (py::isinstance<Group<T>>(value)) {
     out = *value.cast<const Group<T>&>().value;
   } else {
@@ -129,7 +136,7 @@ T stage_parameters(const py::kwargs& values) {
   return out;
 }
 
-/// Parameters from an argument: None (the defaults), agrisee.Parameters, or a dict as of Parameters.from_dict.
+/// Parameters from an argument: None (the defaults), agrisee.Parameters, or a mapping as of Parameters.from_dict.
 Parameters parameters_of(const py::object& argument);
 
 }  // namespace agrisee::python

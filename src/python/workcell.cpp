@@ -11,19 +11,25 @@
 
 #include "arrays.hpp"
 #include "bindings.hpp"
+#include "parameters.hpp"
 #include "results.hpp"
 
 namespace agrisee::python {
 namespace {
+
+/// What JSON has no notation for as something that it has: mappings as dicts, arrays as lists.
+py::object plain(const py::object& value) {
+  if (const auto values = dict_of(value)) return *values;
+  return value.attr("tolist")();
+}
 
 /// A workcell from a dict with the keys of scene.yaml; `name` and `objects` may be left out.
 Workcell from_dict(const py::dict& values) {
   py::dict scene = values.attr("copy")();
   if (!scene.contains("name")) scene["name"] = "workcell";
   if (!scene.contains("objects")) scene["objects"] = py::list();
-  const py::cpp_function as_list([](const py::object& value) -> py::object { return value.attr("tolist")(); });
-  const auto text =
-      py::module_::import("json").attr("dumps")(scene, py::arg("default") = as_list, py::arg("allow_nan") = false);
+  const auto text = py::module_::import("json").attr("dumps")(scene, py::arg("default") = py::cpp_function(&plain),
+                                                              py::arg("allow_nan") = false);
   try {
     return io::scene_from_yaml(text.cast<std::string>(), "workcell").workcell;  // JSON is YAML
   } catch (const FileError& e) {
@@ -62,8 +68,10 @@ void bind_cell(py::module_& m) {
           py::arg("path"),
           "The workcell of a scene file, or of its folder. Raises FileError, which names line and key.")
       .def_static(
-          "from_dict", &from_dict, py::arg("values"),
-          "A workcell from the keys of a scene file, as nested dicts. Raises ParameterError, which names the key.")
+          "from_dict", [](const py::object& values) { return from_dict(mapping_of(values, "values")); },
+          py::arg("values"),
+          "A workcell from the keys of a scene file, as nested dicts or other mappings. Raises ParameterError, which "
+          "names the key.")
       .def_readonly("name", &Workcell::name, "name of the scene, as in run.json")
       .def_property_readonly(
           "arm", [](const Workcell& c) { return std::string(c.arm.name); }, "name of the model")
@@ -139,7 +147,7 @@ std::filesystem::path scene_file(const std::filesystem::path& path) {
 
 Workcell workcell_of(const py::object& argument) {
   if (py::isinstance<Workcell>(argument)) return argument.cast<Workcell>();
-  if (py::isinstance<py::dict>(argument)) return from_dict(argument.cast<py::dict>());
+  if (const auto values = dict_of(argument)) return from_dict(*values);
   if (py::isinstance<py::str>(argument) || py::hasattr(argument, "__fspath__"))
     return io::read_scene(scene_file(argument.cast<std::filesystem::path>())).workcell;
   throw py::type_error("workcell must be agrisee.Workcell, a dict, or the path of a scene file, got " +

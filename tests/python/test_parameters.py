@@ -2,6 +2,8 @@
 """Parameters: attributes, dicts, YAML, presets."""
 import copy
 import pickle
+from collections import UserDict
+from types import MappingProxyType
 
 import agrisee
 import numpy as np
@@ -67,6 +69,22 @@ def test_dicts_and_yaml_read_back(tmp_path):
     for twin in (copy.copy(parameters), copy.deepcopy(parameters), parameters.copy()):
         twin.max_views = 8
         assert twin != parameters and parameters.max_views == 7
+
+
+def test_any_mapping_is_taken():
+    values = MappingProxyType({"gain": UserDict(min_gain=0.003), "split.bodies": MappingProxyType({"fit": {"noise": 0.002}})})
+    wanted = Parameters(gain={"min_gain": 0.003}, split={"bodies": {"fit": {"noise": 0.002}}})
+    updated = Parameters()
+    updated.update(values)
+    assert Parameters.from_dict(values) == Parameters(**values) == updated == wanted
+    updated.gain.update(MappingProxyType({"min_gain": 0.004}))
+    assert updated.gain.min_gain == 0.004
+    assert agrisee.process([], parameters=values).fruits == []
+    for call, name in ((Parameters.from_dict, "values"), (updated.update, "values"), (updated.gain.update, "values"), (agrisee.Workcell.from_dict, "values")):
+        with pytest.raises(TypeError, match=f"^{name} must be a dict or another mapping, got 3"):
+            call(3)
+    with pytest.raises(agrisee.ParameterError, match="unknown key 'gain.nose'"):
+        Parameters.from_dict(MappingProxyType({"gain": MappingProxyType({"nose": 1})}))
 
 
 def test_numbers_of_numpy():

@@ -5,6 +5,8 @@ import json
 import os
 import pickle
 import weakref
+from collections import UserDict
+from types import MappingProxyType
 
 import agrisee
 import numpy as np
@@ -283,6 +285,12 @@ def test_workcells(scene, tmp_path):
         "robot": {"base": {"xyz": [0, 0, 0], "rpy": [0, 0, 0]}, "start": cell.start},
         "sensor": {"width": 64, "height": 48, "fx": 50, "fy": 50, "cx": 31.5, "cy": 23.5},
         "scan_volume": {"min": low, "max": high}})
+    frozen = MappingProxyType({"robot": UserDict(base=MappingProxyType({"xyz": np.zeros(3), "rpy": (0, 0, 0)}), start=cell.start),
+                               "sensor": {"width": 64, "height": 48, "fx": 50, "fy": 50, "cx": 31.5, "cy": 23.5},
+                               "scan_volume": MappingProxyType({"min": low, "max": high})})
+    for other in (agrisee.Workcell.from_dict(frozen), agrisee.Workcell.from_dict(dict(frozen))):
+        assert repr(other) == repr(twin) and np.array_equal(other.start, twin.start)
+    assert agrisee.Pipeline(frozen).views == []
     assert np.array_equal(twin.scan_volume[0], low) and twin.intrinsics["width"] == 64 and "ur3" in repr(twin)
     assert agrisee.Pipeline(twin).next_view() is not None
     with pytest.raises(agrisee.ParameterError, match="robot.arm.*for another arm, give the pipeline a function `reach`"):
