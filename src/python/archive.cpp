@@ -1,7 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "archive.hpp"
 
+#include <agrisee/cloud/fit.hpp>
+#include <agrisee/cloud/icp.hpp>
+#include <agrisee/plan/planner.hpp>
+#include <agrisee/result.hpp>
 #include <agrisee/version.hpp>
+#include <agrisee/workcell.hpp>
 
 #include <cstring>
 #include <type_traits>
@@ -62,12 +67,55 @@ template <typename A>
 void members(A& a, BodyCounts& b) {
   BodyCounts::fields(b, [&](const char*, auto& field) { a(field); });
 }
+template <typename A>
+void members(A& a, IcpResult& r) {
+  a(r.target_T_source, r.accepted, r.rms_before, r.rms_after, r.worse, r.matches_before, r.matches, r.iterations,
+    r.constrained, r.translation, r.rotation);
+}
+template <typename A>
+void members(A& a, SizePrior& p) {
+  a(p.radius, p.spread);
+}
+template <typename A>
+void members(A& a, EllipsoidFit& f) {
+  a(f.body.center, f.body.A, f.center_covariance, f.center_covariance_by_shape, f.shape_covariance, f.rms, f.inliers,
+    f.size_prior);
+}
+template <typename A>
+void members(A& a, plan::ViewRequest& r) {
+  a(r.target, r.direction, r.distance, r.distance_min, r.distance_max);
+}
+template <typename A>
+void members(A& a, plan::ReachableView& v) {
+  a(v.world_T_optical, v.target, v.joints, v.move_time, v.gain);
+}
+template <typename A>
+void members(A& a, sensor::DepthCamera& c) {
+  sensor::Intrinsics& k = c.intrinsics;
+  a(k.width, k.height, k.fx, k.fy, k.cx, k.cy, c.range_min, c.range_max, c.max_incidence, c.housing_radius,
+    c.housing_depth);
+}
+template <typename A>
+void members(A& a, KeepOut& k) {
+  bool is_box = std::holds_alternative<Box>(k.shape);
+  a(k.name, is_box);
+  if (!is_box && std::holds_alternative<Box>(k.shape)) k.shape = Cylinder();  // one that is being read
+  if (auto* box = std::get_if<Box>(&k.shape)) a(box->center, box->size);
+  if (auto* cylinder = std::get_if<Cylinder>(&k.shape)) a(cylinder->center, cylinder->radius, cylinder->height);
+}
+template <typename A>
+void members(A& a, Workcell& w) {
+  std::string arm(w.arm.name);  // workcells of Python have no arms but the models
+  a(w.name, arm, w.world_T_base, w.tool0_T_optical, w.tool0_T_tool, w.start, w.sensor, w.scan_volume.min,
+    w.scan_volume.max, w.keep_out);
+  if (arm != w.arm.name) w.arm = arm::ur_model(arm);  // one that is being read
+}
 
 /// Whether the bytes of a T are its value.
 template <typename T>
 constexpr bool is_plain = std::is_arithmetic_v<T> || std::is_enum_v<T>;
-template <typename S, int R, int C>
-constexpr bool is_plain<Eigen::Matrix<S, R, C>> = R > 0 && C > 0;
+template <typename S, int R, int C, int O>
+constexpr bool is_plain<Eigen::Matrix<S, R, C, O>> = R > 0 && C > 0;
 template <>
 constexpr bool is_plain<Rgb> = true;
 
@@ -122,14 +170,14 @@ class Reader {
 
  private:
   void bytes(void* p, std::size_t n) {
-    check_input(n <= static_cast<std::size_t>(end_ - at_), "a pickled result is cut off");
+    check_input(n <= static_cast<std::size_t>(end_ - at_), "a pickled object is cut off");
     if (n > 0) std::memcpy(p, at_, n);
     at_ += n;
   }
   std::size_t count() {
     std::size_t n = 0;
     bytes(&n, sizeof n);
-    check_input(n <= static_cast<std::size_t>(end_ - at_), "a pickled result is cut off");
+    check_input(n <= static_cast<std::size_t>(end_ - at_), "a pickled object is cut off");
     return n;
   }
   template <typename T>
@@ -177,20 +225,36 @@ std::string to_bytes(const T& value) {
 
 template <typename T>
 T from_bytes(const std::string& bytes) {
-  check_input(bytes.compare(0, kHead.size(), kHead) == 0, "a pickled result is of another version");
+  check_input(bytes.compare(0, kHead.size(), kHead) == 0, "a pickled object is of another version");
   const std::string rest = bytes.substr(kHead.size());
   Reader in(rest);
   T value;
   in(value);
-  check_input(in.at_end(), "a pickled result is too long");
+  check_input(in.at_end(), "a pickled object is too long");
   return value;
 }
 
 template std::string to_bytes(const ScanResult&);
 template std::string to_bytes(const Fruit&);
 template std::string to_bytes(const View&);
+template std::string to_bytes(const Body&);
+template std::string to_bytes(const Picking&);
+template std::string to_bytes(const FoundTruss&);
+template std::string to_bytes(const IcpResult&);
+template std::string to_bytes(const EllipsoidFit&);
+template std::string to_bytes(const Workcell&);
+template std::string to_bytes(const plan::ViewRequest&);
+template std::string to_bytes(const plan::ReachableView&);
 template ScanResult from_bytes(const std::string&);
 template Fruit from_bytes(const std::string&);
 template View from_bytes(const std::string&);
+template Body from_bytes(const std::string&);
+template Picking from_bytes(const std::string&);
+template FoundTruss from_bytes(const std::string&);
+template IcpResult from_bytes(const std::string&);
+template EllipsoidFit from_bytes(const std::string&);
+template Workcell from_bytes(const std::string&);
+template plan::ViewRequest from_bytes(const std::string&);
+template plan::ReachableView from_bytes(const std::string&);
 
 }  // namespace agrisee::python

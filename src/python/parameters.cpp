@@ -184,6 +184,13 @@ void bind_group(py::module_& m, const std::string& prefix) {
   group.def("__repr__", [](const Group<T>& self) {
     return self.prefix.substr(0, self.prefix.size() - 1) + ": " + shown(value_of(*self.value));
   });
+  group.def(py::pickle([](const Group<T>& self) { return py::make_tuple(self.prefix, value_of(*self.value)); },
+                       [](const py::tuple& state) {
+                         check_input(state.size() == 2, "a pickled group of parameters is no pair");
+                         Group<T> out{std::make_shared<T>(), text_of(state[0], "the name of a pickled group")};
+                         update(out, py::object(state[1]));
+                         return out;
+                       }));
 }
 
 ParametersObject object_of(Parameters parameters) { return {std::make_shared<Parameters>(std::move(parameters)), ""}; }

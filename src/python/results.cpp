@@ -99,16 +99,9 @@ py::dict dict_of_fields(const T& value) {
   return out;
 }
 
-/// Pickling by archive.hpp.
-template <typename T, typename Class>
-void bind_pickle(Class& c) {
-  c.def(py::pickle([](const T& value) { return py::bytes(to_bytes(value)); },
-                   [](const py::bytes& bytes) { return from_bytes<T>(bytes); }));
-}
-
 void bind_body(py::module_& m) {
-  py::class_<Body>(m, "Body", "The body of a fruit as an ellipsoid, in world (m).")
-      .def_property_readonly(
+  py::class_<Body> body(m, "Body", "The body of a fruit as an ellipsoid, in world (m).");
+  body.def_property_readonly(
           "center", [](const Body& b) { return b.center; }, "center (m)")
       .def_property_readonly(
           "radii", [](const Body& b) { return b.radii; }, "semi-axes (m), largest first")
@@ -124,11 +117,12 @@ void bind_body(py::module_& m) {
       .def_readonly("mass", &Body::mass, "mass (kg), with the density of the parameter mass.density")
       .def_readonly("mass_error", &Body::mass_error, "standard error of the mass (kg); 0: unknown")
       .def("__repr__", [](const Body& b) { return repr(b); });
+  bind_pickle(body);
 }
 
 void bind_picking(py::module_& m) {
-  py::class_<Picking>(m, "Picking", "How to approach and when to pick a fruit.")
-      .def_readonly("order", &Picking::order, "place in the picking order of all fruit, from 1")
+  py::class_<Picking> picking(m, "Picking", "How to approach and when to pick a fruit.");
+  picking.def_readonly("order", &Picking::order, "place in the picking order of all fruit, from 1")
       .def_readonly("reachable", &Picking::reachable, "whether it can be picked")
       .def_property_readonly(
           "reason", [](const Picking& p) { return to_string(p.reason); },
@@ -142,6 +136,7 @@ void bind_picking(py::module_& m) {
       .def_readonly("joints", &Picking::joints, "joints at the pre-grasp pose (rad), or None")
       .def_readonly("after", &Picking::after, "ids of the fruit that must be picked first")
       .def("__repr__", [](const Picking& p) { return formatted("<Picking %d: %s>", p.order, to_string(p.reason)); });
+  bind_pickle(picking);
 }
 
 void bind_fruit(py::module_& m) {
@@ -173,7 +168,7 @@ void bind_fruit(py::module_& m) {
           "to_dict", [](const Fruit& f) { return py::dict(dicts_of({f})[0]); },
           "The keys and values of fruits.json (docs/formats.md).")
       .def("__repr__", [](const Fruit& f) { return repr(f); });
-  bind_pickle<Fruit>(fruit);
+  bind_pickle(fruit);
 }
 
 void bind_view(py::module_& m) {
@@ -192,15 +187,16 @@ void bind_view(py::module_& m) {
           "discard_reason", [](const View& v) { return to_string(v.discard_reason); },
           "why it was discarded: none, repeated_frame or contradicts_others")
       .def("__repr__", [](const View& v) { return repr(v); });
-  bind_pickle<View>(view);
-  py::class_<FoundTruss>(m, "Truss", "Fruit that hang close to one another.")
-      .def_readonly("id", &FoundTruss::id, "number, from 1, from the top down")
+  bind_pickle(view);
+  py::class_<FoundTruss> truss(m, "Truss", "Fruit that hang close to one another.");
+  truss.def_readonly("id", &FoundTruss::id, "number, from 1, from the top down")
       .def_readonly("fruits", &FoundTruss::fruits, "ids of its fruit, from the top down")
       .def_property_readonly(
           "pose", [](const FoundTruss& t) { return matrix_of(t.world_T_truss); },
           "4 x 4 growth frame in world: z along the fruit, upwards")
       .def("__repr__",
            [](const FoundTruss& t) { return formatted("<Truss %d with %zu fruit>", t.id, t.fruits.size()); });
+  bind_pickle(truss);
 }
 
 py::object completeness_of(const ScanResult& r) {

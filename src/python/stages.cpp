@@ -10,6 +10,7 @@
 
 #include <pybind11/stl.h>
 
+#include "archive.hpp"
 #include "arrays.hpp"
 #include "bindings.hpp"
 #include "parameters.hpp"
@@ -129,7 +130,8 @@ std::optional<EllipsoidFit> fit(const py::object& points, const py::object& norm
 }
 
 void bind_stage_results(py::module_& m) {
-  py::class_<IcpResult>(m, "IcpResult", "The result of icp.")
+  py::class_<IcpResult> result(m, "IcpResult", "The result of icp.");
+  result
       .def_property_readonly(
           "target_T_source", [](const IcpResult& r) { return matrix_of(r.target_T_source); },
           "4 x 4: the corrected pose, or the initial one if no correction is accepted")
@@ -150,9 +152,10 @@ void bind_stage_results(py::module_& m) {
                number_text(1e3 * r.translation, 3) + " mm, residual " + number_text(1e3 * r.rms_before, 3) + " to " +
                number_text(1e3 * r.rms_after, 3) + " mm>";
       });
-  py::class_<EllipsoidFit>(m, "EllipsoidFit", "The result of fit_ellipsoid.")
-      .def_property_readonly(
-          "center", [](const EllipsoidFit& f) { return f.body.center; }, "center (m)")
+  bind_pickle(result);
+  py::class_<EllipsoidFit> fit(m, "EllipsoidFit", "The result of fit_ellipsoid.");
+  fit.def_property_readonly(
+         "center", [](const EllipsoidFit& f) { return f.body.center; }, "center (m)")
       .def_property_readonly(
           "radii", [](const EllipsoidFit& f) { return semi_axes(f.body).first; }, "semi-axes (m), largest first")
       .def_property_readonly(
@@ -167,6 +170,7 @@ void bind_stage_results(py::module_& m) {
         return "<EllipsoidFit with radii " + number_text(radii[0], 4) + ", " + number_text(radii[1], 4) + ", " +
                number_text(radii[2], 4) + " mm, " + std::to_string(f.inliers) + " inliers>";
       });
+  bind_pickle(fit);
 }
 
 void bind_stage_functions(py::module_& m) {

@@ -9,6 +9,7 @@
 #include <pybind11/stl.h>
 #include <pybind11/stl/filesystem.h>
 
+#include "archive.hpp"
 #include "arrays.hpp"
 #include "bindings.hpp"
 #include "parameters.hpp"
@@ -62,8 +63,9 @@ py::object tool_of(const Workcell& cell) {
 }
 
 void bind_cell(py::module_& m) {
-  py::class_<Workcell>(m, "Workcell", "Arm, camera, scan volume and keep-out spaces; docs/formats.md has the keys.")
-      .def_static(
+  py::class_<Workcell> cell(m, "Workcell",
+                            "Arm, camera, scan volume and keep-out spaces; docs/formats.md has the keys.");
+  cell.def_static(
           "from_yaml", [](const std::filesystem::path& path) { return io::read_scene(scene_file(path)).workcell; },
           py::arg("path"),
           "The workcell of a scene file, or of its folder. Raises FileError, which names line and key.")
@@ -88,13 +90,15 @@ void bind_cell(py::module_& m) {
           "scan_volume", [](const Workcell& c) { return std::pair(c.scan_volume.min, c.scan_volume.max); },
           "lower and upper corner of the volume to scan (m, world)")
       .def("__repr__", &repr);
+  bind_pickle(cell);
 }
 
 void bind_views(py::module_& m) {
   using plan::ReachableView;
   using plan::ViewRequest;
-  py::class_<ViewRequest>(m, "ViewRequest",
-                          "A request to look at target from target - distance * direction (m, world).")
+  py::class_<ViewRequest> request(m, "ViewRequest",
+                                  "A request to look at target from target - distance * direction (m, world).");
+  request
       .def_property_readonly(
           "target", [](const ViewRequest& r) { return r.target; }, "the point to look at (m)")
       .def_property_readonly(
@@ -110,7 +114,9 @@ void bind_views(py::module_& m) {
         return "<ViewRequest: look at " + py::str(py::cast(r.target)).cast<std::string>() + " along " +
                py::str(py::cast(r.direction)).cast<std::string>() + ">";
       });
-  py::class_<ReachableView>(m, "ReachableView", "A view that the arm can take.")
+  bind_pickle(request);
+  py::class_<ReachableView> reachable(m, "ReachableView", "A view that the arm can take.");
+  reachable
       .def(py::init([](const py::object& pose, const py::object& target, const py::object& joints, double move_time) {
              ReachableView view;
              view.world_T_optical = pose_of(pose, "pose");
@@ -136,6 +142,7 @@ void bind_views(py::module_& m) {
         return "<ReachableView at " + py::str(py::cast(v.target)).cast<std::string>() + ", " +
                number_text(v.move_time, 3) + " s away>";
       });
+  bind_pickle(reachable);
 }
 
 }  // namespace

@@ -26,6 +26,10 @@ METHODS = """\
     def __getstate__(self) -> Dict[str, Any]: ...
     def __setstate__(self, state: Dict[str, Any]) -> None: ...
 """
+GROUP_METHODS = """\
+    def __getstate__(self) -> Tuple[str, Dict[str, Any]]: ...
+    def __setstate__(self, state: Tuple[str, Dict[str, Any]]) -> None: ...
+"""
 
 
 def stubs(group, done):
@@ -46,7 +50,7 @@ def stubs(group, done):
     fields += "    def __eq__(self, other: object) -> bool: ...\n"
     fields += "    def __getattr__(self, name: str) -> Any: ...\n"
     fields += "    def __setattr__(self, name: str, value: Any) -> None: ...\n"
-    own = METHODS if isinstance(group, Parameters) else ""
+    own = METHODS if isinstance(group, Parameters) else GROUP_METHODS
     return f"{before}class {type(group).__name__}:\n{fields}{own}\n"
 
 

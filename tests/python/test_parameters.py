@@ -71,6 +71,16 @@ def test_dicts_and_yaml_read_back(tmp_path):
         assert twin != parameters and parameters.max_views == 7
 
 
+def test_groups_are_pickled_and_copied():
+    parameters = Parameters(**{"split.bodies.fit.noise": 0.0013})
+    for twin in (pickle.loads(pickle.dumps(parameters.split)), copy.copy(parameters.split), copy.deepcopy(parameters.split)):
+        assert twin == parameters.split and twin.bodies.fit.noise == 0.0013
+        twin.bodies.fit.noise = 0.002  # of its own
+        assert parameters.split.bodies.fit.noise == 0.0013
+        with pytest.raises(agrisee.ParameterError, match="split.bodies.fit.noise must be"):
+            twin.bodies.fit.noise = -1
+
+
 def test_any_mapping_is_taken():
     values = MappingProxyType({"gain": UserDict(min_gain=0.003), "split.bodies": MappingProxyType({"fit": {"noise": 0.002}})})
     wanted = Parameters(gain={"min_gain": 0.003}, split={"bodies": {"fit": {"noise": 0.002}}})

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Pipeline, Workcell and the simulation."""
+import copy
 import gc
 import json
 import os
@@ -131,6 +132,27 @@ def test_candidates_refusals_and_planners(scene):
     assert not np.array_equal(first.pose, second.pose)
     with pytest.raises(agrisee.ParameterError, match="planner must be"):
         agrisee.Pipeline(scene, planner="best")
+
+
+def test_workcells_and_views_are_pickled_and_copied(scene, scanned, camera):
+    keep_out = [{"name": "table", "box": {"center": [0, 0, -0.06], "size": [0.8, 0.8, 0.1]}},
+                {"name": "post", "cylinder": {"center": [0.5, 0.1, 0.3], "radius": 0.02, "height": 0.6}}]
+    big = agrisee.Workcell.from_dict({
+        "robot": {"arm": "ur10e", "base": {"xyz": [0.1, 0, 0], "rpy": [0, 0, 0.1]}, "gripper": {"xyz": [0, 0, 0.1], "rpy": [0, 0, 0]}},
+        "sensor": {"width": 64, "height": 48, "fx": 50, "fy": 50, "cx": 31.5, "cy": 23.5, "range": [0.2, 3]},
+        "scan_volume": {"min": [-0.2, 0.4, 0], "max": [0.2, 0.75, 0.45]}, "keep_out": keep_out})
+    asked = []
+    assert agrisee.Pipeline(scene, reach=lambda request, joints: asked.append(request)).next_view() is None
+    view = agrisee.Pipeline(scene).next_view()
+    for value in (big, camera.workcell, scanned.fruits[0].picking, view, asked[0], agrisee.ReachableView(np.eye(4))):
+        for twin in (pickle.loads(pickle.dumps(value)), copy.copy(value), copy.deepcopy(value)):
+            assert twin.__getstate__() == value.__getstate__() and repr(twin) == repr(value)
+    for cell in (big, camera.workcell):
+        twin = pickle.loads(pickle.dumps(cell))
+        assert twin.arm == cell.arm and np.array_equal(twin.start, cell.start) and twin.intrinsics == cell.intrinsics
+        assert np.array_equal(twin.base, cell.base) and np.array_equal(twin.tool, cell.tool)
+        views = [agrisee.Pipeline(each).next_view() for each in (cell, twin)]
+        assert repr(views[0]) == repr(views[1]) and (views[0] is None or np.array_equal(views[0].joints, views[1].joints))
 
 
 def pipeline_start(scene):

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """process: arrays in, results out."""
+import copy
 import gc
 import pickle
 import threading
@@ -160,6 +161,10 @@ def test_pickling_gives_everything_back(result):
     assert pickle.dumps(again) == data and values(again) == values(result) and again.warnings == result.warnings
     fruit = pickle.loads(pickle.dumps(result.fruits[0]))
     assert fruit.to_dict() == result.fruits[0].to_dict()
+    for value in (result.fruits[0].body, result.trusses[0]):
+        state = value.__getstate__()
+        for twin in (pickle.loads(pickle.dumps(value)), copy.copy(value), copy.deepcopy(value)):
+            assert twin is not value and twin.__getstate__() == state and repr(twin) == repr(value)
     state = result.__getstate__()
     for wrong in (b"", state[:-1], state + b"x", b"agrisee 0.0.1\n" + state[14:], state[:20]):
         with pytest.raises(agrisee.InputError):

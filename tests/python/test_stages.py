@@ -1,5 +1,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The stages as functions, against brute force or known shapes."""
+import copy
+import pickle
+
 import agrisee
 import numpy as np
 import pytest
@@ -102,6 +105,21 @@ def test_icp():
         agrisee.icp(target, target)
     with pytest.raises(agrisee.InputError, match="target_normals must have as many rows"):
         agrisee.icp(target, target, target_normals=normals[1:])
+
+
+def test_results_are_pickled_and_copied():
+    points = sphere((0, 0.5, 0.2), 0.035)
+    normals = (points - (0, 0.5, 0.2)) / 0.035
+    found, fit = agrisee.icp(points, points + 0.001, normals, normals), agrisee.fit_ellipsoid(points, normals)
+    for value in (found, fit):
+        for twin in (pickle.loads(pickle.dumps(value)), copy.copy(value), copy.deepcopy(value)):
+            assert twin.__getstate__() == value.__getstate__() and repr(twin) == repr(value)
+    twin = pickle.loads(pickle.dumps(found))
+    assert np.array_equal(twin.target_T_source, found.target_T_source) and twin.rms_before == found.rms_before > 0
+    twin = pickle.loads(pickle.dumps(fit))
+    assert np.array_equal(twin.axes, fit.axes) and np.array_equal(twin.center_covariance, fit.center_covariance)
+    with pytest.raises(agrisee.InputError, match="a pickled object"):
+        agrisee.IcpResult.__new__(agrisee.IcpResult).__setstate__(fit.__getstate__())
 
 
 def test_rays():
