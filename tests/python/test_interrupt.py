@@ -56,6 +56,27 @@ print(2, flush=True)
 """
 
 
+NEAREST = """
+import time
+import agrisee, numpy
+n = 400
+u, v = numpy.meshgrid(numpy.linspace(0, 2 * numpy.pi, n), numpy.linspace(0, numpy.pi, n))
+vertices = numpy.c_[(numpy.cos(u) * numpy.sin(v)).ravel(), (numpy.sin(u) * numpy.sin(v)).ravel(), numpy.cos(v).ravel()]
+i = numpy.arange(n * n).reshape(n, n)
+a, b, c, d = (x.ravel() for x in (i[:-1, :-1], i[1:, :-1], i[1:, 1:], i[:-1, 1:]))
+sphere = agrisee.Bvh(vertices, numpy.r_[numpy.c_[a, b, c], numpy.c_[a, c, d]])
+middle = numpy.zeros((10000, 3))  # all triangles are equally near: each query takes some 20 ms
+for _ in range({trials}):
+    print("begin", flush=True)
+    try:
+        sphere.nearest(middle, threads=1)
+        print("finished", flush=True)
+    except KeyboardInterrupt:
+        print(time.monotonic(), flush=True)
+print(2, flush=True)
+"""
+
+
 def delays_of(command, trials):
     """Seconds from each signal to the exception in a program that tells when it begins and when it was interrupted."""
     child = subprocess.Popen(command, stdout=subprocess.PIPE, text=True)
@@ -84,3 +105,7 @@ def test_process(threads):
 def test_next_view_with_a_reach_in_python(tmp_path):
     program = REACH.format(trials=4)
     assert statistics.median(delays_of([sys.executable, "-c", program, str(tmp_path)], 4)) < 0.05
+
+
+def test_nearest_points_of_a_mesh():
+    assert statistics.median(delays_of([sys.executable, "-c", NEAREST.format(trials=4)], 4)) < 0.05
