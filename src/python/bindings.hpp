@@ -3,14 +3,21 @@
 /// The parts of the module `_agrisee`. Each function adds the classes and functions of one source.
 #pragma once
 
+#include <agrisee/core/error.hpp>
+
 #include <pybind11/pybind11.h>
 
 namespace agrisee::python {
 
 namespace py = pybind11;
 
+/// A call of an object that another call uses.
+struct BusyError : Error {
+  using Error::Error;
+};
+
 /// The exceptions of core/error.hpp as Python's: FileError is an OSError, ParameterError and InputError are
-/// ValueErrors.
+/// ValueErrors, BusyError is a RuntimeError.
 void bind_errors(py::module_& m);
 /// Parameters and the groups within them.
 void bind_parameters(py::module_& m);

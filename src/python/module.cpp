@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The extension module behind the package `agrisee`.
-#include <agrisee/core/error.hpp>
 #include <agrisee/version.hpp>
 
 #include "bindings.hpp"
@@ -12,6 +11,7 @@ void bind_errors(py::module_& m) {
   const auto& error = py::register_exception<Error>(m, "Error");
   const auto kind_of = [&](PyObject* builtin) { return py::make_tuple(error, py::handle(builtin)); };
   py::register_exception<FileError>(m, "FileError", kind_of(PyExc_OSError));
+  py::register_exception<BusyError>(m, "BusyError", kind_of(PyExc_RuntimeError));
   py::register_exception<ParameterError>(m, "ParameterError", kind_of(PyExc_ValueError));
   py::register_exception<InputError>(m, "InputError", kind_of(PyExc_ValueError));
   py::register_exception_translator([](std::exception_ptr p) {

@@ -26,19 +26,17 @@ class Scan {
   Scan(const Workcell& workcell, const Parameters& parameters, PipelineOptions options, SharedFunction reach)
       : pipeline_(workcell, parameters, std::move(options)), reach_(std::move(reach)), joints_(workcell.start) {}
 
-  /// Call f with the pipeline as interruptible work. @throws std::runtime_error if another call is not over
+  /// Call f with the pipeline as interruptible work. @throws BusyError if another call is not over
   template <typename F>
   auto run(F&& f) {
-    const std::unique_lock<std::mutex> lock(busy_, std::try_to_lock);
-    if (!lock) throw std::runtime_error("this Pipeline is at work already: use one for each thread");
+    const std::unique_lock<std::mutex> lock = begin();
     return interruptible([&] { return f(pipeline_); });
   }
 
-  /// Read from the pipeline. @throws std::runtime_error as run
+  /// Read from the pipeline. @throws BusyError as run
   template <typename F>
   auto read(F&& f) {
-    const std::unique_lock<std::mutex> lock(busy_, std::try_to_lock);
-    if (!lock) throw std::runtime_error("this Pipeline is at work already: use one for each thread");
+    const std::unique_lock<std::mutex> lock = begin();
     return f(pipeline_);
   }
 
@@ -52,6 +50,13 @@ class Scan {
   }
 
  private:
+  std::unique_lock<std::mutex> begin() {
+    std::unique_lock<std::mutex> lock(busy_, std::try_to_lock);
+    if (!lock)
+      throw BusyError("this Pipeline is at work already: use one for each thread, and read from it between calls");
+    return lock;
+  }
+
   Pipeline pipeline_;
   SharedFunction reach_;  // the one in the pipeline
   Joints joints_;
@@ -260,7 +265,8 @@ void bind_pipeline(py::module_& m) {
       "One scan of one truss: observe each frame, ask next_view, move, repeat; then take the result.\n\n"
       "Calls raise KeyboardInterrupt within 50 ms of Ctrl-C and leave the scan as it was. Only observe may have taken "
       "the\n"
-      "view in already; len(views) tells.");
+      "view in already; len(views) tells. During a call, also within reach, other calls and attributes raise "
+      "BusyError.");
   scan.def(py::init(&make_scan), py::arg("workcell"), py::arg("parameters") = py::none(),
            py::arg("planner") = py::none(), py::arg("reach") = py::none(), py::arg("seed") = 0, py::arg("threads") = 0,
            R"(workcell: Workcell, a dict as of Workcell.from_dict, or the path of a scene file or its folder.

@@ -243,6 +243,20 @@ def test_a_pipeline_at_work_refuses_other_calls(scene):
         pipeline.next_view()
 
 
+def test_a_pipeline_at_work_shows_nothing(scene):
+    refused = []
+
+    def reach(request, joints):
+        for name in ("views", "warnings", "points", "candidates", "completeness", "stop_reason"):
+            with pytest.raises(agrisee.BusyError, match="at work already"):
+                getattr(pipeline, name)
+            refused.append(name)
+
+    pipeline = agrisee.Pipeline(scene, {"gain.candidates": 10}, reach=reach)
+    assert pipeline.next_view() is None and len(set(refused)) == 6 and pipeline.views == []
+    assert issubclass(agrisee.BusyError, agrisee.Error) and issubclass(agrisee.BusyError, RuntimeError)
+
+
 def test_bad_frames_are_refused_and_the_scan_goes_on(scene, camera):
     pipeline = agrisee.Pipeline(scene)
     view = pipeline.next_view()

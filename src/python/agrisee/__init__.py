@@ -6,6 +6,7 @@ down.
 """
 from ._agrisee import (
     Body,
+    BusyError,
     Bvh,
     EllipsoidFit,
     Error,
@@ -39,6 +40,7 @@ from ._agrisee import (
 
 __all__ = [
     "Body",
+    "BusyError",
     "Bvh",
     "EllipsoidFit",
     "Error",
