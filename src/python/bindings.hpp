@@ -16,8 +16,8 @@ struct BusyError : Error {
   using Error::Error;
 };
 
-/// The exceptions of core/error.hpp as Python's: FileError is an OSError, ParameterError and InputError are
-/// ValueErrors, BusyError is a RuntimeError.
+/// The exceptions of core/error.hpp as Python's: FileError is an OSError (of a missing file: a FileNotFoundError),
+/// ParameterError and InputError are ValueErrors, BusyError is a RuntimeError.
 void bind_errors(py::module_& m);
 /// Parameters and the groups within them.
 void bind_parameters(py::module_& m);

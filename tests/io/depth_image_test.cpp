@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <agrisee/io/depth_image.hpp>
+#include <agrisee/io/missing_file.hpp>
 
 #include <limits>
 
@@ -134,6 +135,12 @@ TEST_CASE("pixels without a return") {
 TEST_CASE("images that are no depth images are refused") {
   const TempFolder folder;
   require_file_error(folder / "none.png", "no such file", load);
+  try {
+    load(folder / "none.png");
+    FAIL("read a missing file");
+  } catch (const io::MissingFile& e) {
+    CHECK(e.path == folder / "none.png");
+  }
   require_file_error(folder.file("a.png", ""), "empty", load);
   require_file_error(folder.file("a.png", "GIF89a"), "neither a PNG nor an NPY", load);
   const std::string four(16, '\0');

@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Parameters: attributes, dicts, YAML, presets."""
 import copy
+import errno
+import os
 import pickle
 from collections import UserDict
 from types import MappingProxyType
@@ -148,6 +150,23 @@ def test_attributes_are_tested_when_they_are_set():
             change()
     parameters.expect_radii(0.01, 0.02)
     assert parameters.split.bodies.radius_max == 0.02
+
+
+def test_a_missing_file_is_pythons(tmp_path):
+    path = tmp_path / "ä none.yaml"
+    for read in (Parameters.from_yaml, agrisee.Workcell.from_yaml, agrisee.Pipeline, agrisee.SimulatedCamera, agrisee.scan):
+        with pytest.raises(FileNotFoundError, match=r"^/.*ä none\.yaml: no such file") as caught:
+            read(path)
+        error = caught.value
+        assert type(error) is agrisee.MissingFileError and isinstance(error, agrisee.FileError)
+        assert error.errno == errno.ENOENT and error.filename == str(path)
+        assert str(pickle.loads(pickle.dumps(error))) == str(error)
+    with pytest.raises(FileNotFoundError) as caught:
+        agrisee.Workcell.from_yaml(os.fsdecode(b"/none/\xff.yaml"))  # no UTF-8
+    assert caught.value.filename == os.fsdecode(b"/none/\xff.yaml")
+    with pytest.raises(agrisee.FileError, match="^/.*: is a directory") as caught:
+        Parameters.from_yaml(tmp_path)
+    assert not isinstance(caught.value, FileNotFoundError)
 
 
 def test_errors_of_yaml(tmp_path):

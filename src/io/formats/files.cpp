@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <agrisee/io/files.hpp>
+#include <agrisee/io/missing_file.hpp>
 
 #include <algorithm>
 #include <atomic>
@@ -85,7 +86,7 @@ InputFile::InputFile(const fs::path& path) : path_(path) {
   std::error_code error;
   const fs::file_status status = fs::status(path, error);
   if (status.type() == fs::file_type::none) fail(path, "cannot be opened: " + error.message());
-  if (!fs::exists(status)) fail(path, "no such file" + nearest_path(path));
+  if (!fs::exists(status)) throw MissingFile(path, "no such file" + nearest_path(path));
   if (fs::is_directory(status)) fail(path, "is a directory, not a file");
   if (!fs::is_regular_file(status) && !fs::is_fifo(status)) fail(path, "is not a regular file");
   file_.reset(std::fopen(path.c_str(), "rb"));
