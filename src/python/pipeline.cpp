@@ -117,6 +117,18 @@ sensor::DepthFrame frame_of(const py::handle& argument, const sensor::Intrinsics
   return frame;
 }
 
+/// Coefficients from a list, or from an array of one row or column, as OpenCV has them; none from None.
+std::vector<double> distortion_of(const py::object& argument) {
+  if (argument.is_none()) return {};
+  const auto given = array_of_numbers(argument, "distortion");
+  if (!given)
+    throw py::type_error("distortion must be a list of numbers, got " +
+                         py::str(py::type::of(argument).attr("__name__")).cast<std::string>());
+  const bool one_line = given->ndim() == 1 || (given->ndim() == 2 && (given->shape(0) == 1 || given->shape(1) == 1));
+  check_input(one_line, "distortion must be a list of numbers, or an array with one row or column");
+  return {given->data(), given->data() + given->size()};
+}
+
 /// Calls f; where it doubts the unit of depths, the message names the argument that sets it.
 template <typename F>
 View with_advice_on_units(F&& f) {
@@ -130,12 +142,12 @@ View with_advice_on_units(F&& f) {
 }
 
 View observe(Scan& scan, const py::object& depth, const py::object& pose, const py::object& joints, double depth_scale,
-             const std::vector<double>& distortion) {
+             const py::object& distortion) {
   const Pose world_T_optical = pose_of(pose, "pose");
   const std::optional<Joints> at = vector_of<6>(joints, "joints");
   const sensor::Intrinsics intrinsics = scan.read([](const Pipeline& p) { return p.workcell().sensor.intrinsics; });
   const sensor::DepthFrame frame =
-      sensor::rectified(frame_of(depth, intrinsics, depth_scale), sensor::distortion_from(distortion));
+      sensor::rectified(frame_of(depth, intrinsics, depth_scale), sensor::distortion_from(distortion_of(distortion)));
   return scan.run([&](Pipeline& p) {
     const View view = with_advice_on_units([&] { return p.observe(frame, world_T_optical, at); });
     scan.moved(at);
@@ -188,7 +200,7 @@ void bind_calls(py::class_<Scan>& scan) {
           "refused", [](Scan& s) { s.read([](Pipeline& p) { return p.refused(), 0; }); },
           "Report that the arm could not take the view that next_view returned last; then ask for another one.")
       .def("observe", &observe, py::arg("depth"), py::arg("pose"), py::arg("joints") = py::none(),
-           py::arg("depth_scale") = 1.0, py::arg("distortion") = std::vector<double>(),
+           py::arg("depth_scale") = 1.0, py::arg("distortion") = py::none(),
            R"(Add a depth image to the scan and return the View as recorded.
 
 depth: H x W, float32 or uint16: z along the optical axis, in metres after multiplication by depth_scale (0.001 for
@@ -196,7 +208,8 @@ depth: H x W, float32 or uint16: z along the optical axis, in metres after multi
   items.
 pose: 4 x 4, world_T_optical, at which the image was really taken.
 joints: six numbers (rad) at that moment, if an arm is known; warnings tell if they put the sensor elsewhere.
-distortion: k1, k2, p1, p2, k3 of the lens (or 4 of them, or 8 with k4, k5, k6), to be removed; empty for a pinhole.
+distortion: k1, k2, p1, p2, k3 of the lens (or 4 of them, or 8 with k4, k5, k6), to be removed, as a list or as OpenCV's
+  arrays of one row or column; None or empty for a pinhole.
 
 Raises InputError for a wrong shape, unit, pose or posture; the scan so far is kept.)")
       .def("observe_points", &observe_points, py::arg("points"), py::arg("pose"), py::arg("joints") = py::none(),

@@ -112,6 +112,21 @@ def test_the_largest_whole_number_is_no_return(scene, camera):
     assert seen[0] == seen[1] and seen[0][0] > 100
 
 
+def test_lens_distortion(scene, camera):
+    pose = agrisee.Pipeline(scene).next_view().pose
+    depth = camera.capture(pose)
+    points = []
+    for distortion in ([], None, [0.1, 0, 0, 0, 0], (0.1, 0.0, 0.0, 0.0), np.array([[0.1, 0, 0, 0, 0]]), np.array([[0.1], [0], [0], [0], [0]])):
+        pipeline = agrisee.Pipeline(scene)
+        pipeline.observe(depth, pose, distortion=distortion)
+        points.append(pipeline.points.tobytes())
+    assert points[0] == points[1] != points[2] and len(set(points[2:])) == 1
+    for wrong, error, words in ((np.zeros((2, 2)), agrisee.InputError, "one row or column"), ([0.1], agrisee.InputError, "4, 5 or 8"),
+                                ("0.1", TypeError, "must be a list of numbers, got str")):
+        with pytest.raises(error, match=f"distortion.*{words}"):
+            agrisee.Pipeline(scene).observe(depth, pose, distortion=wrong)
+
+
 def test_masked_depths_are_no_return(scene, camera):
     pose = agrisee.Pipeline(scene).next_view().pose
     depth = camera.capture(pose)
