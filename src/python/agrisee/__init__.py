@@ -4,6 +4,7 @@
 Units are metres, radians and seconds; poses are 4 x 4 matrices named a_T_b; optical frames have z forward, x right, y
 down.
 """
+from . import _calls  # first: it replaces functions of the extension module
 from ._agrisee import (
     Body,
     BusyError,
