@@ -32,6 +32,10 @@ std::vector<Vector3<S>> unit_vectors(const ArrayPoints<S>& rows) {
 
 }  // namespace
 
+std::string short_repr(const py::handle& value) {
+  return py::module_::import("reprlib").attr("repr")(value).cast<std::string>();
+}
+
 bool has_mask(const py::handle& argument) {
   const py::module_ masked = py::module_::import("numpy.ma");
   return py::isinstance(argument, masked.attr("MaskedArray")) && masked.attr("is_masked")(argument).cast<bool>();
@@ -92,10 +96,9 @@ py::array_t<std::int64_t> array_of_whole_numbers(const py::handle& argument, con
 std::vector<double> numbers_of(const py::handle& argument, std::size_t count, const char* name) {
   const auto given = array_of_numbers(argument, name);
   const std::string wanted = std::string(name) + " must be " + std::to_string(count) + " numbers, got ";
-  if (!given) throw py::type_error(wanted + py::repr(argument).cast<std::string>());
+  if (!given) throw py::type_error(wanted + short_repr(argument));
   const Numbers& a = *given;
-  if (a.ndim() != 1 || static_cast<std::size_t>(a.size()) != count)
-    throw InputError(wanted + py::repr(argument).cast<std::string>());
+  if (a.ndim() != 1 || static_cast<std::size_t>(a.size()) != count) throw InputError(wanted + short_repr(argument));
   const std::vector<double> out(a.data(), a.data() + count);
   for (const double x : out)
     if (!std::isfinite(x)) throw InputError(std::string(name) + " must be finite");

@@ -10,6 +10,7 @@
 #include <optional>
 #include <pybind11/numpy.h>
 #include <pybind11/pybind11.h>
+#include <string>
 #include <vector>
 
 namespace agrisee::python {
@@ -44,6 +45,9 @@ struct ArrayCloud {
   ArrayPoints<S> points;   ///< m
   ArrayPoints<S> normals;  ///< unit, or zero if unknown; as many as points
 };
+
+/// A value as messages show it: its beginning, if it is long.
+std::string short_repr(const py::handle& value);
 
 /// Whether an argument is a masked array of numpy.ma, some of whose items are masked.
 bool has_mask(const py::handle& argument);

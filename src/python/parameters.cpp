@@ -41,7 +41,7 @@ void check_one(const T& value, const std::string& prefix, const char* wanted) {
     if constexpr (has_fields<F>)
       check_fields(field, prefix + name + ".");
     else
-      (detail::check_field(prefix, name, field, rule), ...);
+      (agrisee::detail::check_field(prefix, name, field, rule), ...);
   });
 }
 
@@ -236,37 +236,42 @@ std::optional<py::dict> dict_of(const py::handle& value) {
 
 py::dict mapping_of(const py::handle& argument, const char* name) {
   if (auto values = dict_of(argument)) return *std::move(values);
-  throw py::type_error(std::string(name) + " must be a dict or another mapping, got " + shown(argument));
+  throw py::type_error(std::string(name) + " must be a dict or another mapping, got " + short_repr(argument));
 }
 
 bool bool_of(const py::handle& value, const std::string& key) {
   if (PyBool_Check(value.ptr())) return value.ptr() == Py_True;
   const std::string type = py::type::of(value).attr("__name__").cast<std::string>();
-  if (type != "bool_" && type != "bool") throw py::type_error(key + " must be True or False, got " + shown(value));
+  if (type != "bool_" && type != "bool") throw py::type_error(key + " must be True or False, got " + short_repr(value));
   return PyObject_IsTrue(value.ptr()) == 1;
 }
 
 long long integer_of(const py::handle& value, const std::string& key) {
-  if (PyBool_Check(value.ptr()) || !PyIndex_Check(value.ptr()))
-    throw py::type_error(key + " must be a whole number, got " + shown(value));
-  const auto index = py::reinterpret_steal<py::object>(PyNumber_Index(value.ptr()));
-  if (!index) throw py::error_already_set();
+  const bool may_be_one = !PyBool_Check(value.ptr()) && PyIndex_Check(value.ptr());
+  const auto index = py::reinterpret_steal<py::object>(may_be_one ? PyNumber_Index(value.ptr()) : nullptr);
+  if (!index) {
+    PyErr_Clear();
+    throw py::type_error(key + " must be a whole number, got " + short_repr(value));
+  }
   int overflow = 0;
   const long long n = PyLong_AsLongLongAndOverflow(index.ptr(), &overflow);
-  if (overflow != 0) throw FieldError(key, "is out of range, got " + shown(value));
+  if (overflow != 0) throw FieldError(key, "is out of range, got " + short_repr(value));
   return n;
 }
 
 double number_of(const py::handle& value, const std::string& key) {
-  const bool is_number = PyFloat_Check(value.ptr()) || PyIndex_Check(value.ptr()) || py::hasattr(value, "__float__");
-  if (PyBool_Check(value.ptr()) || !is_number) throw py::type_error(key + " must be a number, got " + shown(value));
-  const double x = PyFloat_AsDouble(value.ptr());
-  if (x == -1.0 && PyErr_Occurred()) throw py::error_already_set();
+  const bool may_be_one = PyFloat_Check(value.ptr()) || PyIndex_Check(value.ptr()) || py::hasattr(value, "__float__");
+  const double x = may_be_one ? PyFloat_AsDouble(value.ptr()) : 0.0;
+  const bool is_refused = x == -1.0 && PyErr_Occurred() && PyErr_ExceptionMatches(PyExc_TypeError);  // by an array
+  if (PyErr_Occurred() && !is_refused) throw py::error_already_set();
+  PyErr_Clear();
+  if (PyBool_Check(value.ptr()) || !may_be_one || is_refused)
+    throw py::type_error(key + " must be a number, got " + short_repr(value));
   return x;
 }
 
 std::string text_of(const py::handle& value, const std::string& key) {
-  if (!py::isinstance<py::str>(value)) throw py::type_error(key + " must be a text, got " + shown(value));
+  if (!py::isinstance<py::str>(value)) throw py::type_error(key + " must be a text, got " + short_repr(value));
   return value.cast<std::string>();
 }
 
@@ -274,7 +279,7 @@ Parameters parameters_of(const py::object& argument) {
   if (argument.is_none()) return {};
   if (py::isinstance<ParametersObject>(argument)) return *argument.cast<const ParametersObject&>().value;
   if (const auto values = dict_of(argument)) return from_dict(*values);
-  throw py::type_error("parameters must be agrisee.Parameters or a dict, got " + shown(argument));
+  throw py::type_error("parameters must be agrisee.Parameters or a dict, got " + short_repr(argument));
 }
 
 void bind_parameters(py::module_& m) {

@@ -15,6 +15,8 @@
 #include <utility>
 #include <vector>
 
+#include "arrays.hpp"
+
 namespace agrisee::python {
 
 namespace py = pybind11;
@@ -85,7 +87,7 @@ void set_field(T& out, const py::handle& value, const std::string& key) {
   } else if (py::isinstance<Group<T>>(value)) {
     out = *value.cast<const Group<T>&>().value;
   } else {
-    throw py::type_error(key + " must be a dict of parameters, got " + py::repr(value).cast<std::string>());
+    throw py::type_error(key + " must be a dict of parameters, got " + short_repr(value));
   }
 }
 

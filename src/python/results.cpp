@@ -320,7 +320,7 @@ std::vector<std::string> warnings_of(std::vector<std::string> warnings, const st
 Pose pose_of(const py::handle& argument, const char* name) {
   const auto given = array_of_numbers(argument, name);
   const std::string wanted = std::string(name) + " must be a 4 x 4 matrix";
-  if (!given) throw py::type_error(wanted + ", got " + py::repr(argument).cast<std::string>());
+  if (!given) throw py::type_error(wanted + ", got " + short_repr(argument));
   const Numbers& a = *given;
   check_input(a.ndim() == 2 && a.shape(0) == 4 && a.shape(1) == 4, wanted.c_str());
   Pose pose;

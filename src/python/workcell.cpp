@@ -158,13 +158,13 @@ Workcell workcell_of(const py::object& argument) {
   if (py::isinstance<py::str>(argument) || py::hasattr(argument, "__fspath__"))
     return io::read_scene(scene_file(argument.cast<std::filesystem::path>())).workcell;
   throw py::type_error("workcell must be agrisee.Workcell, a dict, or the path of a scene file, got " +
-                       py::repr(argument).cast<std::string>());
+                       short_repr(argument));
 }
 
 SharedFunction function_of(const py::object& argument, const char* name) {
   if (argument.is_none()) return nullptr;
   if (!PyCallable_Check(argument.ptr()))
-    throw py::type_error(std::string(name) + " must be a function, got " + py::repr(argument).cast<std::string>());
+    throw py::type_error(std::string(name) + " must be a function, got " + short_repr(argument));
   return {new py::object(argument), [](const py::object* object) {
             const py::gil_scoped_acquire python;
             delete object;
@@ -179,8 +179,7 @@ plan::Reach reach_of(const SharedFunction& function) {
     const py::object answer = (*function)(request, current);
     if (answer.is_none()) return std::nullopt;
     if (!py::isinstance<plan::ReachableView>(answer))
-      throw py::type_error("reach must return agrisee.ReachableView or None, got " +
-                           py::repr(answer).cast<std::string>());
+      throw py::type_error("reach must return agrisee.ReachableView or None, got " + short_repr(answer));
     return answer.cast<plan::ReachableView>();
   };
 }

@@ -218,6 +218,15 @@ def test_masked_items_are_refused(points, result):
     assert values(agrisee.process(np.ma.masked_array(points), viewpoint=VIEWPOINT)) == values(result)  # nothing is masked
 
 
+@pytest.mark.parametrize("arguments", [dict(viewpoint=np.zeros(900)), dict(viewpoint="x" * 900), dict(parameters=np.zeros(900)),
+                                       dict(parameters={"gain": np.zeros(900)}), dict(parameters={"gain.min_gain": [0.0] * 900}),
+                                       dict(parameters={"max_views": np.zeros(900)})])
+def test_messages_do_not_print_long_values(points, arguments):
+    with pytest.raises((TypeError, agrisee.InputError)) as caught:
+        agrisee.process(points, **arguments)
+    assert ", got " in str(caught.value) and len(str(caught.value)) < 150
+
+
 def test_exceptions_are_pythons():
     assert issubclass(agrisee.FileError, OSError) and issubclass(agrisee.FileError, agrisee.Error)
     assert issubclass(agrisee.ParameterError, ValueError) and issubclass(agrisee.InputError, ValueError)
