@@ -13,20 +13,21 @@ using namespace agrisee::fuse;
 
 namespace {
 
-const std::vector<Sphere> kFruit{{{-0.04, 0.55, 0.25}, 0.03}, {{0.04, 0.56, 0.21}, 0.034}, {{0.0, 0.53, 0.16}, 0.025}};
+const std::vector<Sphere> kThreeBalls{
+    {{-0.04, 0.55, 0.25}, 0.03}, {{0.04, 0.56, 0.21}, 0.034}, {{0.0, 0.53, 0.16}, 0.025}};
 
 /// The bodies that are found. @param larger than they are (m)
-std::vector<Ellipsoid> bodies(double larger = 0.0) {
+std::vector<Ellipsoid> found_bodies(double larger = 0.0) {
   std::vector<Ellipsoid> all;
-  for (const Sphere& s : kFruit) all.emplace_back(Sphere{s.center, s.radius + larger});
+  for (const Sphere& s : kThreeBalls) all.emplace_back(Sphere{s.center, s.radius + larger});
   return all;
 }
 
-struct Scan {
+struct MistakenScan {
   std::vector<sensor::SurfaceImage> images;
   std::vector<Pose> reported;
 
-  CalibrationCheck check(const std::vector<Ellipsoid>& on = bodies()) const {
+  CalibrationCheck check(const std::vector<Ellipsoid>& on = found_bodies()) const {
     std::vector<RegisteredView> views;
     for (std::size_t v = 0; v < images.size(); ++v) views.push_back({&images[v], reported[v]});
     return check_calibration(views, on);
@@ -37,13 +38,13 @@ struct Scan {
 /// @param mistake changes a point of the surface in the optical frame (m) into the one that is measured there
 /// @param reported changes a view's pose into the reported one
 /// @param farther every second view is from so much farther away (m)
-Scan scan(
+MistakenScan scan_with(
     const std::function<Eigen::Vector3d(const Eigen::Vector3d&)>& mistake,
     const std::function<Pose(const Pose&, std::size_t)>& reported = [](const Pose& p, std::size_t) { return p; },
     double noise = 0.0, std::size_t views = 8, double farther = 0.1) {
   std::mt19937 random(1);
   std::normal_distribution<double> normal;
-  Scan out;
+  MistakenScan out;
   for (std::size_t v = 0; v < views; ++v) {
     const double angle = deg(-60.0 + 120.0 * static_cast<double>(v) / static_cast<double>(views - 1));
     const Eigen::Vector3d z =
@@ -55,7 +56,7 @@ Scan scan(
     out.reported.push_back(reported(pose, v));
     sensor::SurfaceImage image;
     image.world_T_optical = out.reported.back();
-    for (const Sphere& s : kFruit)
+    for (const Sphere& s : kThreeBalls)
       for (int i = 0; i < 400; ++i) {
         const Eigen::Vector3d n = Eigen::Vector3d(normal(random), normal(random), normal(random)).normalized();
         if (n.dot(z) > -0.3) continue;
@@ -69,19 +70,19 @@ Scan scan(
   return out;
 }
 
-Eigen::Vector3d right(const Eigen::Vector3d& p) { return p; }
+Eigen::Vector3d no_mistake(const Eigen::Vector3d& p) { return p; }
 
 /// A pose as reported if the camera really sits elsewhere, in its own frame.
-std::function<Pose(const Pose&, std::size_t)> without(const Pose& hand_eye) {
+std::function<Pose(const Pose&, std::size_t)> without_hand_eye(const Pose& hand_eye) {
   return [hand_eye](const Pose& pose, std::size_t) { return pose * hand_eye.inverse(); };
 }
 
 }  // namespace
 
 TEST_CASE("views of a calibrated camera agree, with noise too") {
-  CHECK(scan(right).check().apart < 0.001);
-  const CalibrationCheck noisy = scan(
-                                     right, [](const Pose& p, std::size_t) { return p; }, 0.002)
+  CHECK(scan_with(no_mistake).check().apart < 0.001);
+  const CalibrationCheck noisy = scan_with(
+                                     no_mistake, [](const Pose& p, std::size_t) { return p; }, 0.002)
                                      .check();
   CHECK(noisy.apart > 0.0003);
   CHECK(noisy.apart < 0.0015);
@@ -89,40 +90,40 @@ TEST_CASE("views of a calibrated camera agree, with noise too") {
 }
 
 TEST_CASE("a wrong scale of the depths is told from a wrong focal length and from distances along the rays") {
-  const CalibrationCheck depth = scan([](const Eigen::Vector3d& p) { return Eigen::Vector3d(0.95 * p); }).check();
+  const CalibrationCheck depth = scan_with([](const Eigen::Vector3d& p) { return Eigen::Vector3d(0.95 * p); }).check();
   CHECK(depth.apart > 0.0015);
   CHECK(depth.mended < 0.3 * depth.apart);
   CHECK(depth.mistake == "all depths were multiplied by 1.05 (is the depth scale right?)");
 
   const CalibrationCheck focal =
-      scan([](const Eigen::Vector3d& p) { return Eigen::Vector3d(1.2 * p.x(), 1.2 * p.y(), p.z()); }).check();
+      scan_with([](const Eigen::Vector3d& p) { return Eigen::Vector3d(1.2 * p.x(), 1.2 * p.y(), p.z()); }).check();
   CHECK(focal.mistake == "the focal lengths were multiplied by 1.2 (are the intrinsics those of the depth images?)");
 
   const CalibrationCheck rays =
-      scan([](const Eigen::Vector3d& p) { return Eigen::Vector3d(p.norm() / p.z() * p); }).check();
+      scan_with([](const Eigen::Vector3d& p) { return Eigen::Vector3d(p.norm() / p.z() * p); }).check();
   CHECK((rays.apart < 0.0015 || rays.mistake == "the images held distances along the rays, not depths z"));
 }
 
 TEST_CASE("a hand-eye transform that is left out is found, with its size") {
   Pose ahead = Pose::Identity();
   ahead.translation() = Eigen::Vector3d(0.0, 0.0, 0.02);
-  CHECK(scan(right, without(ahead)).check(bodies(0.015)).mistake ==
+  CHECK(scan_with(no_mistake, without_hand_eye(ahead)).check(found_bodies(0.015)).mistake ==
         "the camera were 20 mm further ahead in its own frame (is the hand-eye transform right?)");
   Pose aside = Pose::Identity();
   aside.translation() = Eigen::Vector3d(-0.008, 0.0, 0.005);
-  CHECK(scan(right, without(aside)).check().mistake ==
+  CHECK(scan_with(no_mistake, without_hand_eye(aside)).check().mistake ==
         "the camera were 8 mm further left, 5 mm further ahead in its own frame (is the hand-eye transform right?)");
   Pose turned = Pose::Identity();
   turned.rotate(Eigen::AngleAxisd(deg(1.0), Eigen::Vector3d::UnitY()));
   turned.rotate(Eigen::AngleAxisd(deg(1.0), Eigen::Vector3d::UnitX()));
-  const CalibrationCheck check = scan(right, without(turned)).check();
+  const CalibrationCheck check = scan_with(no_mistake, without_hand_eye(turned)).check();
   CHECK_THAT(check.mistake, test::says("turned by 1.4 degrees about (0.7"));
   CHECK(check.mended < 0.3 * check.apart);
 }
 
 TEST_CASE("where two mistakes explain the views alike, both are told") {
   const auto smaller = [](const Eigen::Vector3d& p) { return Eigen::Vector3d(0.95 * p); };
-  const Scan one_distance = scan(
+  const MistakenScan one_distance = scan_with(
       smaller, [](const Pose& p, std::size_t) { return p; }, 0.0, 8, 0.0);
   CHECK(one_distance.check().mistake ==
         "all depths were multiplied by 1.05 (is the depth scale right?), or if the camera were 20 mm further ahead in "
@@ -132,7 +133,7 @@ TEST_CASE("where two mistakes explain the views alike, both are told") {
 TEST_CASE("poses that are wrong each in its own way have no common mistake") {
   std::mt19937 random(2);
   std::normal_distribution<double> normal(0.0, 0.008);
-  const CalibrationCheck check = scan(right, [&](const Pose& pose, std::size_t) {
+  const CalibrationCheck check = scan_with(no_mistake, [&](const Pose& pose, std::size_t) {
                                    Pose off = pose;
                                    off.translation() += Eigen::Vector3d(normal(random), normal(random), normal(random));
                                    return off;
@@ -143,20 +144,20 @@ TEST_CASE("poses that are wrong each in its own way have no common mistake") {
 
 TEST_CASE("nothing is compared without fruit, or in a single view") {
   const auto smaller = [](const Eigen::Vector3d& p) { return Eigen::Vector3d(0.95 * p); };
-  const Scan wrong = scan(smaller);
+  const MistakenScan wrong = scan_with(smaller);
   CHECK(wrong.check({}).apart == 0.0);
   CHECK(wrong.check({Ellipsoid(Sphere{{1.0, 0.55, 0.2}, 0.03})}).apart == 0.0);
-  Scan single = wrong;
+  MistakenScan single = wrong;
   single.images.resize(1);
   single.reported.resize(1);
   CHECK(single.check().apart == 0.0);
-  CHECK(Scan{}.check().mistake.empty());
+  CHECK(MistakenScan{}.check().mistake.empty());
 }
 
 TEST_CASE("what registration moved is taken back, and of many views some are compared") {
   // Registered views agree; as reported they do not.
   const auto smaller = [](const Eigen::Vector3d& p) { return Eigen::Vector3d(0.97 * p); };
-  Scan many = scan(
+  MistakenScan many = scan_with(
       smaller, [](const Pose& p, std::size_t) { return p; }, 0.0, 30);
   const CalibrationCheck before = many.check();
   CHECK(before.mistake == "all depths were multiplied by 1.03 (is the depth scale right?)");

@@ -99,7 +99,11 @@ def _replace(owner: Any, name: str, prefix: str = "") -> None:
     if (name.startswith("_") and name != "__init__") or not str(function.__doc__).startswith(name + "("):
         return
     static = isinstance(vars(owner)[name], staticmethod)
-    setattr(owner, name, staticmethod(_python(function, prefix + name)) if static else _python(function, prefix + name))
+    try:
+        replaced = _python(function, prefix + name)
+    except SyntaxError:  # a default value that another version of pybind11 writes in another way: keep the function
+        return
+    setattr(owner, name, staticmethod(replaced) if static else replaced)
 
 
 for _name, _value in list(vars(_agrisee).items()):
