@@ -124,6 +124,30 @@ TEST_CASE("fruit that are no ellipsoids, seen from a bit more than one side: cen
     }
 }
 
+TEST_CASE("a neck is found where most of the points outside the ellipsoid are together") {
+  const Cloud bare = seen(ball, 1.0, 0.0002, 1000);
+  const Ellipsoid body(Sphere{world_T_body().translation(), 0.03});
+  CHECK_FALSE(detail::neck_of(bare, range(0, bare.size()), body));
+  Cloud cloud = bare;
+  const Eigen::Vector3d up = Eigen::Vector3d(0.2, -0.3, 1.0).normalized();
+  const auto put_out = [&](const Eigen::Vector3d& towards, double least, double factor) {
+    int moved = 0;
+    for (Eigen::Vector3f& p : cloud.points) {
+      const Eigen::Vector3d d = p.cast<double>() - body.center;
+      if (d.normalized().dot(towards) < least) continue;
+      p = (body.center + factor * d).cast<float>();
+      ++moved;
+    }
+    return moved;
+  };
+  CHECK(put_out(up, 0.9, 1.15) > 30);
+  CHECK(put_out(-up, 0.95, 1.2) > 10);  // fewer on the other side, as beside a leaf
+  const auto neck = detail::neck_of(cloud, range(0, cloud.size()), body);
+  REQUIRE(neck);
+  CHECK(neck->dot(up) > std::cos(deg(5)));
+  CHECK_FALSE(detail::neck_of(cloud, {}, body));
+}
+
 TEST_CASE("the ellipsoid stays where it explains the points") {
   for (const Radius radius : {ball, tomato}) {
     const auto [volume, center] = truth(radius);

@@ -21,6 +21,31 @@ namespace agrisee::detail {
 /// Standard deviation of a point, relative to the radius, that evidence for or against the ellipsoid assumes at least.
 constexpr double kEvidenceNoise = 0.01;
 
+/// The direction in which most points of the fruit stand out from its ellipsoid, as at the neck of a pear; empty if few
+/// do.
+template <typename S>
+std::optional<Eigen::Vector3d> neck_of(const PointCloud<S>& cloud, const Indices& own, const Ellipsoid& body) {
+  constexpr double kOut = 0.04;         // of the radius
+  constexpr double kLeastShare = 0.02;  // of the points
+  constexpr double kTogether = 0.8;     // cosine of the angle between points of one neck
+  std::vector<Eigen::Vector3d> outside;
+  for (const Index i : own) {
+    const Eigen::Vector3d p = cloud.points[static_cast<std::size_t>(i)].template cast<double>();
+    if (body.distance(p) > kOut * body.mean_radius()) outside.push_back((p - body.center).normalized());
+  }
+  Eigen::Vector3d neck = Eigen::Vector3d::Zero();
+  std::size_t most = static_cast<std::size_t>(kLeastShare * static_cast<double>(own.size()));
+  for (const Eigen::Vector3d& a : outside) {
+    Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+    std::size_t count = 0;
+    for (const Eigen::Vector3d& b : outside)
+      if (a.dot(b) > kTogether) sum += b, ++count;
+    if (count > most) most = count, neck = sum;
+  }
+  if (neck.isZero()) return std::nullopt;
+  return neck.normalized();
+}
+
 /// First guesses of a fruit's surface: the ellipsoid with the given axis and with each of its own. The points at the
 /// stem may be those of a calyx that stands out, and the ellipsoid may have followed them; the second guess is nearly a
 /// sphere, and these points stay out of it until the sides have shaped the surface.
@@ -28,6 +53,7 @@ template <typename S>
 std::vector<SurfaceFit::Start> first_guesses(const PointCloud<S>& cloud, const Indices& own, const Ellipsoid& body,
                                              const Eigen::Vector3d& axis) {
   constexpr double kTop = 0.3, kNearlySphere = 0.02, kAlike = 0.5;
+  constexpr double kOther = 0.9;  // cosine of the least angle between axes that are both tried
   std::vector<SurfaceFit::Start> out{{body, axis}};
   Indices below;
   for (const Index i : own) {
@@ -40,9 +66,11 @@ std::vector<SurfaceFit::Start> first_guesses(const PointCloud<S>& cloud, const I
   const bool usable = sphere && std::abs(std::log(sphere->radius / body.mean_radius())) < kAlike;
   const auto fit = fit_ellipsoid(cloud, below, usable ? Ellipsoid(*sphere) : body, rounder);
   out.push_back({fit ? fit->body : body, axis, kTop});
+  if (const auto neck = neck_of(cloud, own, body); neck && std::abs(neck->dot(axis)) < kOther)
+    out.push_back({body, *neck});
   const Eigen::Matrix3d axes = semi_axes(body).second;
   for (int k = 0; k < 3; ++k)
-    if (std::abs(axes.col(k).dot(axis)) < 0.9) out.push_back({body, axes.col(k)});
+    if (std::abs(axes.col(k).dot(axis)) < kOther) out.push_back({body, axes.col(k)});
   return out;
 }
 
