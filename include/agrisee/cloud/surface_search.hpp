@@ -25,16 +25,19 @@ constexpr double kEvidenceNoise = 0.01;
 /// do.
 template <typename S>
 std::optional<Eigen::Vector3d> neck_of(const PointCloud<S>& cloud, const Indices& own, const Ellipsoid& body) {
-  constexpr double kOut = 0.04;         // of the radius
-  constexpr double kLeastShare = 0.02;  // of the points
-  constexpr double kTogether = 0.8;     // cosine of the angle between points of one neck
+  constexpr double kOut = 0.04;          // of the radius
+  constexpr double kLeastShare = 0.02;   // of the points
+  constexpr double kTogether = 0.8;      // cosine of the angle between points of one neck
+  constexpr std::size_t kPoints = 1000;  // that are looked at
   std::vector<Eigen::Vector3d> outside;
-  for (const Index i : own) {
-    const Eigen::Vector3d p = cloud.points[static_cast<std::size_t>(i)].template cast<double>();
+  const std::size_t used = std::min(own.size(), kPoints);
+  for (std::size_t k = 0; k < used; ++k) {
+    const auto i = static_cast<std::size_t>(own[k * own.size() / used]);
+    const Eigen::Vector3d p = cloud.points[i].template cast<double>();
     if (body.distance(p) > kOut * body.mean_radius()) outside.push_back((p - body.center).normalized());
   }
   Eigen::Vector3d neck = Eigen::Vector3d::Zero();
-  std::size_t most = static_cast<std::size_t>(kLeastShare * static_cast<double>(own.size()));
+  std::size_t most = static_cast<std::size_t>(kLeastShare * static_cast<double>(used));
   for (const Eigen::Vector3d& a : outside) {
     Eigen::Vector3d sum = Eigen::Vector3d::Zero();
     std::size_t count = 0;
@@ -48,7 +51,8 @@ std::optional<Eigen::Vector3d> neck_of(const PointCloud<S>& cloud, const Indices
 
 /// First guesses of a fruit's surface: the ellipsoid with the given axis and with each of its own. The points at the
 /// stem may be those of a calyx that stands out, and the ellipsoid may have followed them; the second guess is nearly a
-/// sphere, and these points stay out of it until the sides have shaped the surface.
+/// sphere, and these points stay out of it until the sides have shaped the surface. Where the ellipsoid follows the
+/// bulb of a pear, only the neck tells the axis.
 template <typename S>
 std::vector<SurfaceFit::Start> first_guesses(const PointCloud<S>& cloud, const Indices& own, const Ellipsoid& body,
                                              const Eigen::Vector3d& axis) {
