@@ -316,15 +316,7 @@ void Pipeline::doubt_calibration(ScanResult& out) const {
   std::vector<Ellipsoid> bodies;
   for (const Fruit& f : out.fruits)
     if (f.body) bodies.push_back(ellipsoid_of(*f.body));
-  const fuse::CalibrationCheck check = map_->check_calibration(bodies);
-  constexpr double kFar = 0.0025;  // m; noise of 20 mm a pixel makes 1.3 mm
-  if (check.mistake.empty() && check.apart < kFar) return;
-  const auto millimetres = [](double length) { return number_text(1e3 * length, 2) + " mm"; };
-  out.warnings.push_back("the views show the surface of the fruit " + millimetres(check.apart) +
-                         " apart, so places and sizes are wrong. " +
-                         (check.mistake.empty()
-                              ? "Are the poses those of the moments of the images? Did the plant move?"
-                              : "They would agree to " + millimetres(check.mended) + " if " + check.mistake));
+  if (auto doubt = doubt_of(map_->check_calibration(bodies))) out.warnings.push_back(std::move(*doubt));
 }
 
 /// Move the result to where all views together, by their reported poses, put it.

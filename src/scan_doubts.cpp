@@ -42,8 +42,7 @@ std::optional<std::string> doubt_of_joints(const std::vector<View>& views, const
   return "by the joints of " + std::to_string(far) + " of " + std::to_string(views.size()) +
          " views the sensor was up to " + metres(farthest) + " and " + number_text(most_turned / deg(1.0), 2) +
          " degrees away from the reported pose: are the joints those of the moment, in radians? Are the arm, its base "
-         "and the "
-         "hand-eye transform right?";
+         "and the hand-eye transform right?";
 }
 
 /// A sentence if a third or more of the views that have points show none in the scan volume, but not all.
@@ -123,6 +122,16 @@ void check_instances(const sensor::DepthFrame& frame, std::size_t view) {
   } catch (const InputError& e) {
     throw InputError("observe: the array `instances` of view " + std::to_string(view) + " " + e.what());
   }
+}
+
+std::optional<std::string> doubt_of(const fuse::CalibrationCheck& check) {
+  constexpr double kFar = 0.0025;  // m; noise of 20 mm a pixel makes 1.3 mm
+  if (check.mistake.empty() && check.apart < kFar) return std::nullopt;
+  const auto millimetres = [](double length) { return number_text(1e3 * length, 2) + " mm"; };
+  return "the views show the surface of the fruit " + millimetres(check.apart) +
+         " apart, so places and sizes are wrong. " +
+         (check.mistake.empty() ? "Are the poses those of the moments of the images? Did the plant move?"
+                                : "They would agree to " + millimetres(check.mended) + " if " + check.mistake);
 }
 
 std::vector<std::string> doubts_of(const Workcell& workcell, double distance_min, double distance_max) {

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <agrisee/core/rigid_pose.hpp>
+#include <agrisee/fuse/calibration_check.hpp>
 #include <agrisee/fuse/pose_check.hpp>
 #include <agrisee/result.hpp>
 #include <agrisee/sensor/depth_frame.hpp>
@@ -45,6 +46,10 @@ class ScanDoubts {
 /// @param view its number
 /// @throws InputError for instances of a frame that cannot be masks (sensor::check_masks)
 void check_instances(const sensor::DepthFrame& frame, std::size_t view);
+
+/// What speaks against the calibration of the camera: that the views show the fruit in other places, with the change
+/// that would make them agree, if one does.
+std::optional<std::string> doubt_of(const fuse::CalibrationCheck& check);
 
 /// What speaks against a workcell: the intrinsics of its camera, or a range in which no view is taken.
 /// @param distance_min, distance_max from a view to its target (m)
