@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "arrays.hpp"
 
+#include <agrisee/core/unit_vector.hpp>
+
 #include <cmath>
 #include <limits>
 #include <string>
@@ -20,13 +22,7 @@ std::string shape_text(const py::array& a) { return py::str(a.attr("shape")).cas
 template <typename S>
 std::vector<Vector3<S>> unit_vectors(const ArrayPoints<S>& rows) {
   std::vector<Vector3<S>> out = copied(rows);
-  for (Vector3<S>& v : out) {
-    const S norm = v.norm();
-    if (!(std::isfinite(norm) && norm > S(1e-12)))
-      v.setZero();
-    else if (std::abs(norm - S(1)) > S(1e-5))  // a unit vector is not changed, not even in its last bit
-      v /= norm;
-  }
+  for (Vector3<S>& v : out) make_unit_or_zero(v);
   return out;
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "io/formats/cloud_columns.hpp"
 
+#include <agrisee/core/unit_vector.hpp>
 #include <agrisee/io/files.hpp>
 
 #include <algorithm>
@@ -30,15 +31,6 @@ Sink int_sink(std::vector<int>& values) { return {nullptr, values.empty() ? null
 /// A channel of a color, from a number in 0..255.
 std::uint8_t channel_of(float value) {
   return static_cast<std::uint8_t>(std::lround(std::clamp(std::isfinite(value) ? value : 0.0f, 0.0f, 255.0f)));
-}
-
-/// Scale a normal to unit length; set it to zero if it has no direction.
-void tidy(Eigen::Vector3f& normal) {
-  const float norm = normal.norm();
-  if (!(std::isfinite(norm) && norm > 1e-12f))
-    normal.setZero();
-  else if (std::abs(norm - 1.0f) > 1e-5f)  // a unit vector is not changed, not even in its last bit
-    normal /= norm;
 }
 
 }  // namespace
@@ -114,7 +106,7 @@ void CloudColumns::finish_colors() {
 
 CloudFile CloudColumns::finish(NonFinite non_finite, std::size_t width, std::size_t height) {
   Cloud& cloud = file_.cloud;
-  for (Eigen::Vector3f& normal : cloud.normals) tidy(normal);
+  for (Eigen::Vector3f& normal : cloud.normals) make_unit_or_zero(normal);
   finish_colors();
   file_.width = width;
   file_.height = height;

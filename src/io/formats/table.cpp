@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "io/formats/cloud_columns.hpp"
+#include "io/formats/csv.hpp"
 #include "io/formats/text.hpp"
 
 namespace agrisee::io {
@@ -19,9 +20,8 @@ using Cells = std::vector<std::string_view>;
 
 /// The separator of the cells in a line: a comma or semicolon where there is one, otherwise blanks.
 char separator_of(std::string_view line) {
-  for (const char c : {',', ';'})
-    if (line.find(c) != std::string_view::npos) return c;
-  return ' ';
+  const char separator = csv_separator(line);
+  return line.find(separator) != std::string_view::npos ? separator : ' ';
 }
 
 void split(std::string_view line, char separator, Cells& cells) {
