@@ -3,6 +3,7 @@
 #include <agrisee/plan/directions.hpp>
 #include <agrisee/plan/see_planner.hpp>
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -20,8 +21,29 @@ SeePlanner::SeePlanner(const Aabb& volume, const Eigen::Vector3d& robot, const s
 
 void SeePlanner::observe(const Progress& progress) {
   sensor_ = progress.views.back().world_T_optical.translation();
-  explorer_.observe(progress.added, progress.observed, sensor_);
-  if (progress.kept) explorer_.keep(*progress.kept);
+  const std::size_t before = explored_.size();
+  const Indices* kept = progress.kept;
+  // A map that starts again keeps none of its points; they must not stand in the way of the new ones.
+  if (kept && std::none_of(kept->begin(), kept->end(), [&](Index i) { return static_cast<std::size_t>(i) < before; })) {
+    explorer_.keep({});
+    std::fill(explored_.begin(), explored_.end(), -1);
+  }
+  auto next = static_cast<Index>(explorer_.cloud().size());
+  explored_.resize(before + progress.added.size(), -1);
+  for (const Index i : explorer_.observe(progress.added, progress.observed, sensor_))
+    explored_[before + static_cast<std::size_t>(i)] = next++;
+  if (kept) keep(*kept);
+}
+
+void SeePlanner::keep(const Indices& kept) {
+  Indices of_explorer, renumbered;
+  for (const Index i : kept) {
+    const Index old = explored_[static_cast<std::size_t>(i)];
+    renumbered.push_back(old < 0 ? -1 : static_cast<Index>(of_explorer.size()));
+    if (old >= 0) of_explorer.push_back(old);
+  }
+  explorer_.keep(of_explorer);
+  explored_ = std::move(renumbered);
 }
 
 std::optional<ReachableView> SeePlanner::next(const Progress& progress, const Joints& current, const Reach& reach) {

@@ -2,6 +2,8 @@
 // SEE++ behind the planners' interface takes the views that see::Explorer proposes, or the nearest that can be reached.
 #include <agrisee/plan/see_planner.hpp>
 
+#include <numeric>
+
 #include "plan/plan_cases.hpp"
 
 using namespace cases;
@@ -187,6 +189,45 @@ TEST_CASE("see planner: points that a filter removed are no longer there") {
   Twins unfiltered;
   unfiltered.observe(kSensor);
   CHECK((unfiltered.proposal().position - proposal.position).norm() > 1e-3);
+}
+
+TEST_CASE("see planner: a map that starts again leaves nothing of the views before") {
+  // The first view shows the same fruit 3 mm aside, nearer than points may be to one another. The map drops it.
+  Twins twins;
+  twins.observe(kSensor);
+  const std::size_t wrong = twins.scan.added.size();
+  for (Eigen::Vector3f& p : twins.scan.added) p.x() += 0.003f;
+  twins.scan.observed = twins.scan.added;
+  twins.scan.kept.emplace(twins.scan.added.size());
+  std::iota(twins.scan.kept->begin(), twins.scan.kept->end(), static_cast<Index>(wrong));
+  twins.scan.views.push_back(twins.scan.views.back());
+  twins.planner.observe(twins.scan.progress());
+
+  see::Explorer fresh(parameters());
+  fresh.observe(twins.scan.added, kSensor);
+  const auto expected = fresh.next_view(kSensor);
+  REQUIRE(expected);
+  check_taken(twins.next(fly), *expected);
+}
+
+TEST_CASE("see planner: points that the explorer dropped do not count among those that a filter keeps") {
+  Twins twins, plain;
+  for (Twins* t : {&twins, &plain}) t->observe(kSensor);
+  const std::size_t first = twins.scan.added.size();
+  // The same view twice: the map has all points twice, the explorer once. A filter keeps all but the last of the first.
+  twins.scan.kept.emplace();
+  for (std::size_t i = 0; i < 2 * first; ++i)
+    if (i + 1 != first) twins.scan.kept->push_back(static_cast<Index>(i));
+  twins.scan.views.push_back(twins.scan.views.back());
+  REQUIRE_NOTHROW(twins.planner.observe(twins.scan.progress()));
+
+  Indices kept(first - 1);
+  std::iota(kept.begin(), kept.end(), 0);
+  plain.explorer.observe(twins.scan.added, kSensor);
+  plain.explorer.keep(kept);
+  const auto expected = plain.explorer.next_view(kSensor);
+  REQUIRE(expected);
+  check_taken(twins.next(fly), *expected);
 }
 
 TEST_CASE("see planner: a proposal out of reach is turned in steps of 9 degrees, at most by 45, to the shortest move") {

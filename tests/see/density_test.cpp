@@ -2,6 +2,8 @@
 // Counts and classes equal brute force; views merged one by one equal a classification from scratch.
 #include <agrisee/see/density.hpp>
 
+#include <numeric>
+
 #include "catch.hpp"
 #include "see/shapes.hpp"
 
@@ -215,6 +217,18 @@ TEST_CASE("views merged one by one equal brute force, whatever the number of thr
       REQUIRE(map.added() == kept.size());
       REQUIRE(map.counts() == brute.now.counts);
       REQUIRE(map.classes() == brute.now.classes);
+      Indices all(map.size());
+      std::iota(all.begin(), all.end(), 0);
+      DensityMap<float> same = map;
+      same.keep(all);  // a filter that removes nothing changes nothing
+      REQUIRE(same.counts() == map.counts());
+      REQUIRE(same.classes() == map.classes());
+      REQUIRE(same.added() == map.added());
+      REQUIRE(same.near_added() == map.near_added());
+      if (kept.empty()) continue;
+      all.resize(before);
+      same.keep(all);  // a filter that removes all that is new
+      REQUIRE(same.added() == 0);
     }
     std::size_t of_any = 0;
     for (auto c : {PointClass::core, PointClass::frontier, PointClass::outlier}) {

@@ -30,6 +30,8 @@ class SeePlanner : public Planner {
   StopReason stop_reason() const override { return reason_; }
 
  private:
+  /// Drop all points but `kept` (indices in the map, with the points of the last view).
+  void keep(const Indices& kept);
   /// SEE++'s best proposal that can be reached; refuses those that cannot.
   std::optional<ReachableView> choose(const Joints& current, const Reach& reach);
   /// The reachable view that is nearest to a proposal and sees its frontier.
@@ -39,6 +41,7 @@ class SeePlanner : public Planner {
   Eigen::Vector3d robot_;
   ViewRequest band_;
   see::Explorer explorer_;
+  Indices explored_;  // per point of the map: its index in the explorer; -1 if that has dropped it
   Eigen::Vector3d sensor_ = Eigen::Vector3d::Zero();  // position of the sensor at the last view (m)
   std::optional<see::ViewProposal> last_;             // the proposal behind the view last returned
   int refused_first_ = 0;                             // views refused so far; the first view skips as many

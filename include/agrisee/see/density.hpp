@@ -86,8 +86,15 @@ class DensityMap {
     for (Index i : kept)
       check_input(i >= 0 && static_cast<std::size_t>(i) < size(), "DensityMap::keep: an index is out of range");
     const PointCloud<S> old = select(cloud_, kept);
+    const std::size_t first_added = size() - added_;
+    std::size_t added = 0;
     std::vector<PointClass> classes;
-    for (Index i : kept) classes.push_back(class_of(i));
+    std::vector<char> near_new;
+    for (Index i : kept) {
+      classes.push_back(class_of(i));
+      near_new.push_back(near_new_[static_cast<std::size_t>(i)]);
+      added += static_cast<std::size_t>(i) >= first_added;
+    }
     *this = DensityMap(*this, Empty{});
     for (std::size_t i = 0; i < old.size(); ++i) append(old.points[i], old.views[i]);
     count(threads);
@@ -102,7 +109,9 @@ class DensityMap {
       set_class(static_cast<Index>(i),
                 has_near(i, PointClass::core, size()) ? PointClass::frontier : PointClass::outlier);
     }
-    added_ = near_added_ = 0;
+    added_ = added;
+    near_new_ = std::move(near_new);
+    for (std::size_t i = 0; i < size(); ++i) near_added_ += near_new_[i] && !is_core(i);
   }
 
   /// Make a frontier an outlier. It becomes a frontier again when a later view adds a point within r, and it still is
@@ -114,9 +123,10 @@ class DensityMap {
     set_class(i, PointClass::outlier);
   }
 
-  /// Number of points that the last insert() added.
+  /// Number of points that the last insert() added, without those that keep() removed since.
   std::size_t added() const { return added_; }
-  /// Number of points that are not core and have a point within r that the last insert() added, themselves included.
+  /// Number of points that are not core and had a point within r that the last insert() added, themselves included;
+  /// without those that keep() removed since.
   std::size_t near_added() const { return near_added_; }
   /// Number of points.
   std::size_t size() const { return cloud_.size(); }
