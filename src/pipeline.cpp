@@ -311,12 +311,22 @@ void Pipeline::tell_body_errors(ScanResult& out) const {
   }
 }
 
-/// Warn if the views show the fruit in other places, with the change of the calibration that would make them agree.
+/// Warn if the views show the fruit in other places, with the change of the calibration or the motion of the plant that
+/// would make them agree. If the plant moved, so may any fruit have, and bodies between both places are too small.
 void Pipeline::doubt_calibration(ScanResult& out) const {
   std::vector<Ellipsoid> bodies;
   for (const Fruit& f : out.fruits)
     if (f.body) bodies.push_back(ellipsoid_of(*f.body));
-  if (auto doubt = doubt_of(map_->check_calibration(bodies))) out.warnings.push_back(std::move(*doubt));
+  const fuse::CalibrationCheck check = map_->check_calibration(bodies);
+  if (auto doubt = doubt_of(check)) out.warnings.push_back(std::move(*doubt));
+  for (Fruit& f : out.fruits) {
+    if (!f.body || check.motion.isZero()) continue;
+    constexpr double kSmaller = 0.75;  // of a body's relative volume, per motion in radii: its radius by a quarter
+    f.body->center_covariance += check.motion * check.motion.transpose();
+    f.body->volume_error =
+        std::hypot(f.body->volume_error, kSmaller * f.body->volume * check.motion.norm() / f.body->radii.mean());
+    f.body->mass_error = mass_of({f.body->volume, f.body->volume_error}, parameters_.mass).error;
+  }
 }
 
 /// Move the result to where all views together, by their reported poses, put it.

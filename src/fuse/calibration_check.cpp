@@ -7,21 +7,27 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <optional>
 
 namespace agrisee::fuse {
 namespace {
 
-/// A change of the calibration: what is to be added to it.
+/// A change that may make the views agree: of the calibration, or of where later views are.
 struct Change {
-  static constexpr Eigen::Index kUnknowns = 8;
+  static constexpr Eigen::Index kUnknowns = 11;
   using Vector = Eigen::Matrix<double, kUnknowns, 1>;
-  Vector unknowns = Vector::Zero();  ///< depth scale - 1, 1 / focal scale - 1, shift (m) and turn (rad) of the camera
-  bool along_rays = false;           ///< depths are distances along the rays
+  /// Depth scale - 1, 1 / focal scale - 1, shift (m) and turn (rad) of the camera, motion of the plant (m, world).
+  Vector unknowns = Vector::Zero();
+  bool along_rays = false;  ///< depths are distances along the rays
+  /// The plant moved before this sample.
+  std::size_t moved_before = std::numeric_limits<std::size_t>::max();
 
   double depth() const { return unknowns[0]; }
   double spread() const { return unknowns[1]; }
   Eigen::Vector3d shift() const { return unknowns.segment<3>(2); }
-  Eigen::Vector3d turn() const { return unknowns.tail<3>(); }
+  Eigen::Vector3d turn() const { return unknowns.segment<3>(5); }
+  Eigen::Vector3d motion() const { return unknowns.tail<3>(); }
   Eigen::Matrix3d rotation() const {
     return Eigen::AngleAxisd(turn().norm(), turn().stableNormalized()).toRotationMatrix();
   }
@@ -29,6 +35,7 @@ struct Change {
 
 /// What a view shows of the fruit, in its optical frame.
 struct Sample {
+  std::size_t view = 0;  ///< its number
   Pose world_T_optical = Pose::Identity();
   std::vector<Eigen::Vector3d> points, normals;
 };
@@ -38,12 +45,14 @@ struct Placed {
   Eigen::Matrix3d rotation;  ///< of the optical frame in the world
   std::vector<Eigen::Vector3d> points, normals;
   PointCloud<float> in_world;  ///< with normals
+  bool moved = false;          ///< whether the plant had moved by then
 };
 
 /// Two points of different views on the same surface, as a row of the least squares.
 struct Match {
-  double residual = 0.0;       ///< their distance along the normal (m)
-  Change::Vector derivatives;  ///< of the residual by the unknowns
+  std::size_t first = 0, second = 0;  ///< numbers of their samples
+  double residual = 0.0;              ///< their distance along the normal (m)
+  Change::Vector derivatives;         ///< of the residual by the unknowns
 };
 
 bool on_fruit(const std::vector<Ellipsoid>& bodies, const Eigen::Vector3d& p, const Eigen::Vector3d& normal) {
@@ -70,6 +79,7 @@ std::vector<Sample> samples_of(const std::vector<RegisteredView>& views, const s
         seen.push_back(i);
     if (seen.size() < kFew) continue;
     Sample sample;
+    sample.view = view.number;
     sample.world_T_optical = view.reported;
     const std::size_t used = std::min(kPoints, seen.size());
     for (std::size_t k = 0; k < used; ++k) {
@@ -85,8 +95,9 @@ std::vector<Sample> samples_of(const std::vector<RegisteredView>& views, const s
   return some;
 }
 
-Placed placed(const Sample& sample, const Change& change) {
+Placed placed(const Sample& sample, const Change& change, bool moved) {
   Placed out;
+  out.moved = moved;
   const Eigen::Matrix3d turned = change.rotation();
   out.rotation = sample.world_T_optical.linear();
   for (std::size_t i = 0; i < sample.points.size(); ++i) {
@@ -96,7 +107,9 @@ Placed placed(const Sample& sample, const Change& change) {
     p.head<2>() *= 1.0 + change.spread();
     out.points.push_back(turned * p + change.shift());
     out.normals.push_back(turned * sample.normals[i]);
-    out.in_world.points.push_back((sample.world_T_optical * out.points.back()).cast<float>());
+    Eigen::Vector3d in_world = sample.world_T_optical * out.points.back();
+    if (moved) in_world -= change.motion();
+    out.in_world.points.push_back(in_world.cast<float>());
     out.in_world.normals.push_back((out.rotation * out.normals.back()).cast<float>());
   }
   return out;
@@ -106,7 +119,8 @@ Placed placed(const Sample& sample, const Change& change) {
 Change::Vector derivatives(const Placed& view, std::size_t i, const Eigen::Vector3d& normal) {
   const Eigen::Vector3d& p = view.points[i];
   const Eigen::Vector3d n = view.rotation.transpose() * normal;
-  return (Change::Vector() << n.dot(p), n.head<2>().dot(p.head<2>()), n, p.cross(n)).finished();
+  const Eigen::Vector3d back = view.moved ? Eigen::Vector3d(-normal) : Eigen::Vector3d::Zero();
+  return (Change::Vector() << n.dot(p), n.head<2>().dot(p.head<2>()), n, p.cross(n), back).finished();
 }
 
 std::vector<Match> matches(const std::vector<Sample>& samples, const Change& change) {
@@ -114,17 +128,18 @@ std::vector<Match> matches(const std::vector<Sample>& samples, const Change& cha
   constexpr float kReach = 0.02f, kAlike = 0.8f;
   std::vector<Placed> views;
   std::vector<KdTree<float>> trees;
-  for (const Sample& sample : samples) {
+  for (std::size_t v = 0; v < samples.size(); ++v) {
     throw_if_cancelled();
-    views.push_back(placed(sample, change));
+    views.push_back(placed(samples[v], change, v >= change.moved_before));
     trees.emplace_back(views.back().in_world);
   }
   std::vector<Match> out;
   Neighbors<float> found;
-  for (const Placed& a : views)
+  for (std::size_t v = 0; v < views.size(); ++v) {
+    const Placed& a = views[v];
     for (std::size_t i = 0; i < a.points.size(); i += kEvery)
       for (std::size_t b = 0; b < views.size(); ++b) {
-        if (&views[b] == &a) continue;
+        if (b == v) continue;
         trees[b].knn(a.in_world.points[i], 1, found);
         if (found.empty() || found[0].distance > kReach) continue;
         const auto j = static_cast<std::size_t>(found[0].index);
@@ -132,9 +147,10 @@ std::vector<Match> matches(const std::vector<Sample>& samples, const Change& cha
         const Eigen::Vector3f& n = views[b].in_world.normals[j];
         if (m.dot(n) < kAlike) continue;
         const Eigen::Vector3d normal = (m + n).normalized().cast<double>();
-        out.push_back({normal.dot((a.in_world.points[i] - views[b].in_world.points[j]).cast<double>()),
+        out.push_back({v, b, normal.dot((a.in_world.points[i] - views[b].in_world.points[j]).cast<double>()),
                        derivatives(a, i, normal) - derivatives(views[b], j, normal)});
       }
+  }
   return out;
 }
 
@@ -142,6 +158,14 @@ double median_distance(const std::vector<Match>& matches) {
   std::vector<double> distances;
   for (const Match& m : matches) distances.push_back(std::abs(m.residual));
   return median(distances);
+}
+
+/// The matches of samples before a number with the others.
+std::vector<Match> across(const std::vector<Match>& matches, std::size_t number) {
+  std::vector<Match> out;
+  for (const Match& m : matches)
+    if ((m.first < number) != (m.second < number)) out.push_back(m);
+  return out;
 }
 
 /// The change of some unknowns that makes the views agree best.
@@ -182,7 +206,11 @@ std::string shift_in_words(const Eigen::Vector3d& shift) {
   return text;
 }
 
-std::string in_words(const Change& change) {
+std::string in_words(const Change& change, const std::vector<Sample>& samples) {
+  if (const double motion = change.motion().norm(); motion > 0.0)
+    return "the plant had moved by " + number_text(1e3 * motion, 2) + " mm between views " +
+           std::to_string(samples[change.moved_before - 1].view) + " and " +
+           std::to_string(samples[change.moved_before].view);
   if (change.along_rays) return "the images held distances along the rays, not depths z";
   if (change.depth() != 0.0)
     return "all depths were multiplied by " + number_text(1.0 + change.depth(), 3) + " (is the depth scale right?)";
@@ -198,6 +226,32 @@ std::string in_words(const Change& change) {
   return "the camera were " + text + " in its own frame (is the hand-eye transform right?)";
 }
 
+/// The motion of the plant between two views that explains why those before and after it disagree, if they do. It is
+/// sought where the views before and after disagree most.
+std::optional<Change> motion_of(const std::vector<Sample>& samples, const std::vector<Match>& reported) {
+  constexpr std::size_t kFew = 60;                   // matches that tell nothing
+  constexpr double kDoubt = 0.0015, kLeast = 0.003;  // m; the distance, and the motion
+  constexpr double kLeastShare = 5.0;                // of the motion, in distances that are left
+  constexpr double kBetter = 0.5;                    // share of the distance that may be left
+  Change change;
+  double apart = kDoubt;
+  for (std::size_t v = 1; v < samples.size(); ++v) {
+    const std::vector<Match> some = across(reported, v);
+    if (some.size() < kFew) continue;
+    const double distance = median_distance(some);
+    if (distance <= apart) continue;
+    apart = distance;
+    change.moved_before = v;
+  }
+  if (apart <= kDoubt) return std::nullopt;
+  improve(samples, 8, 3, change);
+  const std::vector<Match> after = across(matches(samples, change), change.moved_before);
+  const double left = median_distance(after);
+  if (after.size() < kFew || left > kBetter * apart || change.motion().norm() < std::max(kLeast, kLeastShare * left))
+    return std::nullopt;
+  return change;
+}
+
 }  // namespace
 
 CalibrationCheck check_calibration(const std::vector<RegisteredView>& views, const std::vector<Ellipsoid>& bodies) {
@@ -210,35 +264,41 @@ CalibrationCheck check_calibration(const std::vector<RegisteredView>& views, con
   CalibrationCheck out;
   if (reported.size() < kFew) return out;
   out.apart = out.mended = median_distance(reported);
-  if (out.apart < kDoubt) return out;
+  const std::optional<Change> motion = motion_of(samples, reported);
+  if (out.apart < kDoubt && !motion) return out;
 
   struct Tried {
     Change change;
     double apart;
   };
   std::vector<Tried> all;  // those of fewer unknowns first
+  const auto try_change = [&](const Change& change) {
+    const std::vector<Match> after = matches(samples, change);
+    if (2 * after.size() < reported.size()) return;  // it only tears the views apart
+    all.push_back({change, median_distance(after)});
+    out.mended = std::min(out.mended, all.back().apart);
+  };
   struct Unknowns {
     bool along_rays;
     Eigen::Index first, count;
   };
-  for (const Unknowns& u : {Unknowns{true, 0, 0}, {false, 0, 1}, {false, 1, 1}, {false, 2, 3}, {false, 2, 6}}) {
-    Tried tried{{}, out.apart};
-    tried.change.along_rays = u.along_rays;
-    improve(samples, u.first, u.count, tried.change);
-    const std::vector<Match> after = matches(samples, tried.change);
-    if (2 * after.size() < reported.size()) continue;  // it only tears the views apart
-    tried.apart = median_distance(after);
-    out.mended = std::min(out.mended, tried.apart);
-    all.push_back(tried);
-  }
-  if (out.mended > kBetter * out.apart) return out;
+  if (out.apart >= kDoubt)
+    for (const Unknowns& u : {Unknowns{true, 0, 0}, {false, 0, 1}, {false, 1, 1}, {false, 2, 3}, {false, 2, 6}}) {
+      Change change;
+      change.along_rays = u.along_rays;
+      improve(samples, u.first, u.count, change);
+      try_change(change);
+    }
+  if (motion) try_change(*motion);
+  if (out.mended > kBetter * out.apart && !motion) return out;
   bool shift_told = false;
   for (const Tried& t : all) {
     if (t.apart > kAsGood * out.mended + kSame) continue;
-    const bool moved = !t.change.shift().isZero();
-    if (moved && shift_told) continue;  // its turn explains nothing more
-    shift_told |= moved;
-    out.mistake += (out.mistake.empty() ? "" : ", or if ") + in_words(t.change);
+    const bool shifted = !t.change.shift().isZero();
+    if (shifted && shift_told) continue;  // its turn explains nothing more
+    shift_told |= shifted;
+    out.mistake += (out.mistake.empty() ? "" : ", or if ") + in_words(t.change, samples);
+    out.motion = t.change.motion();  // tried last
   }
   return out;
 }

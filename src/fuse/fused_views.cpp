@@ -111,7 +111,7 @@ CalibrationCheck FusedViews::check_calibration(const std::vector<Ellipsoid>& bod
 std::vector<RegisteredView> FusedViews::registered_views() const {
   std::vector<RegisteredView> views;
   for (std::size_t v = 0; v < images_.size(); ++v)
-    if (!views_[v].discarded) views.push_back({&images_[v], views_[v].reported});
+    if (!views_[v].discarded) views.push_back({&images_[v], views_[v].reported, v});
   return views;
 }
 

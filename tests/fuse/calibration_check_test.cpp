@@ -29,7 +29,7 @@ struct MistakenScan {
 
   CalibrationCheck check(const std::vector<Ellipsoid>& on = found_bodies()) const {
     std::vector<RegisteredView> views;
-    for (std::size_t v = 0; v < images.size(); ++v) views.push_back({&images[v], reported[v]});
+    for (std::size_t v = 0; v < images.size(); ++v) views.push_back({&images[v], reported[v], v});
     return check_calibration(views, on);
   }
 };
@@ -121,6 +121,28 @@ TEST_CASE("a hand-eye transform that is left out is found, with its size") {
   CHECK(check.mended < 0.3 * check.apart);
 }
 
+TEST_CASE("a plant that moves once is told from a camera that is not calibrated, with the views between") {
+  const Eigen::Vector3d motion = GENERATE(Eigen::Vector3d(0.006, 0.0, 0.0), Eigen::Vector3d(0.0, -0.004, 0.008));
+  const std::size_t before = GENERATE(1u, 3u, 7u);
+  CAPTURE(motion.transpose(), before);
+  const CalibrationCheck check =
+      scan_with(
+          no_mistake,
+          [&](const Pose& p, std::size_t v) { return v < before ? p : Pose(Eigen::Translation3d(motion) * p); }, 0.001)
+          .check();
+  CHECK(check.mistake == "the plant had moved by " + number_text(1e3 * check.motion.norm(), 2) + " mm between views " +
+                             std::to_string(before - 1) + " and " + std::to_string(before));
+  CHECK((check.motion - motion).norm() < 5e-4);
+}
+
+TEST_CASE("a plant that moves by less than the views may differ is not told") {
+  const CalibrationCheck check = scan_with(no_mistake, [](const Pose& p, std::size_t v) {
+                                   return v < 4 ? p : Pose(Eigen::Translation3d(0.002, 0.0, 0.0) * p);
+                                 }).check();
+  CHECK(check.mistake.empty());
+  CHECK(check.motion.isZero());
+}
+
 TEST_CASE("where two mistakes explain the views alike, both are told") {
   const auto smaller = [](const Eigen::Vector3d& p) { return Eigen::Vector3d(0.95 * p); };
   const MistakenScan one_distance = scan_with(
@@ -140,6 +162,7 @@ TEST_CASE("poses that are wrong each in its own way have no common mistake") {
                                  }).check();
   CHECK(check.apart > 0.0015);
   CHECK(check.mistake.empty());
+  CHECK(check.motion.isZero());
 }
 
 TEST_CASE("nothing is compared without fruit, or in a single view") {

@@ -195,6 +195,22 @@ TEST_CASE("a wrong scale of the depths, and a hand-eye transform that is left ou
   CHECK_THAT(aside, test::says("if the camera were 8 mm further left in its own frame"));
 }
 
+TEST_CASE("a plant that moved during the scan is told, and counts as an error of its fruit") {
+  const ScanResult still = look_around(8, {}, Eigen::Vector3d::Zero());
+  CHECK(still.warnings.empty());
+  const ScanResult moved = look_around(8, {4, 5, 6, 7}, {0.006, 0.0, 0.0});
+  REQUIRE(moved.warnings.size() == 1);
+  CHECK_THAT(moved.warnings[0], test::says("if the plant had moved by") && test::says("between views 3 and 4"));
+  REQUIRE(moved.fruits.size() == still.fruits.size());
+  for (std::size_t f = 0; f < moved.fruits.size(); ++f) {
+    const Body &now = *moved.fruits[f].body, &before = *still.fruits[f].body;
+    CHECK(std::sqrt(now.center_covariance(0, 0)) > 0.0055);
+    CHECK(std::sqrt(before.center_covariance(0, 0)) < 0.001);
+    CHECK(now.volume_error / now.volume > 0.1);
+    CHECK(now.mass_error / now.mass > 0.1);
+  }
+}
+
 TEST_CASE("views that look beside the scan volume are told") {
   int view = 0;
   const std::string told = warnings_after(9, [&](sensor::DepthFrame&, Pose& pose) {

@@ -27,6 +27,7 @@ namespace agrisee::fuse {
 struct RegisteredView {
   const sensor::SurfaceImage* image = nullptr;  ///< its surface points with normals, registered (m, world)
   Pose reported = Pose::Identity();             ///< world_T_optical as reported
+  std::size_t number = 0;                       ///< of the view in the scan, from 0
 };
 
 /// Errors of a fitted body due to the sensor, its poses and registration; all zero if they are not known.

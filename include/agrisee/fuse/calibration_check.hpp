@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// @file
-/// Tests after a scan whether the camera is calibrated: do the views show the surface of a fruit in the same place?
+/// Tests after a scan whether the camera is calibrated and the plant stood still: do the views show the surface of a
+/// fruit in the same place?
 ///
 /// If they do so only after the same change of every view, such as depths 5 % larger or a camera 30 mm further ahead on
 /// the flange, then this is the mistake. Points of different views that are near each other and face the same way are
 /// taken for the same surface, and the change is the least-squares solution for their distances along the normals, as
 /// in point-to-plane ICP (Chen & Medioni, Image and Vision Computing 1992), with matches found again after every step.
+/// If they do so only after all views from one on are shifted alike, the plant has moved, or the arm has slipped.
 /// Only fruit count: cameras that look into leaves measure them too deep, from every side. World frame, metres. Cost:
 /// some 10 ms; if the views disagree, some 0.2 s. Defined in `agrisee::agrisee`.
 #pragma once
@@ -24,10 +26,12 @@ struct CalibrationCheck {
   /// The change in words, if the views agree so much better that it must be right. If several are as good, all of them:
   /// views from one distance cannot tell a wrong scale from a camera further ahead.
   std::string mistake;
+  /// How far the plant moved between two views (m), if that is among the mistakes; else zero.
+  Eigen::Vector3d motion = Eigen::Vector3d::Zero();
 };
 
-/// Test whether a wrong scale of the depths, distances along the rays in place of depths z, wrong focal lengths or a
-/// wrong hand-eye transform explain that the views disagree.
+/// Test whether a wrong scale of the depths, distances along the rays in place of depths z, wrong focal lengths, a
+/// wrong hand-eye transform or a plant that moved once explain that the views disagree.
 /// @param views of a scan, with some of their points and normals
 /// @param bodies of the fruit; what is farther from each than half of its radius does not count
 /// @throws Cancelled
