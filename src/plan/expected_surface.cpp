@@ -117,7 +117,7 @@ ExpectedSurface::ExpectedSurface(const sensor::DepthCamera& sensor, const Aabb& 
 void ExpectedSurface::update(const Progress& progress, const SplitParameters& split_parameters,
                              const fuse::FreeSpaceParameters& free_space) {
   const std::vector<Promise> promised = promises(progress);
-  for (; images_read_ < progress.images.size(); ++images_read_) known_.add(progress.images[images_read_], free_space);
+  read_sight_lines(progress.images, free_space);
   const Labels labels = find_fruit(progress, split_parameters, free_space);
   collect_samples(progress, free_space);
   if (shows_anything(progress))
@@ -134,6 +134,21 @@ void ExpectedSurface::update(const Progress& progress, const SplitParameters& sp
     const double factor = 1.0 - (1.0 - parameters_.missed_factor) * measured_share(image, free_space);
     for_each_shown(image.world_T_optical, [&](std::size_t i) { areas_[i] *= static_cast<float>(factor); });
   }
+}
+
+void ExpectedSurface::read_sight_lines(const std::vector<sensor::SurfaceImage>& images,
+                                       const fuse::FreeSpaceParameters& free_space) {
+  std::vector<char> show;
+  for (const sensor::SurfaceImage& image : images) show.push_back(!image.depth.empty());
+  if (!std::equal(images_read_.begin(), images_read_.end(), show.begin(),
+                  show.begin() + static_cast<std::ptrdiff_t>(std::min(images_read_.size(), show.size())))) {
+    known_ = KnownSpace(volume_, parameters_.voxel);
+    images_read_.clear();
+    bodies_.clear();
+    tracked_views_ = segmented_at_ = 0;
+  }
+  for (std::size_t v = images_read_.size(); v < images.size(); ++v) known_.add(images[v], free_space);
+  images_read_ = std::move(show);
 }
 
 std::vector<ExpectedSurface::Promise> ExpectedSurface::promises(const Progress& progress) const {

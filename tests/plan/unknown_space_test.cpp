@@ -268,4 +268,28 @@ TEST_CASE("unknown space: parameters out of their range are refused") {
   refused([](auto& p) { p.missed_factor = 1.1; });
 }
 
+TEST_CASE("unknown voxels: when the map starts again, only the sight lines of its views count") {
+  const Aabb volume = box(Vector3d::Zero(), 4 * kVoxel);
+  Scan scan = scan_of({kFar});
+  const Pose front = sees_origin_at(0.0, 0.0, 0.5), above = look_along({0.0, 0.0, 0.5}, -Vector3d::UnitZ());
+  const auto start_again = [&] {  // the first view is discarded, the second one taken in
+    scan.images = {{}, flat_image(above, 0.5)};
+    scan.images[0].world_T_optical = front;
+  };
+  start_again();
+  const std::size_t at_once = model_of(scan, volume).areas().size();
+  REQUIRE(at_once > 0);
+  REQUIRE(at_once < 512);
+
+  scan.images = {flat_image(front, 0.48), {}};
+  ExpectedSurface model = model_of(scan, volume);
+  const std::size_t before = model.areas().size();
+  CHECK(before != at_once);
+  model.update(scan.progress(), {}, {});  // nothing new
+  CHECK(model.areas().size() == before);
+  start_again();
+  model.update(scan.progress(), {}, {});
+  CHECK(model.areas().size() == at_once);
+}
+
 }  // namespace unknown_space_test

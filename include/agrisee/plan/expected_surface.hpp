@@ -90,6 +90,9 @@ class ExpectedSurface {
   /// Compare what was expected of a view with the cloud and the space that are known since.
   /// @param measured share (0..1) of the surface before it that the view measured
   void weigh(const std::vector<Promise>& promised, const Cloud& cloud, double measured);
+  /// Mark what the sight lines of new views have reached. Where earlier ones are others than before, as the map has
+  /// started again, everything is forgotten.
+  void read_sight_lines(const std::vector<sensor::SurfaceImage>& images, const fuse::FreeSpaceParameters& free_space);
   /// Find the fruit in the merged cloud and set `bodies_`; returns one label per point, 0 = no fruit.
   Labels find_fruit(const Progress& progress, const SplitParameters& split_parameters,
                     const fuse::FreeSpaceParameters& free_space);
@@ -114,8 +117,8 @@ class ExpectedSurface {
   sensor::DepthCamera sensor_;
   Aabb volume_;
   ExpectedSurfaceParameters parameters_;
-  KnownSpace known_;             // what sight lines have reached
-  std::size_t images_read_ = 0;  // views whose sight lines are marked in `known_`
+  KnownSpace known_;               // what sight lines have reached
+  std::vector<char> images_read_;  // views whose sight lines are marked in `known_`: whether they have some
   std::vector<FoundBody> bodies_;
   double min_confidence_ = 0.0;    // a body is believed from this probability on
   std::size_t segmented_at_ = 0;   // size of the cloud when it was last segmented from scratch
