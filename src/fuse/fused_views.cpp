@@ -90,7 +90,7 @@ Eigen::Vector3d FusedViews::shift_to_reported(const Eigen::Vector3d& center) con
   Eigen::Vector3d shift = Eigen::Vector3d::Zero();
   std::size_t used = 0;
   for (std::size_t v = 0; v < images_.size(); ++v) {
-    if (views_[v].discarded) continue;
+    if (views_[v].discarded || views_[v].points_in == 0) continue;
     const Pose reported_T_registered = views_[v].reported * images_[v].world_T_optical.inverse(Eigen::Isometry);
     shift += reported_T_registered * center - center;
     ++used;
@@ -107,11 +107,11 @@ CalibrationCheck FusedViews::check_calibration(const std::vector<Ellipsoid>& bod
   return fuse::check_calibration(registered_views(), bodies);
 }
 
-/// The views of the map.
+/// The views of the map that show something.
 std::vector<RegisteredView> FusedViews::registered_views() const {
   std::vector<RegisteredView> views;
   for (std::size_t v = 0; v < images_.size(); ++v)
-    if (!views_[v].discarded) views.push_back({&images_[v], views_[v].reported, v});
+    if (!views_[v].discarded && views_[v].points_in > 0) views.push_back({&images_[v], views_[v].reported, v});
   return views;
 }
 

@@ -6,7 +6,9 @@
 #include "catch.hpp"
 #include "fuse/three_fruit.hpp"
 
-using namespace test;
+using namespace agrisee;
+using namespace agrisee::fuse;
+using namespace agrisee::test;
 
 TEST_CASE("the surfaces of all views become surfels") {
   FusedViews map(kVolume, fine(), 1);
@@ -233,6 +235,9 @@ TEST_CASE("the map shifts by the mean difference of reported and registered pose
   CHECK((map.shift_to_reported(center) - Vector3d(0.001, 0.0, 0.001)).norm() < 0.0001);
   see(map, 3, kNearer);  // discarded, it does not count
   map.skip(frame_at(4), place(4));
+  sensor::DepthFrame nothing = frame_at(4);  // nor does a view that shows nothing
+  std::fill(nothing.depth.begin(), nothing.depth.end(), 0.0f);
+  map.take(map.look(nothing, place(4)), place(4));
   CHECK((map.shift_to_reported(center) - Vector3d(0.001, 0.0, 0.001)).norm() < 0.0001);
 }
 

@@ -65,13 +65,13 @@ struct SurfaceImage {
 };
 
 /// Standard deviation of the angle of the normals (rad) in fused surfaces due to the sensor alone: the median noise of
-/// the images over 20 mm. The patches that normals are fitted to are 11 mm wide, and up to 20 mm at much noise. 0
-/// without images.
+/// the images with points over 20 mm. The patches that normals are fitted to are 11 mm wide, and up to 20 mm at much
+/// noise. 0 without such images.
 inline double normal_noise(const std::vector<SurfaceImage>& images) {
   constexpr double kPatch = 0.020;
   std::vector<double> noise;
   for (const SurfaceImage& image : images)
-    if (!image.depth.empty()) noise.push_back(image.noise);
+    if (!image.points.empty()) noise.push_back(image.noise);
   return median(noise) / kPatch;
 }
 
