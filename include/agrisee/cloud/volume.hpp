@@ -54,8 +54,8 @@ VolumeError relative_volume_error(const PointCloud<S>& cloud, const Indices& ind
   if (indices.empty()) return {};
   const std::size_t used = std::min(indices.size(), static_cast<std::size_t>(parameters.max_points));
   const double share = static_cast<double>(indices.size()) / static_cast<double>(used);
-  const double size = body.mean_radius(), cos_max = std::cos(parameters.max_angle);
-  const double gate = std::max(4.0 * parameters.noise, 0.05 * size);
+  const double size = body.mean_radius(), noise = parameters.noise_of(size), cos_max = std::cos(parameters.max_angle);
+  const double gate = std::max(4.0 * noise, 0.05 * size);
   Matrix9 information = Matrix9::Zero();
   double weights = 0.0;
   for (std::size_t k = 0; k < used; ++k) {
@@ -67,7 +67,7 @@ VolumeError relative_volume_error(const PointCloud<S>& cloud, const Indices& ind
     weights += row.weight;
   }
   if (!(weights > 0.0)) return {};
-  information *= std::min(share, parameters.independent / weights) / (parameters.noise * parameters.noise);
+  information *= std::min(share, parameters.independent / weights) / (noise * noise);
   const Matrix9 prior = detail::shape_information(body, size, parameters.shape_prior);
   information += prior;
   information.diagonal().array() += 1e-9 * information.diagonal().maxCoeff();
