@@ -82,9 +82,9 @@ std::string fruits_to_json(const std::vector<Fruit>& fruits);
 void write_fruits_csv(const std::filesystem::path& path, const std::vector<Fruit>& fruits);
 
 /// Write run.json: how the scan was made, why it stopped, and how many views and points it has (docs/formats.md).
-/// `views_discarded` counts the views that were discarded because their pose was wrong. `completeness` holds the
-/// planner's estimates of the shares of the fruit's surface that have been seen (`seen`) and that the arm can observe
-/// at all (`observable`). `cluster_origin_world` is the origin of the cluster frame {R}.
+/// `views_discarded` counts the views that were discarded for any reason, `discarded_views` has the reason of each.
+/// `completeness` holds the planner's estimates of the shares of the fruit's surface that have been seen (`seen`) and
+/// that the arm can observe at all (`observable`). `cluster_origin_world` is the origin of the cluster frame {R}.
 /// @throws InputError when `parameters_json` is not JSON  @throws FileError when it cannot be written
 void write_run(const std::filesystem::path& path, const ScanResult& result, const RunInfo& info);
 
