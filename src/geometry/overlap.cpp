@@ -40,7 +40,7 @@ double support(const OrientedCylinder& c, const Eigen::Vector3d& v) {
 }
 
 bool overlap(const Capsule& a, const Capsule& b) {
-  const double reach = a.radius + b.radius - kTouch;
+  const double reach = touching_distance(a.radius + b.radius);
   const double halves = 0.5 * ((a.b - a.a).norm() + (b.b - b.a).norm());
   if (0.5 * (a.a + a.b - b.a - b.b).norm() >= reach + halves) return false;
   return !(segment_distance(a.a, a.b, b.a, b.b) >= reach);

@@ -25,7 +25,7 @@ bool meets(const Capsule& capsule, const OrientedEllipsoid& ellipsoid) {
   const double apart = segment_distance(capsule.a, capsule.b, ellipsoid.center, ellipsoid.center);
   if (apart >= capsule.radius + ellipsoid.radii.maxCoeff()) return false;
   if (apart < capsule.radius + ellipsoid.radii.minCoeff() - kTouch) return true;
-  return distance(ellipsoid, capsule.a, capsule.b) < capsule.radius - kTouch;
+  return distance(ellipsoid, capsule.a, capsule.b) < touching_distance(capsule.radius);
 }
 
 }  // namespace agrisee::pick

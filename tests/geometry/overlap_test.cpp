@@ -128,6 +128,35 @@ TEST_CASE("support and nearest point belong together") {
   }
 }
 
+TEST_CASE("what is thinner than a touch overlaps what it passes through") {
+  const Box box{{0, 0, 0}, {2, 2, 2}};
+  const Cylinder tree{{0, 0, 0}, 1.0, 2.0};
+  const KeepOut space{"box", box};
+  const Vector3d x = Vector3d::UnitX(), slant = Vector3d(1, 2, 2).normalized();
+  for (const double thin : {0.0, 1e-9, 0.5 * kTouch, kTouch, 1.5 * kTouch, 2.0 * kTouch}) {
+    CAPTURE(thin);
+    const auto hits = [&](const Vector3d& a, const Vector3d& b, const auto& solid) {
+      return overlap(Capsule{a, b, thin}, solid);
+    };
+    CHECK(hits({-5, 0.5, 0.3}, {5, 0.5, 0.4}, box));
+    CHECK(hits({-5, 0.5, 0.3}, {5, 0.5, 0.4}, space));
+    CHECK(hits({-5, 0.5, 0.3}, {5, 0.5, 0.4}, tree));
+    CHECK(hits({0.2, 0.1, 0.3}, {0.2, 0.1, 0.3}, box));  // a point inside
+    CHECK_FALSE(hits({-5, 1.00001, 0.3}, {5, 1.00001, 0.4}, box));
+    CHECK_FALSE(hits({-5, 1.00001, 0.3}, {5, 1.00001, 0.4}, tree));
+    CHECK_FALSE(hits({1.00001, 0, 0}, {1.00001, 0, 0}, box));
+    CHECK(overlap(Capsule{{-1, 0, 0}, {1, 0, 0}, thin}, Capsule{{0, -1, 0}, {0, 1, 0}, thin}));
+    CHECK_FALSE(overlap(Capsule{{-1, 0, 0}, {1, 0, 0}, thin}, Capsule{{0, -1, 1e-5}, {0, 1, 1e-5}, thin}));
+    for (const double height : {thin, 4.0}) {  // a grain, and a wire
+      CHECK(overlap(OrientedCylinder{{0.5, 0.5, 0.3}, slant, thin, height}, box));
+      CHECK(overlap(OrientedCylinder{{0.5, 0.5, 0.3}, slant, thin, height}, tree));
+      CHECK_FALSE(overlap(OrientedCylinder{{0, 1.00001, 0}, x, thin, height}, box));
+      CHECK_FALSE(overlap(OrientedCylinder{{0, 1.00001, 0}, x, thin, height}, tree));
+    }
+    CHECK(overlap(OrientedCylinder{{0, 0, 1}, Vector3d::UnitZ(), 0.5, 4.0}, OrientedCylinder{{0, 0, 2}, x, 4.0, thin}));
+  }
+}
+
 TEST_CASE("what is not finite overlaps") {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   const Cylinder tree{{0, 0, 0}, 1.0, 2.0};

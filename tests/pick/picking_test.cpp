@@ -253,6 +253,26 @@ TEST_CASE("picking: fruit just before a wall are picked from the front, with the
   }
 }
 
+TEST_CASE("picking: a gripper without thickness does not pass through spaces and fruit") {
+  const Fruit enclosed = fruit(1, {0.0, 0.5, 0.2});
+  std::vector<KeepOut> walls;
+  for (int axis = 0; axis < 3; ++axis)
+    for (const double side : {-1.0, 1.0}) {
+      Box wall{enclosed.body->center, Vector3d::Constant(0.3)};
+      wall.center[axis] += 0.08 * side;
+      wall.size[axis] = 0.02;
+      walls.push_back({"wall", wall});
+    }
+  const OrientedEllipsoid flat{{0.0, 0.0, 0.0}, {0.04, 0.04, 0.01}, Eigen::Matrix3d::Identity()};
+  PickingParameters p;
+  for (const double radius : {0.0, 1e-7, kTouch, 0.005}) {
+    p.gripper_radius = radius;
+    CHECK(plan_picking({enclosed}, scene(walls), {}, p)[0].reason == PickingReason::blocked_by_keep_out);
+    CHECK(meets(Capsule{{0.03, 0.0, -0.1}, {0.03, 0.0, 0.1}, radius}, flat));
+    CHECK_FALSE(meets(Capsule{{0.03, 0.0, 0.02}, {0.03, 0.0, 0.1}, radius}, flat));
+  }
+}
+
 TEST_CASE("picking: what cannot be picked says why and comes last") {
   const Fruit near = fruit(5, {0.1, 0.5, 0.2}), far = fruit(1, {0.1, 2.0, 0.2});
   Fruit bare = fruit(2, {-0.1, 0.5, 0.2});

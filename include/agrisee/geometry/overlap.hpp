@@ -4,8 +4,8 @@
 /// flat-ended cylinders of any orientation for the exact one. Metres; all solids in one frame.
 ///
 /// Solids that only touch do not overlap. All tests allow a penetration of kTouch, so a sensor may stand exactly at the
-/// border of a forbidden space. If a coordinate is not finite, the tests report an overlap. Defined in
-/// `agrisee::agrisee`.
+/// border of a forbidden space. A body that is no thicker than that, such as a line, overlaps what it enters or lies
+/// on. If a coordinate is not finite, the tests report an overlap. Defined in `agrisee::agrisee`.
 #pragma once
 
 #include <agrisee/geometry/primitives.hpp>
@@ -14,6 +14,10 @@ namespace agrisee {
 
 /// Largest penetration (m) that still counts as touching.
 constexpr double kTouch = 1e-6;
+
+/// How far (m) a segment is from a solid if a capsule of this radius (m) about it only touches that; or from another
+/// segment, if `radius` is the sum for both. Positive even for a line, so that none passes through a solid.
+inline double touching_distance(double radius) { return std::max(radius - kTouch, 1e-9); }
 
 /// A flat-ended solid cylinder (m) of any orientation.
 struct OrientedCylinder {
@@ -46,7 +50,7 @@ double support(const OrientedCylinder& c, const Eigen::Vector3d& v);
 /// 200 ns.
 template <typename Solid>
 bool overlap(const Capsule& capsule, const Solid& solid) {
-  const double reach = capsule.radius - kTouch;
+  const double reach = touching_distance(capsule.radius);
   const double half = 0.5 * (capsule.b - capsule.a).norm();
   const double middle = distance(solid, Eigen::Vector3d(0.5 * (capsule.a + capsule.b)));
   if (middle >= reach + half) return false;
@@ -68,8 +72,8 @@ template <typename Solid>
 bool overlap(OrientedCylinder body, const Solid& solid) {
   constexpr int kRounds = 60;
   constexpr double kRelax = 1.8;
-  body.radius -= kTouch;
-  body.height -= 2.0 * kTouch;
+  body.radius = std::max(body.radius - kTouch, 0.0);
+  body.height = std::max(body.height - 2.0 * kTouch, 0.0);
   Eigen::Vector3d p = body.center;
   for (int i = 0; i < kRounds; ++i) {
     const Eigen::Vector3d in_solid = nearest_point(solid, p), in_body = nearest_point(body, in_solid);
