@@ -23,7 +23,6 @@ std::optional<Eigen::Vector3d> seen_from(const Cloud& cloud, std::size_t i, cons
   if (!origin.sensors.empty() && cloud.views.size() == cloud.size()) {
     const int view = cloud.views[i];
     if (view < 0) return std::nullopt;
-    check_input(static_cast<std::size_t>(view) < origin.sensors.size(), "a point's view has no sensor position");
     return origin.sensors[static_cast<std::size_t>(view)];
   }
   return origin.viewpoint;

@@ -22,9 +22,9 @@ double point_noise(const Cloud& cloud, const Parameters& parameters);
 
 /// Give every point of a cloud a normal: turned to where the point was seen from; where that is not known, so that
 /// neighbors agree.
+/// @param origin where the points were seen from, as check_origin allows
 /// @return the cloud's noise; zeros if half of the normals, or more, came with the cloud, or if `adaptive_normals` is
 ///   off
-/// @throws InputError if a point's view has no sensor position
 CloudNoise provide_normals(Cloud& cloud, const Parameters& parameters, const CloudOrigin& origin, int threads);
 
 }  // namespace agrisee

@@ -205,6 +205,12 @@ void check_origin(const Cloud& cloud, const CloudOrigin& origin) {
     throw InputError(
         "positions of sensors are given, but the cloud does not say from which view each point comes "
         "(Cloud::views)");
+  if (!origin.sensors.empty())
+    for (const int view : cloud.views)
+      if (view >= 0 && static_cast<std::size_t>(view) >= origin.sensors.size())
+        throw InputError("view " + std::to_string(view) +
+                         " of a point has no sensor position: CloudOrigin::sensors has " +
+                         std::to_string(origin.sensors.size()));
   if (!origin.viewpoint || !origin.sensors.empty() || cloud.views.empty()) return;
   int first = -1;  // of the views that are known
   for (const int view : cloud.views) {

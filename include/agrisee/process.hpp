@@ -39,16 +39,16 @@ struct CloudOrigin {
 
 /// Check that a cloud can have been seen from its origin. `process` calls it.
 /// @throws InputError if a sensor is more than 20 m from the cloud, so that its position must be in millimetres; if
-///   there are sensor positions, but the points have neither views nor normals; if `origin` has a viewpoint and no
-///   sensors, but `cloud.views` names more than one view, as correct normals would be turned; if a position is not
-///   finite, or a detected view has no frame
+///   there are sensor positions, but the points have neither views nor normals; if there are sensor positions, but none
+///   for a point's view; if `origin` has a viewpoint and no sensors, but `cloud.views` names more than one view, as
+///   correct normals would be turned; if a position is not finite, or a detected view has no frame
 void check_origin(const Cloud& cloud, const CloudOrigin& origin);
 
 /// The number of a cloud's own normals that face away from their sensors; `process` would turn them with
 /// `origin.check_normals`.
 /// @param cloud points (m), with normals or without
 /// @param origin where the points were seen from
-/// @throws InputError as check_origin, or when a point's view has no sensor position
+/// @throws InputError as check_origin
 std::size_t normals_facing_away(const Cloud& cloud, const CloudOrigin& origin);
 
 /// Check that a cloud can be in metres, and near the origin. One that is more than 10 m across, with points farther
@@ -79,8 +79,8 @@ void check_units(const Cloud& cloud, const Parameters& parameters = {});
 /// @param seen_through evidence of free space from the views, or empty
 /// @param threads number of threads; the result does not depend on it
 /// @throws ParameterError; InputError for arrays of different lengths (check_lengths), for a cloud that cannot be in
-///   metres (check_units), for one viewpoint of several views or a detection without frame (check_origin), if a point's
-///   view has no sensor position, or if the points contradict the viewpoint; Cancelled (core/cancellation.hpp)
+///   metres (check_units), for one viewpoint of several views, a point's view without sensor position or a detection
+///   without frame (check_origin), or if the points contradict the viewpoint; Cancelled (core/cancellation.hpp)
 ScanResult process(const Cloud& cloud, const Parameters& parameters = {}, const CloudOrigin& origin = {},
                    const SeenThrough& seen_through = {}, int threads = 1);
 

@@ -5,6 +5,8 @@
 #include <agrisee/neighbors/kdtree.hpp>
 #include <agrisee/process.hpp>
 
+#include <limits>
+
 #include "catch.hpp"
 #include "interop/same_result.hpp"
 #include "support/says.hpp"
@@ -92,6 +94,27 @@ TEST_CASE("positions of sensors in millimetres, or for points without views, are
   bare.normals.clear();
   bare.views.clear();
   CHECK_THROWS_WITH(process(bare, {}, from_eye(true)), test::says("from which view each point comes"));
+}
+
+TEST_CASE("a point's view without a sensor position is refused, with normals and without") {
+  Cloud cloud = seen();
+  cloud.views.back() = -1;  // not known
+  CloudOrigin origin = from_eye(true);
+  for (const bool check_normals : {false, true}) {
+    origin.check_normals = check_normals;
+    for (const int view : {1, 7, std::numeric_limits<int>::max()}) {
+      cloud.views[5] = view;
+      CHECK_THROWS_WITH(process(cloud, {}, origin),
+                        test::says("view " + std::to_string(view) + " of a point has no sensor position"));
+      Cloud bare = cloud;
+      bare.normals.clear();
+      CHECK_THROWS_WITH(process(bare, {}, origin), test::says("has no sensor position"));
+    }
+    CHECK_THROWS_AS(check_origin(cloud, origin), InputError);
+    CHECK_THROWS_AS(normals_facing_away(cloud, origin), InputError);
+    cloud.views[5] = 0;
+    check_found(process(cloud, {}, origin));
+  }
 }
 
 TEST_CASE("arrays of different lengths are refused") {
