@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <agrisee/arm/limits.hpp>
 #include <agrisee/plan/directions.hpp>
 #include <agrisee/study/greedy_planner.hpp>
 
@@ -11,9 +10,10 @@ namespace {
 
 /// A stored view as the arm takes it from its present joints: with other joints for the same pose if `reach` knows any
 /// that are nearer.
-plan::ReachableView from_here(plan::ReachableView view, const Joints& current, const plan::Reach& reach) {
+plan::ReachableView from_here(plan::ReachableView view, const Joints& current, const plan::Reach& reach,
+                              const arm::JointLimits& limits) {
   if (!view.joints) return view;  // without an arm no move is shorter
-  view.move_time = arm::move_time(current, *view.joints);
+  view.move_time = arm::move_time(current, *view.joints, limits);
   if (!reach) return view;
   const Pose& pose = view.world_T_optical;
   plan::ViewRequest request;
@@ -23,7 +23,7 @@ plan::ReachableView from_here(plan::ReachableView view, const Joints& current, c
   if (!(request.distance > 0.0)) return view;
   const auto again = reach(request, current);
   if (!again || !again->joints) return view;
-  const double time = arm::move_time(current, *again->joints);
+  const double time = arm::move_time(current, *again->joints, limits);
   // The stored pose is kept to the last bit, so that a scan takes exactly the views of greedy_order().
   const double difference = (again->world_T_optical.matrix() - pose.matrix()).cwiseAbs().maxCoeff();
   if (time < view.move_time && difference <= 1e-9) view.joints = again->joints, view.move_time = time;
@@ -33,12 +33,16 @@ plan::ReachableView from_here(plan::ReachableView view, const Joints& current, c
 }  // namespace
 
 GreedyPlanner::GreedyPlanner(std::shared_ptr<const Observability> observed, std::shared_ptr<const Samples> samples,
-                             const Aabb& volume, const Eigen::Vector3d& robot, double radius)
+                             const Aabb& volume, const Eigen::Vector3d& robot, const arm::JointLimits& limits,
+                             double radius)
     : observed_((check_input(observed && samples, "greedy planner: it needs observability and samples"),
                  std::move(observed))),
       cover_(*observed_, *samples, radius),
       target_(volume.center()),
-      forward_(plan::frontal_direction(volume, robot)) {}
+      forward_(plan::frontal_direction(volume, robot)),
+      limits_(limits) {
+  limits_.check();
+}
 
 void GreedyPlanner::observe(const plan::Progress&) {
   if (!asked_for_) return;
@@ -51,7 +55,7 @@ std::optional<plan::ReachableView> GreedyPlanner::next(const plan::Progress&, co
                                                        const plan::Reach& reach) {
   if (!asked_for_) asked_for_ = begun_ ? cover_.best() : first();
   if (!asked_for_) return std::nullopt;
-  plan::ReachableView view = from_here(observed_->views[*asked_for_], current, reach);
+  plan::ReachableView view = from_here(observed_->views[*asked_for_], current, reach, limits_);
   view.gain = static_cast<double>(cover_.gain(*asked_for_));
   return view;
 }
@@ -76,7 +80,8 @@ std::unique_ptr<GreedyPlanner> make_greedy_planner(const TracedScene& scene, con
                                                    int threads) {
   auto observed = std::make_shared<const Observability>(observable(scene, samples, cell, parameters, threads));
   return std::make_unique<GreedyPlanner>(std::move(observed), std::make_shared<const Samples>(samples),
-                                         cell.scan_volume, cell.world_T_base.translation(), parameters.cover_radius);
+                                         cell.scan_volume, cell.world_T_base.translation(), cell.arm.limits,
+                                         parameters.cover_radius);
 }
 
 }  // namespace agrisee::study

@@ -28,9 +28,9 @@ std::pair<int, int> count_fruit(const Truth& truth) {
 /// The planner `greedy`, which knows the truth; null for the planners that the pipeline makes.
 std::unique_ptr<plan::Planner> study_planner(const Subject& subject, const std::string& name) {
   if (name != "greedy") return nullptr;
-  return std::make_unique<GreedyPlanner>(subject.observability,
-                                         std::shared_ptr<const Samples>(subject.truth, &subject.truth->samples),
-                                         subject.workcell.scan_volume, subject.workcell.world_T_base.translation());
+  return std::make_unique<GreedyPlanner>(
+      subject.observability, std::shared_ptr<const Samples>(subject.truth, &subject.truth->samples),
+      subject.workcell.scan_volume, subject.workcell.world_T_base.translation(), subject.workcell.arm.limits);
 }
 
 /// Simulate the scan of a cell. The record's figures after each view are filled in.

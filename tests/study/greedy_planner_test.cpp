@@ -43,7 +43,7 @@ struct Line {
       for (const std::size_t i : seen[v]) observed->seen[v][0] |= std::uint64_t{1} << i, observed->observable[i] = 1;
     }
   }
-  GreedyPlanner planner() const { return {observed, samples, volume, {0.0, -1.0, 0.0}}; }
+  GreedyPlanner planner() const { return {observed, samples, volume, {0.0, -1.0, 0.0}, {}}; }
 };
 
 /// The index of the view that the planner wants next, which is its x in tenths of a metre; -1 for none.
@@ -127,7 +127,7 @@ TEST_CASE("the greedy planner does not choose a refused view again") {
   nothing.observe(kProgress);
   CHECK(next_of(nothing) == -1);
   CHECK(nothing.stop_reason() == StopReason::no_reachable_view);
-  CHECK_THROWS_AS(GreedyPlanner(nullptr, nullptr, Aabb{}, Eigen::Vector3d::Zero()), InputError);
+  CHECK_THROWS_AS(GreedyPlanner(nullptr, nullptr, Aabb{}, Eigen::Vector3d::Zero(), {}), InputError);
 }
 
 TEST_CASE("joints and pose of a greedy view belong together, with or without an arm") {
@@ -169,6 +169,47 @@ TEST_CASE("joints and pose of a greedy view belong together, with or without an 
   REQUIRE(view);
   CHECK_FALSE(view->joints);
   CHECK(view->world_T_optical.matrix() == stored->world_T_optical.matrix());
+}
+
+TEST_CASE("a greedy view takes as long as the arm of the workcell is fast") {
+  const Line line({{0, 1}});
+  plan::ReachableView& view = line.observed->views[0];
+  view.joints = Joints::Zero();
+  Joints from = Joints::Zero();
+  from[0] = 1.0;
+  const arm::JointLimits slow = arm::ur_model("ur10e").limits;
+  REQUIRE(arm::move_time(from, *view.joints, slow) > arm::move_time(from, *view.joints));
+  GreedyPlanner planner(line.observed, line.samples, line.volume, {0.0, -1.0, 0.0}, slow);
+  CHECK(planner.next(kProgress, from, {})->move_time == arm::move_time(from, *view.joints, slow));
+  // Of two postures for the pose the one that this arm reaches sooner: its base is slow, its wrist is not.
+  const plan::Reach other = [&](const plan::ViewRequest&, const Joints&) {
+    plan::ReachableView again = view;
+    again.joints = from;
+    (*again.joints)[3] = 1.2 * kPi * arm::move_time(from, *view.joints);
+    return again;
+  };
+  const auto sooner = planner.next(kProgress, from, other);
+  CHECK((*sooner->joints)[3] > 0.0);
+  CHECK(sooner->move_time == arm::move_time(from, *sooner->joints, slow));
+  arm::JointLimits none = slow;
+  none.velocity[2] = 0.0;
+  CHECK_THROWS_AS(GreedyPlanner(line.observed, line.samples, line.volume, from.head<3>(), none), ParameterError);
+
+  // The planner of a workcell knows that workcell's arm.
+  TrussParameters wanted;
+  wanted.total = 3;
+  wanted.hidden = 0;
+  Truss truss = make_truss(wanted);
+  Workcell& cell = truss.workcell;
+  cell.arm = arm::ur_model("ur10e");
+  cell.keep_out.clear();
+  LimitParameters limit;
+  limit.candidates = 100;
+  const auto greedy = make_greedy_planner(TracedScene(truss.scene), fruit_samples(truss.scene), cell, limit);
+  const auto first = greedy->next(kProgress, cell.start, {});
+  REQUIRE(first);
+  CHECK(first->move_time == arm::move_time(cell.start, *first->joints, cell.arm.limits));
+  CHECK(first->move_time > 1.1 * arm::move_time(cell.start, *first->joints));
 }
 
 TEST_CASE("a scan with the greedy planner takes the views of the greedy order, and all of them") {

@@ -4,6 +4,7 @@
 /// limit. It does not use the results of the scan. World frame, metres, radians.
 #pragma once
 
+#include <agrisee/arm/limits.hpp>
 #include <agrisee/plan/planner.hpp>
 #include <agrisee/study/greedy.hpp>
 
@@ -24,11 +25,13 @@ class GreedyPlanner : public plan::Planner {
   /// @param volume scan volume (m, world); the first view is the most frontal one of its center
   /// @param robot where the robot's base stands (m, world); the frontal direction is horizontal, from there to the
   ///   center
+  /// @param limits of the arm's joints; their speeds tell which moves are shorter
   /// @param radius a sample is covered if an observable sample within this distance (m) is seen
   /// @throws InputError if a pointer is null, or flags and samples differ in number (and there are views);
-  ///   ParameterError for a radius that is not positive
+  ///   ParameterError for a radius that is not positive, or limits that are none
   GreedyPlanner(std::shared_ptr<const Observability> observed, std::shared_ptr<const Samples> samples,
-                const Aabb& volume, const Eigen::Vector3d& robot, double radius = 0.005);
+                const Aabb& volume, const Eigen::Vector3d& robot, const arm::JointLimits& limits,
+                double radius = 0.005);
 
   void observe(const plan::Progress&) override;
 
@@ -50,6 +53,7 @@ class GreedyPlanner : public plan::Planner {
   std::shared_ptr<const Observability> observed_;
   GreedyCover cover_;
   Eigen::Vector3d target_, forward_;
+  arm::JointLimits limits_;
   std::optional<std::size_t> asked_for_;  // the view that `next` returned; neither taken nor refused yet
   bool begun_ = false;                    // a view has been taken
 };
