@@ -6,7 +6,7 @@ namespace agrisee::arm {
 void Mount::check() const {
   if (!is_rigid(world_T_base)) throw ParameterError("world_T_base must be a finite rigid pose");
   if (!is_rigid(tool0_T_optical)) throw ParameterError("tool0_T_optical must be a finite rigid pose");
-  model.limits.check();
+  model.check();
   check_parameter(sensor.radius > 0.0 && std::isfinite(sensor.radius), "sensor.housing_radius", "positive",
                   sensor.radius);
   check_parameter(sensor.depth > 0.0 && std::isfinite(sensor.depth), "sensor.housing_depth", "positive", sensor.depth);

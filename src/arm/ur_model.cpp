@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <cmath>
 #include <string>
 
 namespace agrisee::arm {
@@ -54,6 +55,17 @@ const std::array<Piece, 15>& ur3_pieces() {
       make_piece(Part::base, {0.0, 0.0, -0.001}, {0.0, 0.0, 0.0865}, 0.0655),
   };
   return pieces;
+}
+
+void UrModel::check() const {
+  const auto positive = [](double length) { return length > 0.0 && std::isfinite(length); };
+  check_parameter(std::isfinite(d1), "UrModel::d1", "finite", d1);
+  check_parameter(positive(-a2), "UrModel::a2", "negative and finite", a2);
+  check_parameter(positive(-a3), "UrModel::a3", "negative and finite", a3);
+  check_parameter(positive(d4), "UrModel::d4", "positive and finite", d4);
+  check_parameter(positive(d5), "UrModel::d5", "positive and finite", d5);
+  check_parameter(std::isfinite(d6), "UrModel::d6", "finite", d6);
+  limits.check();
 }
 
 std::array<Piece, 15> stretched_pieces(const UrModel& model, double shoulder_offset, double elbow_offset,

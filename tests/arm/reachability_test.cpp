@@ -7,6 +7,7 @@
 
 #include "arm/postures.hpp"
 #include "catch.hpp"
+#include "support/says.hpp"
 
 using namespace agrisee;
 using namespace agrisee::arm;
@@ -182,4 +183,34 @@ TEST_CASE("reach: nothing out there, and bad input by name") {
   refused([](auto& p) { p.distance = 0.1; });
   refused([nan](auto& p) { p.distance = nan; });
   refused([](auto& p) { p.distance_max = std::numeric_limits<double>::infinity(); });
+}
+
+TEST_CASE("reach: arms whose lengths the inverse kinematics cannot have are refused by name") {
+  const double nan = std::numeric_limits<double>::quiet_NaN(), inf = std::numeric_limits<double>::infinity();
+  for (const UrModel& model : ur_models()) model.check();
+  const auto refused = [&](double UrModel::*length, double value, const std::string& name) {
+    Mount mount;
+    mount.model.*length = value;
+    CHECK_THROWS_WITH(mount.check(), test::says("UrModel::" + name + " must be "));
+    CHECK_THROWS_AS(reach(mount, kStart, kTruss, sight(20, 0)), ParameterError);
+  };
+  for (const double value : {nan, inf, -inf}) {
+    refused(&UrModel::d1, value, "d1");
+    refused(&UrModel::a2, value, "a2");
+    refused(&UrModel::a3, value, "a3");
+    refused(&UrModel::d4, value, "d4");
+    refused(&UrModel::d5, value, "d5");
+    refused(&UrModel::d6, value, "d6");
+  }
+  for (const double value : {0.0, 0.24365}) {
+    refused(&UrModel::a2, value, "a2");
+    refused(&UrModel::a3, value, "a3");
+    refused(&UrModel::d4, -value, "d4");
+    refused(&UrModel::d5, -value, "d5");
+  }
+  Mount mount;
+  mount.model.d1 = mount.model.d6 = 0.0;
+  mount.check();
+  mount.model.limits.velocity[0] = 0.0;
+  CHECK_THROWS_WITH(mount.check(), test::says("limits.velocity"));
 }

@@ -40,11 +40,15 @@ struct UrModel {
   double d1 = 0.1519;                           ///< from the base to the shoulder, along the axis of joint 1 (m)
   double a2 = -0.24365;                         ///< upper arm (m), negative
   double a3 = -0.21325;                         ///< forearm (m), negative
-  double d4 = 0.11235;                          ///< wrist 1, along its joint axis (m)
-  double d5 = 0.08535;                          ///< wrist 2 (m)
+  double d4 = 0.11235;                          ///< wrist 1, along its joint axis (m), positive
+  double d5 = 0.08535;                          ///< wrist 2 (m), positive
   double d6 = 0.0819;                           ///< from wrist 3 to tool0 (m)
   std::array<Piece, 15> pieces = ur3_pieces();  ///< solids of links and base for collision tests, as ur3_pieces
   JointLimits limits;                           ///< of joint angles and speeds
+
+  /// The closed form of the inverse kinematics needs links of these signs; d1 and d6 may have either.
+  /// @throws ParameterError with the name of the length or limit that is out of range
+  void check() const;
 };
 
 /// The solids of a model whose links are longer and thicker than those of the UR3: its cylinders, `thickness` times as
