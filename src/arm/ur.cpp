@@ -66,8 +66,8 @@ bool same_solution(const Joints& a, const Joints& b) {
   return true;
 }
 
-// Joint 6 (rad) at a wrist singularity, where z5, the z axis of wrist 2, may have any direction in the arm's plane. It
-// is `desired`, or the nearest angle for which the links reach the wrist.
+// Joint 6 (rad) at a wrist singularity or close to one, where z5, the z axis of wrist 2, may have any direction in the
+// arm's plane. It is `desired`, or the nearest angle for which the links reach the wrist.
 // @param desired the angle to prefer (rad)
 // @param x6,y6 axes of tool0 in base_link
 // @param out horizontal direction of the arm's plane
@@ -89,17 +89,40 @@ double singular_q6(double desired, const Eigen::Vector3d& x6, const Eigen::Vecto
   return std::atan2(-z5_allowed.dot(x6), -z5_allowed.dot(y6));
 }
 
+constexpr double kSlack = 1e-10;  // of a cosine, for rounding errors at the border of the reach
+
+// The planar arm of joints 2 to 4 at an angle of joint 6.
+struct PlanarArm {
+  double q234;  // sum of joints 2 to 4 (rad)
+  double u, v;  // what the links a2 at angle q2 and a3 at angle q2 + q3 reach, along `out` and up from the shoulder (m)
+  double c3;    // cosine of joint 3; beyond 1 if they do not reach it
+  bool reaches() const { return std::abs(c3) <= 1.0 + kSlack; }
+};
+
+// @param q6 joint 6 (rad)
+// @param x6,y6 axes of tool0 in base_link
+// @param out horizontal direction of the arm's plane
+// @param wrist the wrist's center in base_link (m)
+PlanarArm planar_arm(double q6, const Eigen::Vector3d& x6, const Eigen::Vector3d& y6, const Eigen::Vector3d& out,
+                     const Eigen::Vector3d& wrist, const UrModel& model) {
+  const Eigen::Vector3d z5 = -std::sin(q6) * x6 - std::cos(q6) * y6;
+  const double u = (wrist - model.d5 * z5).dot(out), v = wrist.z() - model.d5 * z5.z() - model.d1;
+  return {std::atan2(z5.dot(out), -z5.z()), u, v,
+          (u * u + v * v - model.a2 * model.a2 - model.a3 * model.a3) / (2.0 * model.a2 * model.a3)};
+}
+
 }  // namespace
 
 Solutions solve(const Pose& base_link_T_tool0, double q6_desired, const UrModel& model) {
   Solutions found;
   if (!maybe_reachable(base_link_T_tool0, model)) return found;
-  constexpr double slack = 1e-10;  // of a cosine, for rounding errors at the border of the reach
+  constexpr double kNearSingular = 1e-2;  // |sin q5| below which joint 6 may be rounded by more than kSlack allows
+  constexpr double kTurned = 1e-11;       // how far (rad) the tool may be turned to make up for that
   const Eigen::Vector3d x6 = base_link_T_tool0.linear().col(0), y6 = base_link_T_tool0.linear().col(1),
                         z6 = base_link_T_tool0.linear().col(2);
   const Eigen::Vector3d wrist = base_link_T_tool0.translation() - model.d6 * z6;
   const double across = std::hypot(wrist.x(), wrist.y());
-  if (model.d4 > across * (1.0 + slack)) return found;
+  if (model.d4 > across * (1.0 + kSlack)) return found;
   const double bearing = std::atan2(wrist.y(), wrist.x()), half = std::acos(std::min(model.d4 / across, 1.0));
   for (const double side : {1.0, -1.0}) {
     const double q1 = wrap(bearing + side * half - 0.5 * kPi);
@@ -107,18 +130,22 @@ Solutions solve(const Pose& base_link_T_tool0, double q6_desired, const UrModel&
     const Eigen::Vector3d out(-c1, -s1, 0.0), n(-s1, c1, 0.0);
     const double c5 = z6.dot(n), s5 = (z6 - c5 * n).norm();
     const bool singular = s5 < kWristSingularity;
+    const auto nearest_q6 = [&](double desired) {
+      return singular_q6(desired, x6, y6, out, wrist.dot(out), wrist.z() - model.d1, model);
+    };
     for (const double sign5 : {1.0, -1.0}) {
       const double q5 = wrap(std::atan2(sign5 * s5, c5));
-      const double q6 =
-          wrap(singular ? singular_q6(q6_desired, x6, y6, out, wrist.dot(out), wrist.z() - model.d1, model)
-                        : std::atan2(-sign5 * y6.dot(n), sign5 * x6.dot(n)));
-      const Eigen::Vector3d z5 = -std::sin(q6) * x6 - std::cos(q6) * y6;
-      const double q234 = std::atan2(z5.dot(out), -z5.z());
-      // The planar arm: links a2 at angle q2 and a3 at angle q2 + q3 reach (u, v), along `out` and up from the
-      // shoulder.
-      const double u = (wrist - model.d5 * z5).dot(out), v = wrist.z() - model.d5 * z5.z() - model.d1;
-      const double c3 = (u * u + v * v - model.a2 * model.a2 - model.a3 * model.a3) / (2.0 * model.a2 * model.a3);
-      if (!(std::abs(c3) <= 1.0 + slack)) continue;
+      double q6 = wrap(singular ? nearest_q6(q6_desired) : std::atan2(-sign5 * y6.dot(n), sign5 * x6.dot(n)));
+      PlanarArm planar = planar_arm(q6, x6, y6, out, wrist, model);
+      if (!planar.reaches() && s5 < kNearSingular) {
+        // Rounding errors of joint 6 grow as 1 / s5; but when it turns, the tool turns only s5 times as far.
+        const double nearer = wrap(nearest_q6(q6));
+        if (!(s5 * std::abs(wrap(nearer - q6)) <= kTurned)) continue;
+        q6 = nearer;
+        planar = planar_arm(q6, x6, y6, out, wrist, model);
+      }
+      if (!planar.reaches()) continue;
+      const auto [q234, u, v, c3] = planar;
       const double bend = std::acos(std::clamp(c3, -1.0, 1.0)), towards = std::atan2(v, u);
       const double lag = std::atan2(model.a3 * std::sin(bend), model.a2 + model.a3 * std::cos(bend));
       for (const double sign3 : {1.0, -1.0}) {

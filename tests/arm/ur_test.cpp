@@ -145,6 +145,22 @@ TEST_CASE("UR3: solutions stay exact close to the wrist's singularity") {
   }
 }
 
+TEST_CASE("UR3: the stretched and folded elbow is found close to the wrist's singularity too") {
+  Rng rng(10);
+  for (int i = 0; i < 9000; ++i) {
+    const double away = std::pow(10.0, -2.0 - i % 9);  // down to kWristSingularity
+    Joints q = random_joints(rng, kPi);
+    q[4] = (i % 2 ? 1.0 : -1.0) * rng.uniform(1.0, 2.0) * away + (i % 4 > 1 ? kPi : 0.0);
+    q[2] = (i % 5 ? 0.0 : kPi) + (i % 3 ? 0.0 : std::pow(10.0, -rng.uniform(4.0, 9.0)));
+    const Pose pose = forward(q);
+    const auto solutions = inverse(pose, {}, rng.uniform(-kPi, kPi));
+    CAPTURE(away, i);
+    REQUIRE_FALSE(solutions.empty());
+    check_solutions(solutions, pose);
+    REQUIRE(nearest_difference(solutions, q) < std::max(1e-4, std::sqrt(2e-13 / away)));
+  }
+}
+
 TEST_CASE("UR3: singular poses of the elbow, stretched and folded") {
   Rng rng(7);
   for (int i = 0; i < 500; ++i) {

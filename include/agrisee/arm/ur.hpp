@@ -72,7 +72,8 @@ Solutions solve(const Pose& base_link_T_tool0, double q6_desired, const UrModel&
 /// counter-clockwise of the wrist's bearing comes first), then by joint 5 (positive first), then by the elbow (positive
 /// first). Solutions that coincide, at singularities of shoulder, elbow or wrist, are listed once. At a wrist
 /// singularity (|sin q5| < kWristSingularity) joints 2, 3, 4 and 6 can move together without moving the tool. Joint 6
-/// is then `q6_desired`, or the nearest angle that the links can reach.
+/// is then `q6_desired`, or the nearest angle that the links can reach. Near it rounding errors of the pose turn joint
+/// 6 by some 1e-15 / |sin q5|, and a stretched or folded elbow by the square root of that; the tool stays where it is.
 /// @param base_link_T_tool0 the desired pose of tool0
 /// @param limits of the joints
 /// @param q6_desired joint 6 at wrist singularities (rad), usually its present angle
