@@ -51,38 +51,55 @@ struct StraightApproach {
     return meets_any(q, mount, request.others) ? PickingReason::arm_meets_fruit : PickingReason::reachable;
   }
   /// Why the arm cannot follow the line from joint angles `q` at its start; `reachable` when it can.
-  PickingReason follow(Joints q, int roll) const {
+  /// @param limited set where the limits of joint 6 change what the arm does
+  PickingReason follow(Joints q, int roll, bool& limited) const {
     constexpr int kHalvings = 4;
     PickingReason reason = collision(q);
     for (int step = 1; step <= parameters.steps && reason == PickingReason::reachable; ++step) {
       throw_if_cancelled();
       reason = advance(q, static_cast<double>(step - 1) / parameters.steps,
-                       static_cast<double>(step) / parameters.steps, roll, kHalvings);
+                       static_cast<double>(step) / parameters.steps, roll, kHalvings, limited);
     }
     return reason;
   }
 
  private:
+  /// The solution nearest to joint angles `q` within limits, if it turns all joints by less than a step may.
+  std::optional<Joints> nearest_of(const arm::Solutions& solutions, const Joints& q,
+                                   const arm::JointLimits& limits) const {
+    std::optional<Joints> nearest;
+    double least = parameters.max_joint_step;
+    for (const Joints& solution : solutions) {
+      const auto near = arm::nearest(solution, q, limits);
+      if (!near) continue;
+      const double turn = (*near - q).cwiseAbs().maxCoeff();
+      if (turn < least) least = turn, nearest = near;
+    }
+    return nearest;
+  }
+  /// Whether the arm would do something else than go from joint angles `q` to `next` if joint 6 had no limits.
+  bool limited_by_joint_6(const arm::Solutions& solutions, const Joints& q, const std::optional<Joints>& next) const {
+    arm::JointLimits limits = mount.model.limits;
+    if (q[5] - kPi >= limits.min[5] && q[5] + kPi <= limits.max[5]) return false;  // no angle is farther away
+    limits.min[5] = q[5] - kTwoPi;
+    limits.max[5] = q[5] + kTwoPi;
+    return nearest_of(solutions, q, limits) != next;
+  }
   /// Follows the line from joint angles `q`, at the share `from` of it, to the share `to`, where it leaves `q`. Where a
   /// joint turns far, the way is halved: what turns less and less is a motion along the line, what does not is another
   /// posture with the same tool pose, to which the arm cannot get on the line.
-  PickingReason advance(Joints& q, double from, double to, int roll, int halvings) const {
+  PickingReason advance(Joints& q, double from, double to, int roll, int halvings, bool& limited) const {
     constexpr double kContinuous = 0.2;  // rad
     const Eigen::Vector3d position = request.start + to * (request.end - request.start);
-    std::optional<Joints> next;
-    double least = parameters.max_joint_step;
-    for (const Joints& solution : arm::solve(tool0_at(position, roll), q[5], mount.model)) {
-      const auto near = arm::nearest(solution, q, mount.model.limits);
-      if (!near) continue;
-      const double turn = (*near - q).cwiseAbs().maxCoeff();
-      if (turn < least) least = turn, next = near;
-    }
+    const arm::Solutions solutions = arm::solve(tool0_at(position, roll), q[5], mount.model);
+    const std::optional<Joints> next = nearest_of(solutions, q, mount.model.limits);
+    limited = limited || limited_by_joint_6(solutions, q, next);
     if (!next) return PickingReason::approach_interrupted;
-    if (least > kContinuous) {
+    if ((*next - q).cwiseAbs().maxCoeff() > kContinuous) {
       if (halvings == 0) return PickingReason::approach_interrupted;
       const double middle = 0.5 * (from + to);
-      const PickingReason reason = advance(q, from, middle, roll, halvings - 1);
-      return reason == PickingReason::reachable ? advance(q, middle, to, roll, halvings - 1) : reason;
+      const PickingReason reason = advance(q, from, middle, roll, halvings - 1, limited);
+      return reason == PickingReason::reachable ? advance(q, middle, to, roll, halvings - 1, limited) : reason;
     }
     q = *next;
     const PickingReason here = collision(q);
@@ -96,7 +113,7 @@ struct StraightApproach {
 struct StartPosture {
   Joints joints;      // rad
   double time, turn;  // of the move there: s, and rad in joint space
-  int roll, group;    // all postures of a group can follow the approach, or none of them can
+  int roll, group;    // postures of a group differ in joint 6 alone
 };
 
 /// Answers approach requests for a mounted arm.
@@ -121,11 +138,12 @@ class ArmApproach {
     PickingReason farthest = PickingReason::arm_collision;
     for (const StartPosture& p : postures) {
       if (rejected[static_cast<std::size_t>(p.group)]) continue;
-      const PickingReason reason = approach.follow(p.joints, p.roll);
+      bool limited = false;
+      const PickingReason reason = approach.follow(p.joints, p.roll, limited);
       if (reason == PickingReason::reachable)
         return {ReachableApproach{look_along(request.start, request.direction, approach.roll_angle(p.roll)), p.joints},
                 PickingReason::reachable};
-      rejected[static_cast<std::size_t>(p.group)] = 1;
+      if (!limited) rejected[static_cast<std::size_t>(p.group)] = 1;  // then the others fail as well
       farthest = std::max(farthest, reason);
     }
     return {std::nullopt, farthest};

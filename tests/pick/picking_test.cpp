@@ -512,6 +512,38 @@ TEST_CASE("picking: a tool on the axis takes the roll that turns the last joint 
   }
 }
 
+TEST_CASE("picking: a roll that the limits of joint 6 stop on its way leaves the others") {
+  // Off the axis by so little, all rolls of a tool are tried one by one.
+  const Pose on_axis = pose_from_xyz_rpy({0, 0, 0.15}, {0, 0, 0}),
+             beside = pose_from_xyz_rpy({2e-9, 0, 0.15}, {0, 0, 0});
+  const std::vector<KeepOut> none;
+  const std::vector<OrientedEllipsoid> alone;
+  Rng rng(3);
+  int reached = 0, interrupted = 0;
+  for (int i = 0; i < 2000; ++i) {
+    arm::Mount mount = ur3();
+    Joints q;
+    for (int j = 0; j < 6; ++j) q[j] = rng.uniform(-3.0, 3.0);
+    if (i % 2) {
+      mount.model.limits.min[5] = -rng.uniform(0.2, 3.0);
+      mount.model.limits.max[5] = rng.uniform(0.2, 3.0);
+      q[5] = 0.0;
+    } else {
+      q[5] = rng.uniform(4.0, kTwoPi);
+    }
+    const Vector3d end(rng.uniform(-0.4, 0.4), rng.uniform(0.1, 0.5), rng.uniform(0.0, 0.5)), d = rng.direction();
+    const ApproachRequest request{d, end - 0.12 * d, end, none, alone};
+    const ApproachAnswer a = approach_of(mount, on_axis)(request, q), b = approach_of(mount, beside)(request, q);
+    CAPTURE(i);
+    CHECK(a.reason == b.reason);
+    REQUIRE(a.reached.has_value() == b.reached.has_value());
+    reached += a.reached.has_value();
+    interrupted += a.reason == PickingReason::approach_interrupted;
+  }
+  CHECK(reached > 300);
+  CHECK(interrupted > 20);
+}
+
 TEST_CASE("picking: a tilted tool whose origin is on the axis is where the joints put it") {
   for (const double x : {-0.1, 0.0, 0.1, 0.2}) {
     arm::Mount mount = ur3();
