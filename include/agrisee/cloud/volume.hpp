@@ -39,7 +39,8 @@ inline Vector9 log_volume_gradient(const Ellipsoid& body, double size) {
 /// Relative standard error of a fitted body's volume. This is the standard error of the logarithm of 1 / det A, whose
 /// derivative by A is -A^-1, under the joint covariance of center and A. Points, derivatives, weights and prior are
 /// those of fit_ellipsoid: the prior gives the uncertainty of the shape where there are no points. There is no prior
-/// on the size, so too few points give a large error (at most 1).
+/// on the size, so too few points give a large error (at most 1). The noise is the larger of `noise` and
+/// `sensor_noise`, also for small bodies, which the fit lets follow their points more closely.
 /// @param cloud points (m) with normals
 /// @param indices the points to which the body was fitted
 /// @param body the fitted body
@@ -54,7 +55,8 @@ VolumeError relative_volume_error(const PointCloud<S>& cloud, const Indices& ind
   if (indices.empty()) return {};
   const std::size_t used = std::min(indices.size(), static_cast<std::size_t>(parameters.max_points));
   const double share = static_cast<double>(indices.size()) / static_cast<double>(used);
-  const double size = body.mean_radius(), noise = parameters.noise_of(size), cos_max = std::cos(parameters.max_angle);
+  const double size = body.mean_radius(), cos_max = std::cos(parameters.max_angle);
+  const double noise = std::max(parameters.noise, parameters.sensor_noise);
   const double gate = std::max(4.0 * noise, 0.05 * size);
   Matrix9 information = Matrix9::Zero();
   double weights = 0.0;
