@@ -13,10 +13,10 @@ namespace {
 
 constexpr std::size_t kRefined = 8;  // the best candidates, around which more directions are tried
 
-/// Joint-space distance from the joints `from` to a view, in units of pi rad; 0 when the view has no joints. At the
-/// UR3's speed limit of pi rad/s this is a time in seconds.
-double joint_distance(const ReachableView& view, const Joints& from) {
-  return view.joints ? (*view.joints - from).norm() / kPi : 0.0;
+/// How long the move from the joints `from` to a view counts (s): the joint-space distance at pi rad/s, the UR3's speed
+/// limit; when the view has no joints, the move time that the arm answered.
+double time_to_move(const ReachableView& view, const Joints& from) {
+  return view.joints ? (*view.joints - from).norm() / kPi : view.move_time;
 }
 
 }  // namespace
@@ -156,7 +156,7 @@ void GainPlanner::refine(const Joints& current, const Reach& reach) {
 
 void GainPlanner::rank_again(const Joints& current) {
   leave_out();
-  for (Scored& s : ranked_) s.score = s.view.gain / (parameters_.dwell + joint_distance(s.view, current));
+  for (Scored& s : ranked_) s.score = s.view.gain / (parameters_.dwell + time_to_move(s.view, current));
   sort_ranked();
 }
 
@@ -184,7 +184,7 @@ void GainPlanner::rate(Scored& scored, const ReachableView& view, const Joints& 
   scored.view = view;
   scored.view.gain = 0.0;
   for (std::uint32_t i : scored.shown) scored.view.gain += double(model_.areas()[i]);
-  scored.score = scored.view.gain / (parameters_.dwell + joint_distance(view, current));
+  scored.score = scored.view.gain / (parameters_.dwell + time_to_move(view, current));
 }
 
 bool GainPlanner::is_left_out(const ViewRequest& request) const {

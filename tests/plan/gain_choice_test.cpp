@@ -62,11 +62,31 @@ TEST_CASE("gain choice: gain counts for the time that dwelling and moving take")
   CHECK(game.next(0.0) == 0);
 }
 
-TEST_CASE("gain choice: the time is that of all joints together, and none where joints are not known") {
+TEST_CASE("gain choice: the time is that of all joints together, whatever the arm says, else what the arm says") {
   Game game(12, {Row::view(0, 6, 0.0), Row::view(0, 3), Row::view(0, 2, 0.0)});
   *game.script.views[0]->joints << 0.0, 3.0 * kPi, 0.0, 0.0, -4.0 * kPi, 0.0;  // 5 s: 1 voxel a second
   CHECK(game.next() == 1);
   CHECK(game.ranking() == Ranking{3, 2, 6});
+  game.planner.reset();
+  game.script.views[0]->move_time = 0.0;
+  game.script.views[1]->move_time = 1.0;  // 1.5 voxels a second
+  game.script.views[2]->move_time = 9.0;
+  CHECK(game.next() == 2);
+  CHECK(game.ranking() == Ranking{2, 3, 6});
+}
+
+TEST_CASE("gain choice: without joints the time of a move is what the arm answered last") {
+  Game game(12, {Row::view(0, 8), Row::view(0, 6), Row::view(0, 4)});
+  game.script.views[0]->move_time = 3.0;  // 2 voxels a second
+  game.script.views[1]->move_time = 1.0;  // 3
+  CHECK(game.next(7.0) == 2);             // 4; the joints do not matter
+  CHECK(game.ranking() == Ranking{4, 6, 8});
+  game.planner->observe(game.row.scan.progress());
+  game.script.views[0]->move_time = 0.0;
+  CHECK(game.next() == 0);
+  game.planner->refused();
+  game.script.views[2]->move_time = 0.5;  // it was taken before: left out
+  CHECK(game.next() == 1);
 }
 
 TEST_CASE("gain choice: the eight best are asked for again, with six directions around each") {
@@ -239,6 +259,7 @@ TEST_CASE("gain choice: the same as by comparing all views, in random games") {
           {static_cast<int>(rng.below(static_cast<std::uint64_t>(24 - count))), count, rng.uniform(-2, 2)});
       if (rng.below(8) == 0) choices.back().at.reset();
       views.push_back(Row::view(choices.back().first, count, choices.back().at));
+      views.back()->move_time = 0.25 * i;
     }
     Game game(24, views);
     game.row.parameters.min_gain = 1.5 * Row::kArea / 1e-6;
@@ -248,7 +269,7 @@ TEST_CASE("gain choice: the same as by comparing all views, in random games") {
     int largest = 0;
     for (std::size_t i = 0; i < choices.size(); ++i) {
       const Choice& c = choices[i];
-      const double move = c.at ? std::abs(*c.at - now) : 0.0;  // without joints a move costs nothing
+      const double move = c.at ? std::abs(*c.at - now) : views[i]->move_time;
       const double score = c.count / (1.0 + move);
       if (c.count >= 2 && score > most) most = score, best = i;
       largest = std::max(largest, c.count);

@@ -5,10 +5,12 @@
 ///
 /// Candidate views look at points spread over the extent of the fruit, from directions spread over the sphere and from
 /// various distances; those out of reach are dropped. A candidate's score is its ExpectedSurface::gain divided by the
-/// time for dwelling and moving. The reach of the best candidates is computed again from the arm's present joints, and
-/// directions close to theirs are tried as well. The scan ends when the best view promises less than `min_gain` of the
-/// fruit surface known so far. Promises are scaled by ExpectedSurface::reliability, because views among leaves show
-/// less than they promise. World frame, metres, seconds.
+/// time for dwelling and moving. Where joints are reported, a move counts the distance from the present joints (the
+/// root of the sum of squares) at pi rad/s, whatever `move_time` says; where they are not, it counts the `move_time`
+/// that the arm last answered for the view, which for most candidates is of an earlier call. The reach of the best
+/// candidates is computed again from the arm's present joints, and directions close to theirs are tried as well. The
+/// scan ends when the best view promises less than `min_gain` of the fruit surface known so far. Promises are scaled by
+/// ExpectedSurface::reliability, because views among leaves show less than they promise. World frame, metres, seconds.
 #pragma once
 
 #include <agrisee/plan/expected_surface.hpp>

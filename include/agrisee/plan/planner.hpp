@@ -31,7 +31,8 @@ struct ReachableView {
   Pose world_T_optical = Pose::Identity();           ///< pose of the sensor
   Eigen::Vector3d target = Eigen::Vector3d::Zero();  ///< the point looked at, on the optical axis (m)
   std::optional<Joints> joints;                      ///< joint angles (rad); empty when the arm does not report them
-  double move_time = 0.0;                            ///< duration of the move from the present joints (s)
+  double move_time = 0.0;                            ///< duration of the move from the present joints (s); the
+                                                     ///< default planner reads it only where joints are empty
   double gain = 0.0;                                 ///< what the planner expects to gain, in the planner's own unit
 };
 
