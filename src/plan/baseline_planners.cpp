@@ -40,12 +40,14 @@ FixedPlanner::FixedPlanner(const Aabb& volume, const Eigen::Vector3d& robot, int
   band_.target = volume.center();
 }
 
-void FixedPlanner::observe(const Progress&) {}
+void FixedPlanner::observe(const Progress&) { done(); }
+
+void FixedPlanner::refused() { done(); }
 
 std::optional<ReachableView> FixedPlanner::next(const Progress&, const Joints& current, const Reach& reach) {
   if (!planned_) plan(current, reach);
   if (directions_.empty()) return std::nullopt;
-  std::size_t best = directions_.size();
+  std::optional<std::size_t> best;
   std::optional<ReachableView> view;
   for (std::size_t i = 0; i < (first_ ? 1 : directions_.size()); ++i) {
     throw_if_cancelled();
@@ -56,17 +58,19 @@ std::optional<ReachableView> FixedPlanner::next(const Progress&, const Joints& c
       best = i;
     }
   }
-  first_ = false;
-  if (!view) {
-    complete_ = false;
-    return std::nullopt;
-  }
-  directions_.erase(directions_.begin() + static_cast<std::ptrdiff_t>(best));
+  offered_ = best;
+  if (!view) complete_ = false;
   return view;
 }
 
 StopReason FixedPlanner::stop_reason() const {
   return complete_ ? StopReason::max_views : StopReason::no_reachable_view;
+}
+
+void FixedPlanner::done() {
+  if (planned_) first_ = false;
+  if (offered_) directions_.erase(directions_.begin() + static_cast<std::ptrdiff_t>(*offered_));
+  offered_.reset();
 }
 
 void FixedPlanner::plan(const Joints& current, const Reach& reach) {
@@ -83,22 +87,27 @@ void FixedPlanner::plan(const Joints& current, const Reach& reach) {
 
 RandomPlanner::RandomPlanner(const Aabb& volume, const Eigen::Vector3d& robot, const ViewRequest& band,
                              std::uint64_t seed)
-    : volume_(volume), robot_(robot), band_(band), rng_(seed, 0x72616e64) {
+    : volume_(volume), robot_(robot), band_(band), rng_(seed, 0x72616e64), after_(rng_) {
   band_.target = volume.center();
 }
 
-void RandomPlanner::observe(const Progress&) {}
+void RandomPlanner::observe(const Progress&) { rng_ = after_; }
+
+void RandomPlanner::refused() {
+  rng_ = after_;
+  refused_ = true;
+}
 
 std::optional<ReachableView> RandomPlanner::next(const Progress& progress, const Joints& current, const Reach& reach) {
   if (progress.views.empty() && !refused_) return first_view(volume_, robot_, current, reach, band_);
-  Rng rng = rng_;  // a copy, so that a cancelled call draws nothing
+  Rng rng = rng_;  // a copy: asked again, or after a cancelled call, it draws the same
   std::optional<ReachableView> view;
   for (int tries = 0; tries < 2000 && !view; ++tries) {
     throw_if_cancelled();
     band_.direction = rng.direction();
     view = reach(band_, current);
   }
-  rng_ = rng;
+  after_ = rng;
   return view;
 }
 

@@ -54,7 +54,7 @@ std::optional<ReachableView> GainPlanner::next(const Progress& progress, const J
       completeness_ = completeness;
       throw;
     }
-  } else {  // a view was refused
+  } else if (!last_ || current != asked_from_) {  // a view was refused, or the arm has moved
     rank_again(current);
     if (ranked_.empty()) return stop(StopReason::no_reachable_view);
   }
@@ -62,6 +62,7 @@ std::optional<ReachableView> GainPlanner::next(const Progress& progress, const J
   // From the present joints the view may be reached with others.
   if (const auto view = reach(chosen.request, current)) rate(chosen, *view, current);
   last_ = chosen.request;
+  asked_from_ = current;
   return chosen.view;
 }
 

@@ -60,6 +60,16 @@ std::vector<Vector3d> well_spread(std::size_t count, const std::function<bool(co
 
 const Scan kNothing;
 
+/// What a planner offers when it is asked twice, after it is told that this view was taken.
+std::optional<ReachableView> take_next(Planner& planner, const Joints& current, const Reach& reach) {
+  const auto view = planner.next(kNothing.progress(), current, reach);
+  const auto again = planner.next(kNothing.progress(), current, reach);
+  REQUIRE(view.has_value() == again.has_value());
+  if (view) CHECK(again->world_T_optical.matrix() == view->world_T_optical.matrix());
+  planner.observe(kNothing.progress());
+  return view;
+}
+
 }  // namespace
 
 TEST_CASE("fixed planner: views that cost no move are taken in the order of the farthest-point sampling") {
@@ -74,6 +84,7 @@ TEST_CASE("fixed planner: views that cost no move are taken in the order of the 
     CHECK((view->world_T_optical * Vector3d(0, 0, 0.4) - kVolume.center()).norm() < 1e-12);
     // 400 directions are tried once; then the first view alone, later all that are left.
     CHECK(flight.asked.size() == (i == 0 ? 401 : 9 - i));
+    planner.observe(kNothing.progress());
     for (const ViewRequest& r : flight.asked) {
       CHECK(r.target == kVolume.center());
       CHECK(r.distance_min == 0.31);
@@ -93,10 +104,11 @@ TEST_CASE("fixed planner: the most frontal view comes first, however far it is, 
   auto view = planner.next(kNothing.progress(), current, pan);
   CHECK((direction_of(view) - left[0]).norm() < 1e-12);
   CHECK(view->move_time > 1.5);
+  planner.observe(kNothing.progress());
   left.erase(left.begin());
   while (!left.empty()) {
     current = *view->joints;
-    view = planner.next(kNothing.progress(), current, pan);
+    view = take_next(planner, current, pan);
     REQUIRE(view);
     const auto nearest = std::min_element(left.begin(), left.end(), [&](const Vector3d& a, const Vector3d& b) {
       return (a - current.head<3>()).norm() < (b - current.head<3>()).norm();
@@ -115,13 +127,13 @@ TEST_CASE("fixed planner: fewer reachable views than asked for are all taken, an
   SECTION("fewer") {
     FixedPlanner planner(kVolume, kRobot, 7, band());
     for (const Vector3d& d : expected)
-      CHECK((direction_of(planner.next(kNothing.progress(), Joints::Zero(), flight.reach())) - d).norm() < 1e-12);
+      CHECK((direction_of(take_next(planner, Joints::Zero(), flight.reach())) - d).norm() < 1e-12);
     CHECK_FALSE(planner.next(kNothing.progress(), Joints::Zero(), flight.reach()));
     CHECK(planner.stop_reason() == StopReason::no_reachable_view);
   }
   SECTION("as many") {
     FixedPlanner planner(kVolume, kRobot, 6, band());
-    for (std::size_t i = 0; i < 6; ++i) CHECK(planner.next(kNothing.progress(), Joints::Zero(), flight.reach()));
+    for (std::size_t i = 0; i < 6; ++i) CHECK(take_next(planner, Joints::Zero(), flight.reach()));
     CHECK_FALSE(planner.next(kNothing.progress(), Joints::Zero(), flight.reach()));
     CHECK(planner.stop_reason() == StopReason::max_views);
   }
@@ -139,6 +151,7 @@ TEST_CASE("fixed planner: a view that was refused is not offered again, one that
   planner.refused();
   const auto second = planner.next(kNothing.progress(), Joints::Zero(), pan);
   CHECK((direction_of(first) - direction_of(second)).norm() > 0.1);
+  planner.observe(kNothing.progress());
   Flight nowhere;
   nowhere.passes = [](const ViewRequest&) { return false; };
   CHECK_FALSE(planner.next(kNothing.progress(), Joints::Zero(), nowhere.reach()));
@@ -156,6 +169,8 @@ TEST_CASE("fixed planner: a cancelled call asks for no further view and changes 
   for (int i = 0; i < 4; ++i) {
     const auto expected = untouched.next(kNothing.progress(), Joints::Zero(), pan);
     CHECK(direction_of(planner.next(kNothing.progress(), Joints::Zero(), pan)) == direction_of(expected));
+    planner.observe(kNothing.progress());
+    untouched.observe(kNothing.progress());
     if (i == 3) break;
     for (const int n : {0, 1}) {
       if (n == 1 && i == 2) continue;  // only one is left to ask for: too late
@@ -166,6 +181,29 @@ TEST_CASE("fixed planner: a cancelled call asks for no further view and changes 
   }
   CHECK_FALSE(planner.next(kNothing.progress(), Joints::Zero(), pan));
   CHECK(planner.stop_reason() == StopReason::max_views);
+}
+
+TEST_CASE("fixed and random planner: until a view is taken or refused, the same one is offered") {
+  FixedPlanner fixed(kVolume, kRobot, 6, band());
+  RandomPlanner random(kVolume, kRobot, band(), 42);
+  for (Planner* planner : {static_cast<Planner*>(&fixed), static_cast<Planner*>(&random)}) {
+    planner->refused();  // nothing was offered yet
+    std::vector<Vector3d> offered;
+    for (int i = 0; i < 4; ++i) {
+      const Vector3d d = direction_of(planner->next(kNothing.progress(), Joints::Zero(), pan));
+      CHECK(direction_of(planner->next(kNothing.progress(), Joints::Zero(), pan)) == d);
+      CHECK(direction_of(planner->next(kNothing.progress(), Joints::Zero(), pan)) == d);
+      for (const Vector3d& before : offered) CHECK((d - before).norm() > 1e-3);
+      offered.push_back(d);
+      if (i % 2 == 0) planner->refused();
+      planner->observe(kNothing.progress());
+      planner->observe(kNothing.progress());  // of a view that nobody asked for: uses up nothing
+    }
+  }
+  // The two that are left, and then no more, however often it is asked.
+  for (int i = 0; i < 2; ++i) CHECK(take_next(fixed, Joints::Zero(), pan));
+  for (int i = 0; i < 2; ++i) CHECK_FALSE(fixed.next(kNothing.progress(), Joints::Zero(), pan));
+  CHECK(fixed.stop_reason() == StopReason::max_views);
 }
 
 TEST_CASE("random planner: the first view is frontal, the others are drawn by the seed") {
@@ -203,6 +241,8 @@ TEST_CASE("random planner: equal seeds give equal views, other seeds others") {
       const auto view = a.next(scan.progress(), Joints::Zero(), fly);
       CHECK(direction_of(view) == direction_of(b.next(scan.progress(), Joints::Zero(), fly)));
       heights.insert(direction_of(view).z());
+      a.observe(scan.progress());
+      b.observe(scan.progress());
     }
   }
   CHECK(heights.size() == 15);
@@ -225,8 +265,12 @@ TEST_CASE("random planner: it gives up after 2000 draws") {
   CHECK_FALSE(planner.next(scan.progress(), Joints::Zero(), flight.reach()));
   CHECK(flight.asked.size() == 2000);
   CHECK(planner.stop_reason() == StopReason::no_reachable_view);
-  // The draws are used up: the next call goes on where this one ended.
+  // Asked again, it draws the same. Once a view was taken, the draws are used up: the next call goes on behind them.
   Rng rng(7, 0x72616e64);
+  CHECK((direction_of(planner.next(scan.progress(), Joints::Zero(), fly)) - rng.direction()).norm() < 1e-12);
+  rng = Rng(7, 0x72616e64);
+  CHECK_FALSE(planner.next(scan.progress(), Joints::Zero(), flight.reach()));
+  planner.observe(scan.progress());
   for (int i = 0; i < 2000; ++i) rng.direction();
   CHECK((direction_of(planner.next(scan.progress(), Joints::Zero(), fly)) - rng.direction()).norm() < 1e-12);
 }

@@ -89,6 +89,29 @@ TEST_CASE("gain choice: without joints the time of a move is what the arm answer
   CHECK(game.next() == 1);
 }
 
+TEST_CASE("gain choice: a view that turns out to be far is offered again until it is refused") {
+  // The eight best are asked for again, and turn out to be so far that the ninth is chosen; then it is far as well.
+  std::vector<std::optional<ReachableView>> views(9, Row::view(0, 6));
+  views.push_back(Row::view(0, 4));
+  Game game(12, views);
+  game.planner = game.row.planner();
+  int asked = 0;
+  const Reach slower = [&](const ViewRequest& r, const Joints& q) {
+    auto view = game.script.reach()(r, q);
+    if (view && ++asked > 10) view->move_time = 5.0;
+    return view;
+  };
+  const auto ask = [&] { return game.planner->next(game.row.scan.progress(), Joints::Zero(), slower); };
+  const auto view = ask(), again = ask();
+  REQUIRE(view);
+  REQUIRE(again);
+  CHECK(view->gain == 6 * Row::kArea);
+  CHECK(view->move_time == 5.0);
+  CHECK(again->gain == view->gain);  // not the fourth part of the gain at once
+  game.planner->refused();
+  CHECK(ask()->gain == 4 * Row::kArea);
+}
+
 TEST_CASE("gain choice: the eight best are asked for again, with six directions around each") {
   std::vector<std::optional<ReachableView>> views;
   for (int i = 0; i < 10; ++i) views.push_back(Row::view(0, i + 1));

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// Two baselines to compare planners with. Neither uses what it has seen: one takes a fixed set of well spread
-/// reachable views, the other random reachable views.
+/// reachable views, the other random reachable views. Asked again before `observe` or `refused`, they answer alike.
 #pragma once
 
 #include <agrisee/core/random.hpp>
@@ -9,6 +9,8 @@
 #include <agrisee/plan/planner.hpp>
 
 #include <cstdint>
+#include <optional>
+#include <vector>
 
 namespace agrisee::plan {
 
@@ -25,11 +27,13 @@ class FixedPlanner : public Planner {
 
   void observe(const Progress& progress) override;
   std::optional<ReachableView> next(const Progress& progress, const Joints& current, const Reach& reach) override;
-  void refused() override {}
+  void refused() override;
   /// `max_views` when all `count` views were offered, else `no_reachable_view`.
   StopReason stop_reason() const override;
 
  private:
+  /// The view that was offered is taken or refused.
+  void done();
   /// Fill `directions_` with up to `count_` directions that can be reached from `current`.
   void plan(const Joints& current, const Reach& reach);
 
@@ -38,6 +42,7 @@ class FixedPlanner : public Planner {
   int count_;
   ViewRequest band_;
   std::vector<Eigen::Vector3d> directions_;  // that are still to be taken
+  std::optional<std::size_t> offered_;       // the one last returned, unless it was taken or refused
   bool planned_ = false, first_ = true;
   bool complete_ = false;  // there are `count` reachable views, and none has become unreachable
 };
@@ -53,14 +58,14 @@ class RandomPlanner : public Planner {
 
   void observe(const Progress& progress) override;
   std::optional<ReachableView> next(const Progress& progress, const Joints& current, const Reach& reach) override;
-  void refused() override { refused_ = true; }
+  void refused() override;
   StopReason stop_reason() const override;
 
  private:
   Aabb volume_;
   Eigen::Vector3d robot_;
   ViewRequest band_;
-  Rng rng_;
+  Rng rng_, after_;  // before and after the draws of the last call
   bool refused_ = false;
 };
 

@@ -93,8 +93,9 @@ class GainPlanner : public Planner {
   std::vector<Candidate> candidates_;
   Aabb extent_;                 // of the fruit when the candidates were made
   std::vector<Scored> ranked_;  // views worth taking after the last frame, best first; empty until they are rated
-  std::vector<ViewRequest> left_out_;  // the last one taken, and those refused since
-  std::optional<ViewRequest> last_;    // behind the view last returned, unless it was refused
+  std::vector<ViewRequest> left_out_;   // the last one taken, and those refused since
+  std::optional<ViewRequest> last_;     // behind the view last returned, unless it was refused
+  Joints asked_from_ = Joints::Zero();  // the joints for which it was returned
   std::optional<Completeness> completeness_;
   int refused_first_ = 0;  // views refused since the last frame; the front view skips as many
   StopReason reason_ = StopReason::not_stopped;

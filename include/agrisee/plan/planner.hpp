@@ -64,7 +64,8 @@ class Planner {
   virtual void observe(const Progress& progress) = 0;
 
   /// The next view for an arm whose joints are at `current` (rad); nothing when no view is worth taking, see
-  /// stop_reason(). When the call is cancelled, the next call answers as if the cancelled one had not been made.
+  /// stop_reason(). Called again before observe() or refused(), from the same joints, it answers the same. When the
+  /// call is cancelled, the next call answers as if the cancelled one had not been made.
   virtual std::optional<ReachableView> next(const Progress& progress, const Joints& current, const Reach& reach) = 0;
 
   /// Report that the view last returned could not be taken; the next call of `next` returns another.
