@@ -20,6 +20,7 @@ SeePlanner::SeePlanner(const Aabb& volume, const Eigen::Vector3d& robot, const s
     : volume_(volume), robot_(robot), band_(band), explorer_(parameters, threads) {}
 
 void SeePlanner::observe(const Progress& progress) {
+  take_offered();
   sensor_ = progress.views.back().world_T_optical.translation();
   const std::size_t before = explored_.size();
   const Indices* kept = progress.kept;
@@ -67,21 +68,29 @@ std::optional<ReachableView> SeePlanner::next(const Progress& progress, const Jo
 
 void SeePlanner::refused() {
   if (last_) explorer_.refuse(*last_);
+  last_.reset();
   ++refused_first_;
+}
+
+void SeePlanner::take_offered() {
+  if (!last_) return;
+  explorer_.move_view(*last_, offered_from_);
+  explorer_.take(*last_);
+  last_.reset();
 }
 
 std::optional<ReachableView> SeePlanner::choose(const Joints& current, const Reach& reach) {
   while (const auto p = explorer_.next_view(sensor_)) {
     throw_if_cancelled();
     if (auto view = project(*p, current, reach)) {
-      explorer_.move_view(*p, view->world_T_optical.translation());
-      explorer_.take(*p);
       last_ = *p;
+      offered_from_ = view->world_T_optical.translation();
       view->gain = p->visible;
       return view;
     }
     explorer_.refuse(*p);
   }
+  last_.reset();
   reason_ = explorer_.stop_reason();
   return std::nullopt;
 }

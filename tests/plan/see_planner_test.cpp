@@ -327,6 +327,35 @@ TEST_CASE("see planner: a refused view is not returned again") {
   }
 }
 
+TEST_CASE("see planner: until a view is taken or refused, the same one is offered") {
+  Twins twins;
+  twins.observe(kSensor);
+  const Vector3d across = Vector3d(0.3, 0.5, 0.2).normalized();
+  Flight flight;
+  flight.passes = [&](const ViewRequest& r) { return std::fmod(angle(r.direction, across), deg(24)) < deg(12); };
+  const Reach nearer = [&](const ViewRequest& r, const Joints& q) {
+    ViewRequest other = r;
+    other.distance = 0.35;
+    return flight.reach()(other, q);
+  };
+  std::size_t most = 0;
+  for (int i = 0; i < 6; ++i) {
+    flight.asked.clear();
+    const auto view = twins.next(nearer);
+    most = std::max(most, flight.asked.size());
+    REQUIRE(view);
+    for (int again = 0; again < 2; ++again) {
+      const auto same = twins.next(nearer);
+      REQUIRE(same);
+      CHECK(same->world_T_optical.matrix() == view->world_T_optical.matrix());
+      CHECK(same->gain == view->gain);
+    }
+    if (i % 2 == 0) twins.planner.refused();
+    if (i % 2 == 1) twins.observe(view->world_T_optical.translation());
+  }
+  CHECK(most > 1);  // a proposal was turned
+}
+
 TEST_CASE("see planner: a cancelled call asks for one proposal at most and leaves the others as they were") {
   Twins twins;
   twins.observe(kSensor);

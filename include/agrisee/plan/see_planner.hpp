@@ -32,6 +32,8 @@ class SeePlanner : public Planner {
  private:
   /// Drop all points but `kept` (indices in the map, with the points of the last view).
   void keep(const Indices& kept);
+  /// Tell SEE++ from where its proposal was viewed. Not earlier, as `next` would then not answer alike if asked again.
+  void take_offered();
   /// SEE++'s best proposal that can be reached; refuses those that cannot.
   std::optional<ReachableView> choose(const Joints& current, const Reach& reach);
   /// The reachable view that is nearest to a proposal and sees its frontier.
@@ -43,8 +45,9 @@ class SeePlanner : public Planner {
   see::Explorer explorer_;
   Indices explored_;  // per point of the map: its index in the explorer; -1 if that has dropped it
   Eigen::Vector3d sensor_ = Eigen::Vector3d::Zero();  // position of the sensor at the last view (m)
-  std::optional<see::ViewProposal> last_;             // the proposal behind the view last returned
-  int refused_first_ = 0;                             // views refused so far; the first view skips as many
+  std::optional<see::ViewProposal> last_;             // behind the view last returned, unless that was taken or refused
+  Eigen::Vector3d offered_from_ = Eigen::Vector3d::Zero();  // position of the sensor in that view (m)
+  int refused_first_ = 0;                                   // views refused so far; the first view skips as many
   StopReason reason_ = StopReason::not_stopped;
 };
 
