@@ -12,6 +12,7 @@
 #include <cmath>
 #include <map>
 #include <memory>
+#include <mutex>
 #include <utility>
 
 #include "fuse/mask_outline.hpp"
@@ -42,10 +43,16 @@ struct ViewMasks {
   MaskImage image;
   BodyParameters bodies;
   MaskParameters parameters;
-  mutable std::map<std::uint16_t, std::vector<Proposal>> proposals = {};  // of the masks that were asked for
 
-  /// What a mask of this view proposes.
+  ViewMasks(MaskImage read, const BodyParameters& expected, const MaskParameters& given)
+      : image(std::move(read)), bodies(expected), parameters(given) {}
+
+  /// What a mask of this view proposes. Threads may ask at the same time.
   const std::vector<Proposal>& proposals_of(std::uint16_t instance) const;
+
+ private:
+  mutable std::mutex mutex_;                                          // guards the map, not what is in it
+  mutable std::map<std::uint16_t, std::vector<Proposal>> proposals_;  // of the masks that were asked for
 };
 
 namespace {
@@ -303,7 +310,10 @@ std::vector<MaskBody> proposed_bodies(const Images& images, const std::vector<El
 }  // namespace
 
 const std::vector<Proposal>& ViewMasks::proposals_of(std::uint16_t instance) const {
-  if (const auto known = proposals.find(instance); known != proposals.end()) return known->second;
+  {
+    const std::lock_guard lock(mutex_);
+    if (const auto known = proposals_.find(instance); known != proposals_.end()) return known->second;
+  }
   std::vector<Proposal> own;  // remembered when it is complete: the work below may be cancelled
   for (const MaskGuess& guess : guess_bodies(image, instance, bodies, parameters)) {
     EllipsoidFit first;
@@ -311,13 +321,14 @@ const std::vector<Proposal>& ViewMasks::proposals_of(std::uint16_t instance) con
     const auto fit = fit_silhouettes({guess.outline}, first.body, std::nullopt);
     own.push_back({{{0, instance}}, {guess.outline}, fit ? *fit : first});
   }
-  return proposals.emplace(instance, std::move(own)).first->second;
+  const std::lock_guard lock(mutex_);  // if another thread was faster, what it found stays: it is the same
+  return proposals_.emplace(instance, std::move(own)).first->second;
 }
 
 std::shared_ptr<const ViewMasks> read_masks(const DetectedView& view, const BodyParameters& bodies,
                                             const MaskParameters& parameters) {
   check_input(is_rigid(view.world_T_optical), "mask_evidence: the pose of a camera is not a rigid transform");
-  return std::make_shared<const ViewMasks>(ViewMasks{mask_image(view), bodies, parameters});
+  return std::make_shared<const ViewMasks>(mask_image(view), bodies, parameters);
 }
 
 MaskEvidence mask_evidence(const std::vector<DetectedView>& views, const BodyParameters& bodies,

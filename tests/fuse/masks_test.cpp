@@ -2,6 +2,7 @@
 #include <agrisee/fuse/masks.hpp>
 #include <agrisee/fuse/paint.hpp>
 
+#include <thread>
 #include <tuple>
 
 #include "catch.hpp"
@@ -459,6 +460,28 @@ TEST_CASE("what masks say of a body does not depend on the scale") {
   };
   CHECK(odds(1.0f) > 1.0);
   for (const float scale : {1.0f / 1024, 1.0f / 32, 32.0f}) CHECK(odds(scale) == Approx(odds(1.0f)));
+}
+
+TEST_CASE("threads may use the masks of one view at the same time") {  // the thread sanitizer would tell otherwise
+  std::vector<Ball> balls;
+  for (int i = 0; i < 5; ++i) balls.push_back({{-0.2 + 0.1 * i, 0.02 * i, 1.0}, 0.03});
+  const fuse::DetectedView alone = view_of(balls);
+  fuse::DetectedView shared = alone;
+  shared.masks = fuse::read_masks(shared, apples());
+  const auto expected = fuse::mask_evidence({alone}, apples());
+  REQUIRE(expected.bodies.size() == balls.size());
+  std::vector<MaskEvidence> found(4);
+  std::vector<std::thread> threads;
+  for (MaskEvidence& f : found) threads.emplace_back([&] { f = fuse::mask_evidence({shared}, apples()); });
+  for (std::thread& t : threads) t.join();
+  for (const MaskEvidence& f : found) {
+    REQUIRE(f.bodies.size() == expected.bodies.size());
+    for (std::size_t i = 0; i < f.bodies.size(); ++i) {
+      CHECK(f.bodies[i].fit.body.center == expected.bodies[i].fit.body.center);
+      CHECK(f.bodies[i].fit.body.A == expected.bodies[i].fit.body.A);
+      CHECK(f.bodies[i].log_odds == expected.bodies[i].log_odds);
+    }
+  }
 }
 
 TEST_CASE("wrong parameters and poses that are not rigid are refused") {

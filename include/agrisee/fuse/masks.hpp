@@ -38,7 +38,8 @@ struct DetectedView {
 };
 
 /// Read the masks of a view. Proposals are computed on first use, which takes some milliseconds per mask, and cached. A
-/// scan therefore reads each view once and keeps the result in `DetectedView::masks`.
+/// scan therefore reads each view once and keeps the result in `DetectedView::masks`. Threads may use the result at the
+/// same time.
 /// @param view its frame and pose are used
 /// @param bodies expected radii
 /// @throws InputError as instances_of, and for a pose that is not rigid; ParameterError; Cancelled
