@@ -85,6 +85,10 @@ TEST_CASE("what is no table of points is refused with the line") {
   require_file_error(folder.file("a.csv", ""), "empty", load);
   require_file_error(folder.file("a.csv", "x,y,w\n1,2,3\n"), "neither a line that names", load);
   require_file_error(folder.file("a.xyz", "1 2\n"), "neither a line that names", load);
+  require_file_error(folder.file("a.csv", "x,y,z,x\n1,2,3,9\n"), ":1: two columns are called 'x'", load);
+  require_file_error(folder.file("a.csv", "# made by hand\nx;y;z;View;nx;view\n1;2;3;0;0;1\n"),
+                     ":2: two columns are called 'view'", load);
+  CHECK(load(folder.file("a.csv", "x,y,z,note,,note,\n1,2,3,a,,b,\n")).cloud.size() == 1);  // none of them is read
   require_file_error(folder.file("a.xyz", "1 2 3\n1 2\n"), ":2: expected 3 numbers, got 2", load);
   require_file_error(folder.file("a.csv", "x,y,z\n1,2,3\n1,two,3\n"), ":3: y: 'two' is not a number", load);
   require_file_error(folder.file("a.csv", "x,y,z,view\n1,2,3,0.5\n"), ":2: view: '0.5' is not a number that can", load);

@@ -113,7 +113,11 @@ CloudFile read_table_cloud(const std::filesystem::path& path, NonFinite non_fini
   for_each_row(lines, first_row, [&](std::string_view, std::size_t) { ++points; });
   CloudColumns cloud(path, points, head.names);
   std::vector<Sink> sinks;
-  for (const std::string& name : head.names) sinks.push_back(cloud.sink(name));
+  for (auto name = head.names.begin(); name != head.names.end(); ++name) {
+    sinks.push_back(cloud.sink(*name));
+    if (sinks.back() && std::find(head.names.begin(), name, *name) != name)
+      fail(path, lines.number(), "two columns are called " + excerpt(*name));
+  }
   Cells cells;
   std::size_t row = 0;
   for_each_row(lines, first_row, [&](std::string_view line, std::size_t number) {
