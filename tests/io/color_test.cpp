@@ -127,7 +127,7 @@ TEST_CASE("detections are read from CSV and JSON") {
       folder.file("a.json", R"([{"instance": 3, "class": "tomato", "score": 0.5}, {"box": [1,2,3,4]}])"));
   REQUIRE(json.size() == 2);
   CHECK_FALSE(json[0].box);
-  CHECK(json[1].instance == 2);
+  CHECK(json[1].instance == 1);
   CHECK(json[1].box->width == 3.0);
   const auto read = [](const std::filesystem::path& path) { return io::read_detections(path); };
   require_file_error(folder.file("b.csv", "instance,score\n1,1.5\n"), "score: must be from 0 to 1", read);
@@ -161,6 +161,25 @@ TEST_CASE("boxes that name no instance belong to none of the masks") {
   REQUIRE(frame.detections.size() == 2);
   CHECK(frame.detections[0].instance == 3);
   CHECK(frame.detections[1].instance == 4);
+}
+
+TEST_CASE("detections without a number get the lowest that none states") {
+  const TempFolder folder;
+  const auto numbers = [&](const std::string& name, const std::string& text, std::size_t first = 1) {
+    std::vector<int> out;
+    for (const sensor::Detection& d : io::read_detections(folder.file(name, text), first)) out.push_back(d.instance);
+    return out;
+  };
+  const std::string one = R"({"box": [1, 2, 3, 4]})", two = R"({"instance": 1, "box": [5, 6, 7, 8]})";
+  CHECK(numbers("a.json", "[" + one + "," + two + "]") == std::vector<int>{2, 1});
+  CHECK(numbers("a.json", "[" + two + "," + one + "]") == std::vector<int>{1, 2});
+  CHECK(numbers("a.json", "[" + one + "," + one + "]", 7) == std::vector<int>{7, 8});
+  const std::string table = "instance,u,v,width,height\n,1,1,4,4\n5,1,1,4,4\n,1,1,4,4\n2,1,1,4,4\n,1,1,4,4\n";
+  CHECK(numbers("a.csv", table) == std::vector<int>{1, 5, 3, 2, 4});
+  CHECK(numbers("a.csv", table, 4) == std::vector<int>{4, 5, 6, 2, 7});
+  CHECK(numbers("a.json", "[" + one + "]", 65535) == std::vector<int>{65535});
+  const auto full = [](const std::filesystem::path& path) { return io::read_detections(path, 65535); };
+  require_file_error(folder.file("b.json", "[" + one + "," + one + "]"), "no number up to 65535 is left", full);
 }
 
 TEST_CASE("a misspelled name of a detection is refused, other names pass") {

@@ -20,12 +20,12 @@ struct ChannelFiles {
 
 /// Read detections from a table (CSV with a header line) or a list of objects (JSON).
 ///
-/// Columns or keys: `instance` (or `label`, `id`; in a table of boxes it may be missing: rows are counted from 1),
+/// Columns or keys: `instance` (or `label`, `id`; boxes without one get, in their order, the lowest that none states),
 /// `class` (default: a fruit without a name), `score` (or `confidence`; default 1), and a box as `u v width height` in
 /// pixels (or `x y w h`, or `box_u box_v box_w box_h`; in JSON also `box: [u, v, width, height]`). Others are skipped,
 /// unless they look like a misspelled `instance`, `class`, `score` or `box` that is missing.
 /// The classes leaf, stem, branch, other and background are no fruit, all others are.
-/// @param first the instance of the first detection if the file names none; those of the others follow
+/// @param first the lowest instance of boxes that state none
 /// @throws FileError, which names the line or key, for a file that cannot be read, an instance outside 1..65535 or
 /// listed twice, a score outside 0..1, an empty box, or a misspelled name
 std::vector<sensor::Detection> read_detections(const std::filesystem::path& path, std::size_t first = 1);

@@ -57,19 +57,21 @@ class Collector {
   using Number = std::function<std::optional<double>(std::size_t)>;
   using Complain = std::function<void(const std::string&)>;
 
-  /// @param first the instance of the first detection that has none
-  explicit Collector(std::size_t first) : next_(first) {}
+  /// @param path the file, for error messages
+  /// @param first the lowest instance of detections that state none
+  Collector(fs::path path, std::size_t first) : path_(std::move(path)), first_(first) {}
 
   /// @param number(k)   the value with the names kColumnNames[k]
   /// @param complain(m) throws FileError with the message m
   void add(const Number& number, const std::string& name, const std::optional<sensor::PixelBox>& given_box,
            const Complain& complain) {
     sensor::Detection d;
-    const double instance = number(kInstance).value_or(static_cast<double>(next_ + found_.size()));
-    if (!(instance >= 1.0 && instance <= 65535.0) || instance != std::floor(instance))
-      complain("instance: must be a whole number from 1 to 65535, got " + format(instance));
-    d.instance = static_cast<int>(instance);
-    if (!known_.insert(d.instance).second) complain("instance: " + std::to_string(d.instance) + " is listed twice");
+    if (const auto instance = number(kInstance)) {
+      if (!(*instance >= 1.0 && *instance <= kLast) || *instance != std::floor(*instance))
+        complain("instance: must be a whole number from 1 to 65535, got " + format(*instance));
+      d.instance = static_cast<int>(*instance);
+      if (!stated_.insert(d.instance).second) complain("instance: " + std::to_string(d.instance) + " is listed twice");
+    }
     d.score = number(kScore).value_or(1.0);
     if (!(d.score >= 0.0 && d.score <= 1.0)) complain("score: must be from 0 to 1, got " + format(d.score));
     d.name = name;
@@ -81,9 +83,21 @@ class Collector {
     found_.push_back(d);
   }
 
-  std::vector<sensor::Detection> take() { return std::move(found_); }
+  /// What was added. Detections that state no instance get the lowest ones, from the first on, that no other states.
+  std::vector<sensor::Detection> take() {
+    std::size_t next = first_;
+    for (sensor::Detection& d : found_) {
+      if (d.instance != kNone) continue;
+      while (stated_.count(static_cast<int>(next)) > 0) ++next;
+      if (next > kLast) fail(path_, "instance: no number up to 65535 is left for a detection that states none");
+      d.instance = static_cast<int>(next++);
+    }
+    return std::move(found_);
+  }
 
  private:
+  static constexpr int kNone = 0, kLast = 65535;
+
   static std::optional<sensor::PixelBox> box_of(const Number& number, const Complain& complain) {
     const auto u = number(kBoxFirst), v = number(kBoxFirst + 1), width = number(kBoxFirst + 2),
                height = number(kBoxFirst + 3);
@@ -92,15 +106,16 @@ class Collector {
     return sensor::PixelBox{*u, *v, *width, *height};
   }
 
-  std::size_t next_;
+  fs::path path_;
+  std::size_t first_;
   std::vector<sensor::Detection> found_;
-  std::set<int> known_;
+  std::set<int> stated_;
 };
 
 std::vector<sensor::Detection> from_json(const fs::path& path, const Bytes& bytes, std::size_t first) {
   const Json json = load_json(path, bytes);
   const JsonValue list(path, json, "");
-  Collector out(first);
+  Collector out(path, first);
   for (std::size_t i = 0; i < list.list_size(); ++i) {
     const JsonValue value = list.at(i);
     if (!value.json().is_object()) value.fail("expected an object");
@@ -145,7 +160,7 @@ std::vector<sensor::Detection> from_csv(const fs::path& path, std::string_view b
       fail(path, lines.number(), "unknown column " + excerpt(trimmed(name)) + meant);
   if (!columns.count(kInstance) && !columns.count(kBoxFirst))
     fail(path, "holds no detections: its first line names neither 'instance' nor a box (u, v, width, height)");
-  Collector out(first);
+  Collector out(path, first);
   while (lines.next_filled(line)) {
     const auto complain = [&](const std::string& message) { fail(path, lines.number(), message); };
     if (!split_csv(line, cells, separator) || cells.size() != names.size())
