@@ -137,12 +137,45 @@ TEST_CASE("normals of about unit length vote, others do not") {
 TEST_CASE("centers are thinned out to a distance, the first ones stay") {
   std::vector<detail::VoteSum> sums;
   for (const double x : {0.0, 0.9, 1.0, 1.9, 2.0}) sums.push_back({0, 9.0 - x, {x, 0, 0}});
-  const auto thin = detail::thin_out(sums, 1.0);
+  const auto thin = detail::thin_out(sums, 1.0, 400);
   REQUIRE(thin.size() == 3);
   CHECK(thin[0].votes == 9.0);
   CHECK(thin[1].center.x() == 1.0);
   CHECK(thin[2].center.x() == 2.0);
   sums.clear();
   for (int i = 0; i < 500; ++i) sums.push_back({0, 1.0, {2.0 * i, 0, 0}});
-  CHECK(detail::thin_out(sums, 1.0).size() == 400);
+  CHECK(detail::thin_out(sums, 1.0, 400).size() == 400);
+  CHECK(detail::thin_out(sums, 1.0, 450).size() == 450);
+  CHECK(detail::thin_out(sums, 1.0, 1000).size() == 500);
+  CHECK(detail::thin_out(sums, 1.0, 0).empty());
+}
+
+TEST_CASE("centers that are thinned out are those that comparing all with all leaves") {
+  Rng rng(3);
+  std::vector<detail::VoteSum> sums;
+  for (int i = 0; i < 3000; ++i)  // a third of them on a lattice, whose steps are as long as centers stay apart
+    sums.push_back({0, 1.0, {rng.uniform(0.0, 3.0), rng.uniform(0.0, 3.0), rng.uniform(-2.0, 1.0)}});
+  for (std::size_t i = 0; i < sums.size(); i += 3) sums[i].center = 0.3 * (sums[i].center / 0.3).array().round();
+  std::vector<Eigen::Vector3d> expected;
+  for (const detail::VoteSum& s : sums)
+    if (std::none_of(expected.begin(), expected.end(), [&](const auto& e) { return (e - s.center).norm() < 0.3; }))
+      expected.push_back(s.center);
+  const auto thin = detail::thin_out(sums, 0.3, 1000);
+  REQUIRE(thin.size() == expected.size());
+  CHECK(thin.size() > 400);
+  for (std::size_t i = 0; i < thin.size(); ++i) CHECK(thin[i].center == expected[i]);
+}
+
+TEST_CASE("as many centers are voted for as are wanted, by default 400") {
+  Cloud cloud;  // a face of each of 529 balls
+  for (int i = 0; i < 529; ++i)
+    test::add_sphere(cloud, {{0.1 * (i % 23), 0.1 * (i / 23), 0.0}, 0.03}, 0.006,
+                     [](const auto& d) { return d.z() > 0.3; });
+  CHECK(vote_for_centers(cloud, 0.025, 0.035, 10).size() == 400);
+  CHECK(vote_for_centers(cloud, 0.025, 0.035, 10, {}, 450).size() == 450);
+  const auto all = vote_for_centers(cloud, 0.025, 0.035, 10, {}, 10000);
+  for (int i = 0; i < 529; ++i) {
+    const Eigen::Vector3d center(0.1 * (i % 23), 0.1 * (i / 23), 0.0);
+    CHECK(std::any_of(all.begin(), all.end(), [&](const auto& v) { return (v.center - center).norm() < 0.005; }));
+  }
 }

@@ -114,6 +114,7 @@ void propose_voted(const PointCloud<S>& cloud, const PointCloud<S>& voters, cons
   const BodyParameters& bodies = parameters.bodies;
   const double discs = area / (kPi * bodies.radius_max * bodies.radius_max);
   const auto most = static_cast<std::size_t>(std::max(kMost, kMostOnDisc * discs));
+  const std::size_t voted = std::max(kMostVotedCenters, most);
   const std::size_t known = candidates.size();
   const double range = bodies.radius_max / bodies.radius_min;
   const int parts = std::max(1, static_cast<int>(std::ceil(std::log(range) / std::log(kWidest) - 1e-9)));
@@ -122,7 +123,7 @@ void propose_voted(const PointCloud<S>& cloud, const PointCloud<S>& voters, cons
     const double high = bodies.radius_min * std::pow(range, (part + 1.0) / parts);
     const int least = stages.spacing > 0.0 ? least_points(low, stages.spacing, parameters) : stages.growing.min_size;
     const std::size_t proposed = candidates.size();
-    for (const VotedCenter& v : vote_for_centers(voters, low, high, kVotes * least, fresh)) {
+    for (const VotedCenter& v : vote_for_centers(voters, low, high, kVotes * least, fresh, voted)) {
       throw_if_cancelled();
       const double radius = likely_radius(cloud, grid, v.center, low, high);
       const auto same = [&](const BodyCandidate& c) {

@@ -14,6 +14,7 @@
 #include <agrisee/core/uninitialized.hpp>
 #include <agrisee/geometry/aabb.hpp>
 #include <agrisee/neighbors/detail/radix_sort.hpp>
+#include <agrisee/neighbors/hash_grid.hpp>
 
 #include <algorithm>
 #include <array>
@@ -30,6 +31,9 @@ struct VotedCenter {
   Eigen::Vector3d center;  ///< m
   double votes;            ///< points that voted for it
 };
+
+/// How many centers vote_for_centers finds by default: enough for a cloud of a few trusses.
+constexpr std::size_t kMostVotedCenters = 400;
 
 namespace detail {
 
@@ -282,15 +286,20 @@ class VotedPlaces {
   std::vector<bool> bits_;
 };
 
-/// The first of the sums, and every other that is at least `apart` (m) from those before it; at most 400.
-inline std::vector<VotedCenter> thin_out(const std::vector<VoteSum>& sums, double apart) {
+/// The first of the sums, and every other that is at least `apart` (m) from those before it; at most so many.
+inline std::vector<VotedCenter> thin_out(const std::vector<VoteSum>& sums, double apart, std::size_t most) {
   std::vector<VotedCenter> out;
+  HashGrid<double> kept(2.0 * apart);
   for (const VoteSum& s : sums) {
     if (((&s - sums.data()) & 0xFFF) == 0) throw_if_cancelled();
-    const bool free = std::none_of(out.begin(), out.end(),
-                                   [&](const VotedCenter& o) { return (o.center - s.center).norm() < apart; });
-    if (free) out.push_back({s.center, s.votes});
-    if (out.size() >= 400) break;  // more would only be noise
+    if (out.size() >= most) break;
+    bool free = true;
+    kept.visit(s.center, 1.01 * apart, [&](Index i, double) {
+      if ((at(out, i).center - s.center).norm() < apart) free = false;
+    });
+    if (!free) continue;
+    kept.insert(s.center);
+    out.push_back({s.center, s.votes});
   }
   return out;
 }
@@ -304,10 +313,12 @@ inline std::vector<VotedCenter> thin_out(const std::vector<VoteSum>& sums, doubl
 /// @param min_votes weaker maxima are left out
 /// @param fresh one per point, nonzero for new ones, or empty: centers for which new points cast less than a tenth of
 ///   `min_votes` are left out, which is fast if few points are new
+/// @param most the largest number of maxima; weaker ones are left out
 /// @throws ParameterError; InputError if the cloud has no normals, or `fresh` has not one value per point; Cancelled
 template <typename S>
 std::vector<VotedCenter> vote_for_centers(const PointCloud<S>& cloud, double radius_min, double radius_max,
-                                          double min_votes, const std::vector<char>& fresh = {}) {
+                                          double min_votes, const std::vector<char>& fresh = {},
+                                          std::size_t most = kMostVotedCenters) {
   check_parameter(radius_min > 0, "radius_min", "positive", radius_min);
   check_parameter(radius_max >= radius_min && std::isfinite(radius_max), "radius_max", "radius_min or more and finite",
                   radius_max);
@@ -336,7 +347,7 @@ std::vector<VotedCenter> vote_for_centers(const PointCloud<S>& cloud, double rad
         cells_of(all, touches), grid, min_votes, [&](std::uint64_t cell) { return places.has(cell); }, keep_sum);
   }
   detail::sort_by_votes(sums);
-  return detail::thin_out(sums, 0.6 * radius_min);
+  return detail::thin_out(sums, 0.6 * radius_min, most);
 }
 
 }  // namespace agrisee
