@@ -240,6 +240,36 @@ TEST_CASE("every planner terminates within its budget") {
   }
 }
 
+TEST_CASE("every planner that is asked twice offers the same view until it is taken or refused") {
+  for (const char* name : {"gain", "see", "fixed", "random"}) {
+    INFO(name);
+    Parameters p;
+    p.planner = name;
+    p.max_views = 4;
+    const Workcell w = cell();
+    Pipeline pipeline(w, p);
+    Joints joints = w.start;
+    for (int step = 0; step < 8; ++step) {
+      const auto next = pipeline.next_view(joints), again = pipeline.next_view(joints);
+      REQUIRE(next.has_value() == again.has_value());
+      if (!next) break;
+      CHECK(again->world_T_optical.matrix() == next->world_T_optical.matrix());
+      CHECK(*again->joints == *next->joints);
+      CHECK(again->gain == next->gain);
+      if (step % 3 == 1) {
+        pipeline.refused();
+        const auto other = pipeline.next_view(joints);
+        CHECK((!other || other->world_T_optical.matrix() != next->world_T_optical.matrix()));
+        continue;
+      }
+      joints = *next->joints;
+      pipeline.observe(test::render(test::kThreeFruit, w.sensor.intrinsics, next->world_T_optical, 0.001),
+                       next->world_T_optical, joints);
+    }
+    if (p.planner != "see") CHECK(pipeline.views().size() >= 2);  // SEE++ may find no core point in a coarse cloud
+  }
+}
+
 TEST_CASE("the paper's stages on the paper's values") {
   Parameters p = Parameters::paper();
   p.max_views = 4;
