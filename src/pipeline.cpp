@@ -20,6 +20,7 @@
 #include <string>
 #include <utility>
 
+#include "input_checks.hpp"
 #include "scan_doubts.hpp"
 
 namespace agrisee {
@@ -31,23 +32,6 @@ std::unique_ptr<fuse::Views> make_map(const Workcell& workcell, const Parameters
     return std::make_unique<fuse::FusedViews>(workcell.scan_volume, parameters.fusion(), threads);
   const auto filter = parameters.filter_each_view ? std::optional(parameters.sor) : std::nullopt;
   return std::make_unique<fuse::MergedViews>(workcell.scan_volume, parameters.see.min_separation(), filter, threads);
-}
-
-/// @throws InputError for a volume that cannot be scanned
-void check_volume(const Aabb& volume) {
-  check_input(!volume.empty() && volume.size().allFinite(), "the scan volume is empty or infinite");
-  constexpr double kLargest = 50.0;  // m; no arm sees as much, and a truss in millimetres is larger
-  const double size = volume.size().maxCoeff();
-  if (size > kLargest)
-    throw InputError("the scan volume is " + std::to_string(std::lround(size)) +
-                     " m long: is it in millimetres? Lengths have to be in metres");
-}
-
-/// @throws InputError for joint angles outside of the limits of the workcell's arm
-/// @param slack how far they may be outside (rad)
-void check_joints(const char* name, const Workcell& workcell, const Joints& joints, double slack = 0.0) {
-  const std::string complaint = workcell.arm.limits.complaint(joints, slack);
-  if (!complaint.empty()) throw InputError(std::string(name) + ": " + complaint);
 }
 
 /// Whether any pixel of a frame returned.
@@ -66,17 +50,11 @@ Pipeline::Pipeline(const Workcell& workcell, const Parameters& parameters, Pipel
       threads_(options.threads),
       doubts_(std::make_unique<ScanDoubts>()) {
   parameters_.check();
-  check_volume(workcell.scan_volume);
-  workcell_.world_T_base = made_rigid(workcell.world_T_base, "world_T_base", &warnings_);
-  workcell_.tool0_T_optical = made_rigid(workcell.tool0_T_optical, "tool0_T_optical", &warnings_);
-  if (const auto fault = fault_of_hand_eye(workcell_)) throw InputError("tool0_T_optical: " + *fault);
-  map_ = make_map(workcell_, parameters_, threads_);
   own_arm_ = !reach_;
-  if (workcell.tool0_T_tool) workcell_.tool0_T_tool = made_rigid(*workcell.tool0_T_tool, "tool0_T_tool", &warnings_);
-  workcell_.sensor.check();
+  check_workcell(workcell_, own_arm_, warnings_);
   for (std::string& doubt : doubts_of(workcell_, parameters_.gain.distance_min, parameters_.gain.distance_max))
     warnings_.push_back(std::move(doubt));
-  if (own_arm_) check_joints("start", workcell_, workcell_.start);
+  map_ = make_map(workcell_, parameters_, threads_);
   if (!reach_ && !approach_) approach_ = pick::approach_of(workcell_, parameters_.picking);
   reach_ = own_arm_ ? plan::reach_of(workcell_) : plan::checked(std::move(reach_));
   if (!planner_) planner_ = make_planner(workcell_, parameters_, options.seed, threads_);
@@ -202,8 +180,10 @@ ScanResult Pipeline::result() const {
 /// What is known of a view before its frame is looked at.
 View Pipeline::begin_view(const sensor::DepthFrame& frame, const Pose& reported,
                           const std::optional<Joints>& joints) const {
-  const Pose world_T_optical =
-      made_rigid(reported, "observe: world_T_optical of view " + std::to_string(views_.size()));
+  const std::string number = std::to_string(views_.size());
+  const Pose world_T_optical = made_rigid(reported, "observe: world_T_optical of view " + number);
+  check_distance("observe: the sensor of view " + number, world_T_optical.translation(), workcell_.scan_volume,
+                 "the scan volume");
   check(frame);
   sensor::check_depth_unit(frame);
   if (joints) check_current("observe", *joints);

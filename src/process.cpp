@@ -24,6 +24,7 @@
 #include "cloud/searches.hpp"
 #include "cloud_normals.hpp"
 #include "fruit_ripeness.hpp"
+#include "input_checks.hpp"
 
 namespace agrisee {
 namespace {
@@ -71,20 +72,6 @@ SeenOn seen_on_of(const Cloud& cloud, const Parameters& parameters, const CloudO
   return [lines = SightLines(cloud, *origin.viewpoint), noise](const Ellipsoid& body) {
     return seen_on(lines, body, std::max(3.0 * noise, kSightMargin * body.mean_radius()));
   };
-}
-
-/// @throws InputError if a sensor stood farther from all points than any sensor sees
-void check_distance(const Cloud& cloud, const std::vector<Eigen::Vector3d>& sensors) {
-  constexpr double kFarthest = 20.0;  // m; depth cameras see less far, and 20 mm are nearer than any of them sees
-  const Aabb box = bounding_box(cloud.points);
-  if (box.empty()) return;
-  for (const Eigen::Vector3d& sensor : sensors) {
-    const double distance = (sensor - sensor.cwiseMax(box.min).cwiseMin(box.max)).norm();
-    if (!(distance <= kFarthest))
-      throw InputError("a sensor stood " + metres(distance) +
-                       " from the cloud: is its position in millimetres? Positions have to be in metres, in the "
-                       "frame of the cloud");
-  }
 }
 
 /// The points that were measured: not those whose coordinates are not finite, nor those at a sensor or, if there are
@@ -199,8 +186,11 @@ void check_origin(const Cloud& cloud, const CloudOrigin& origin) {
   for (std::size_t v = 0; v < origin.detected.size(); ++v)
     if (!origin.detected[v].frame)
       throw InputError("CloudOrigin::detected: view " + std::to_string(v) + " has no frame");
-  check_distance(cloud, origin.sensors);
-  if (origin.viewpoint) check_distance(cloud, {*origin.viewpoint});
+  if (Aabb box = bounding_box(cloud.points); !box.empty()) {
+    if (origin.volume && !origin.volume->empty()) box.extend(origin.volume->min), box.extend(origin.volume->max);
+    for (const Eigen::Vector3d& sensor : origin.sensors) check_distance("a sensor", sensor, box, "the cloud");
+    if (origin.viewpoint) check_distance("a sensor", *origin.viewpoint, box, "the cloud");
+  }
   if (!origin.sensors.empty() && !cloud.empty() && cloud.views.empty() && cloud.normals.empty())
     throw InputError(
         "positions of sensors are given, but the cloud does not say from which view each point comes "

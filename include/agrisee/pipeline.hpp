@@ -72,7 +72,8 @@ class Pipeline {
   /// @return the view as recorded; the reference is valid until the next observe()
   /// @throws InputError for a frame whose size disagrees with its intrinsics, whose depths cannot be in metres
   ///   (sensor::check_depth_unit) or whose instances cannot be masks (sensor::check_masks), a pose that is not rigid
-  ///   within kRigidTolerance, or joints as next_view(); Cancelled. The scan so far is kept.
+  ///   within kRigidTolerance or more than 20 m from the scan volume, or joints as next_view(); Cancelled. The scan so
+  ///   far is kept.
   const View& observe(sensor::DepthFrame frame, const Pose& world_T_optical,
                       const std::optional<Joints>& joints = std::nullopt);
 

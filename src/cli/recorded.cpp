@@ -180,7 +180,11 @@ Processed process_recording(const std::string& path, const CommonOptions& option
   for (std::size_t i = 0; i < source.poses.size(); ++i) {
     sensor::DepthFrame frame = source.frame(i);
     out.history.depth.push_back(io::depth_picture(frame));
-    pipeline.observe(std::move(frame), source.poses[i]);
+    try {
+      pipeline.observe(std::move(frame), source.poses[i]);
+    } catch (const InputError& error) {
+      throw InputError(path + ": " + error.what());
+    }
     if (!options.quiet) show_progress(pipeline.views(), source.poses.size());
   }
   if (!options.quiet) end_progress();

@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What a scan is given is checked when it is given, so that no later call fails because of it.
+#include <agrisee/pipeline.hpp>
+
+#include <limits>
+
+#include "catch.hpp"
+#include "spheres.hpp"
+#include "support/says.hpp"
+
+using namespace agrisee;
+
+namespace input_checks_test {
+namespace {
+
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+
+Workcell cell() {
+  Workcell w;
+  w.scan_volume.extend({-0.17, 0.40, -0.02});
+  w.scan_volume.extend({0.17, 0.72, 0.42});
+  w.sensor.intrinsics = sensor::intrinsics_from_fov(400, 300, deg(70), deg(55));
+  return w;
+}
+
+/// An arm that takes every view as it is asked for; its joints say nothing.
+PipelineOptions own_arm() {
+  PipelineOptions options;
+  options.reach = [](const plan::ViewRequest& r, const Joints&) {
+    plan::ReachableView view;
+    view.target = r.target;
+    view.world_T_optical = look_along(r.target - r.distance * r.direction, r.direction);
+    return std::optional(view);
+  };
+  return options;
+}
+
+}  // namespace
+
+TEST_CASE("a pose too far from the scan volume is refused when it is reported, and the scan goes on") {
+  const bool own = GENERATE(false, true);
+  const double off = GENERATE(21.0, 25.0, 650.0);
+  const Workcell w = cell();
+  Pipeline pipeline(w, {}, own ? own_arm() : PipelineOptions{});
+  Joints joints = w.start;
+  for (int v = 0; v < 3; ++v) {
+    const auto next = pipeline.next_view(joints);
+    REQUIRE(next);
+    if (next->joints) joints = *next->joints;
+    const auto frame = test::render(test::kThreeFruit, w.sensor.intrinsics, next->world_T_optical);
+    if (v == 1) {
+      const std::size_t merged = pipeline.merged().size();
+      Pose glitch = next->world_T_optical;
+      glitch.translation().x() += off;
+      CHECK_THROWS_WITH(pipeline.observe(frame, glitch, next->joints),
+                        test::says("observe: the sensor of view 1 stood") &&
+                            test::says("from the scan volume: is its position in millimetres?"));
+      CHECK_THROWS_AS(pipeline.observe(frame, glitch), InputError);
+      CHECK(pipeline.views().size() == 1);
+      CHECK(pipeline.merged().size() == merged);
+      CHECK(pipeline.next_view(joints)->world_T_optical.matrix() == next->world_T_optical.matrix());
+    }
+    pipeline.observe(frame, next->world_T_optical, next->joints);
+  }
+  CHECK_FALSE(pipeline.result().fruits.empty());
+}
+
+TEST_CASE("a pose that was accepted does not make the result fail, wherever in the volume the points are") {
+  const Workcell w = cell();
+  Pipeline pipeline(w);
+  const auto next = pipeline.next_view(w.start);
+  REQUIRE(next);
+  auto frame = test::render(test::kThreeFruit, w.sensor.intrinsics, next->world_T_optical);
+  pipeline.observe(frame, next->world_T_optical);
+  const double x = w.scan_volume.max.x() + 19.999;  // from the fruit it is more than 20 m
+  pipeline.observe(frame, look_along({x, 0.5, 0.2}, Eigen::Vector3d::UnitY()));
+  CHECK_NOTHROW(pipeline.result());
+}
+
+}  // namespace input_checks_test
