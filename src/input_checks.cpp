@@ -10,15 +10,25 @@ namespace {
 
 /// @throws InputError for a volume that cannot be scanned
 void check_volume(const Aabb& volume) {
-  check_input(!volume.empty() && volume.size().allFinite(), "the scan volume is empty or infinite");
+  const Eigen::Vector3d lengths = volume.size();
+  check_input(lengths.minCoeff() > 0.0 && lengths.allFinite(), "the scan volume is empty, flat or infinite");
   constexpr double kLargest = 50.0;  // m; no arm sees as much, and a truss in millimetres is larger
-  const double size = volume.size().maxCoeff();
+  const double size = lengths.maxCoeff();
   if (size > kLargest)
     throw InputError("the scan volume is " + std::to_string(std::lround(size)) +
                      " m long: is it in millimetres? Lengths have to be in metres");
+  if (volume.min.cwiseAbs().cwiseMax(volume.max.cwiseAbs()).maxCoeff() > kFarFromOrigin)
+    throw InputError(far_from_origin("the scan volume", volume.center().norm(), "it, and from all poses"));
 }
 
 }  // namespace
+
+std::string far_from_origin(const std::string& what, double distance, const std::string& from) {
+  return what + " lies " + metres(distance) +
+         " from the origin, too far for coordinates in single precision: is it in millimetres? If not, subtract an "
+         "offset from " +
+         from;
+}
 
 void check_workcell(Workcell& workcell, bool own_arm, std::vector<std::string>& notes) {
   check_volume(workcell.scan_volume);

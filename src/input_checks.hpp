@@ -11,6 +11,14 @@
 
 namespace agrisee {
 
+/// Farther from the origin (m) single precision is too coarse: there it has steps of 0.06 mm.
+constexpr double kFarFromOrigin = 1000.0;
+
+/// That something is too far from the origin, and what to do.
+/// @param distance m
+/// @param from of what an offset has to be subtracted
+std::string far_from_origin(const std::string& what, double distance, const std::string& from);
+
 /// Check the workcell of a scan, and make its poses rigid.
 /// @param own_arm whether the model in `workcell` describes the arm
 /// @param notes receives a sentence for each pose that was changed

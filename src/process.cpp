@@ -215,7 +215,6 @@ void check_origin(const Cloud& cloud, const CloudOrigin& origin) {
 
 void check_units(const Cloud& cloud, const Parameters& parameters) {
   constexpr double kLarge = 10.0;  // m; clouds of scanned trusses are smaller, and in millimetres they are larger
-  constexpr float kFar = 1000.0f;  // m; there single precision has steps of 0.06 mm
   constexpr std::size_t kFew = 100;
   const Aabb box = bounding_box(cloud.points);
   if (box.empty()) return;
@@ -227,12 +226,12 @@ void check_units(const Cloud& cloud, const Parameters& parameters) {
                        " apart, farther than the largest expected fruit (" + metres(largest) +
                        "): is it in millimetres? Coordinates have to be in metres");
   }
-  const auto is_far = [](const Eigen::Vector3f& p) { return is_finite(p) && p.cwiseAbs().maxCoeff() > kFar; };
+  const auto is_far = [](const Eigen::Vector3f& p) {
+    return is_finite(p) && p.cwiseAbs().maxCoeff() > float(kFarFromOrigin);
+  };
   const auto far = std::count_if(cloud.points.begin(), cloud.points.end(), is_far);
   if (2 * far > static_cast<std::ptrdiff_t>(cloud.size()))
-    throw InputError("the cloud lies " + metres(box.center().norm()) +
-                     " from the origin, too far for coordinates in single precision: is it in millimetres? If not, "
-                     "subtract an offset from all points, and from the sensors' positions");
+    throw InputError(far_from_origin("the cloud", box.center().norm(), "all points, and from the sensors' positions"));
 }
 
 ScanResult process(Cloud&& cloud, const Parameters& parameters, const CloudOrigin& origin,

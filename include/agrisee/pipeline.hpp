@@ -53,8 +53,8 @@ class Pipeline {
   /// @param parameters of all stages
   /// @param options reach, planner, seed, threads
   /// @throws ParameterError; InputError for poses that are not rigid within kRigidTolerance, a scan volume that is
-  ///   empty or longer than 50 m, a camera more than 3 m from the flange or, with the built-in arm model, a start
-  ///   posture outside its limits
+  ///   empty, flat, longer than 50 m or more than 1 km from the origin, a camera more than 3 m from the flange or, with
+  ///   the built-in arm model, a start posture outside its limits
   explicit Pipeline(const Workcell& workcell, const Parameters& parameters = {}, PipelineOptions options = {});
   /// A pipeline can be moved, not copied.
   Pipeline(Pipeline&& other) noexcept;

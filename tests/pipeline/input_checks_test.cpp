@@ -77,4 +77,30 @@ TEST_CASE("a pose that was accepted does not make the result fail, wherever in t
   CHECK_NOTHROW(pipeline.result());
 }
 
+TEST_CASE("a scan volume that is empty, flat in any axis, or too far from the origin is refused") {
+  const auto refuse = [](const std::string& message, auto&& change) {
+    Workcell w = cell();
+    change(w.scan_volume);
+    CHECK_THROWS_WITH(Pipeline(w), test::says(message));
+    CHECK_THROWS_WITH(Pipeline(w, {}, own_arm()), test::says(message));
+  };
+  const std::string empty = "the scan volume is empty, flat or infinite";
+  refuse(empty, [](Aabb& v) { v = Aabb(); });
+  refuse(empty, [](Aabb& v) { v.max = v.min; });
+  refuse(empty, [](Aabb& v) { std::swap(v.min, v.max); });
+  for (int a = 0; a < 3; ++a) {
+    refuse(empty, [a](Aabb& v) { v.max[a] = v.min[a]; });
+    refuse(empty, [a](Aabb& v) { v.max[a] = v.min[a] - 0.1; });
+    refuse(empty, [a](Aabb& v) { v.min[a] = kNan; });
+    refuse(empty, [a](Aabb& v) { v.max[a] = std::numeric_limits<double>::infinity(); });
+    const auto moved = [a](double by) { return [a, by](Aabb& v) { v.min[a] += by, v.max[a] += by; }; };
+    for (const double far : {-1500.0, 999.9, 1500.0, 5e5})
+      refuse("from the origin, too far for coordinates in single precision: is it in millimetres?", moved(far));
+    Workcell w = cell();
+    moved(900.0)(w.scan_volume);
+    CHECK_NOTHROW(Pipeline(w, {}, own_arm()));
+  }
+  refuse("the scan volume lies 1.5e+03 m from the origin", [](Aabb& v) { v.min.x() += 1500, v.max.x() += 1500; });
+}
+
 }  // namespace input_checks_test
