@@ -37,6 +37,8 @@ void check_workcell(Workcell& workcell, bool own_arm, std::vector<std::string>& 
   if (const auto fault = fault_of_hand_eye(workcell)) throw InputError("tool0_T_optical: " + *fault);
   if (workcell.tool0_T_tool) workcell.tool0_T_tool = made_rigid(*workcell.tool0_T_tool, "tool0_T_tool", &notes);
   workcell.sensor.check();
+  for (const KeepOut& space : workcell.keep_out) space.check();
+  check_input(workcell.start.allFinite(), "start: the joints are not finite");
   if (own_arm) check_joints("start", workcell, workcell.start);
 }
 

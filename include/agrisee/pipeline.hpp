@@ -52,9 +52,10 @@ class Pipeline {
   /// @param workcell arm, camera, scan volume and keep-out
   /// @param parameters of all stages
   /// @param options reach, planner, seed, threads
-  /// @throws ParameterError; InputError for poses that are not rigid within kRigidTolerance, a scan volume that is
-  ///   empty, flat, longer than 50 m or more than 1 km from the origin, a camera more than 3 m from the flange or, with
-  ///   the built-in arm model, a start posture outside its limits
+  /// @throws ParameterError, also for keep-out spaces without size; InputError for poses that are not rigid within
+  ///   kRigidTolerance, a scan volume that is empty, flat, longer than 50 m or more than 1 km from the origin, a camera
+  ///   more than 3 m from the flange, or a start posture that is not finite or, with the built-in arm model, outside
+  ///   its limits
   explicit Pipeline(const Workcell& workcell, const Parameters& parameters = {}, PipelineOptions options = {});
   /// A pipeline can be moved, not copied.
   Pipeline(Pipeline&& other) noexcept;

@@ -103,4 +103,22 @@ TEST_CASE("a scan volume that is empty, flat in any axis, or too far from the or
   refuse("the scan volume lies 1.5e+03 m from the origin", [](Aabb& v) { v.min.x() += 1500, v.max.x() += 1500; });
 }
 
+TEST_CASE("keep-out spaces and start joints are checked for an own arm, too") {
+  const bool own = GENERATE(false, true);
+  const auto made = [own](const Workcell& w) { Pipeline(w, {}, own ? own_arm() : PipelineOptions{}); };
+  const auto refuse = [&](const KeepOut& space, const std::string& message) {
+    Workcell w = cell();
+    w.keep_out = {{"good", Box{{0, 2, 0}, {1, 1, 1}}}, space};
+    CHECK_THROWS_AS(made(w), ParameterError);
+    CHECK_THROWS_WITH(made(w), test::says(message));
+  };
+  refuse({"bad", Box{{0, 0, 0}, {-1, 1, 1}}}, "keep_out 'bad': size must be positive and finite, got -1");
+  refuse({"bad", Box{{0, 0, 0}, {3, 3, 0}}}, "keep_out 'bad': size must be positive and finite, got 0");
+  refuse({"bad", Box{{kNan, 0, 0}, {1, 1, 1}}}, "keep_out 'bad': center must be finite");
+  refuse({"", Cylinder{{0, 0, 0}, 0, 1}}, "keep_out '': radius must be positive and finite, got 0");
+  Workcell w = cell();
+  w.start[2] = kNan;
+  CHECK_THROWS_WITH(made(w), test::says("start: the joints are not finite"));
+}
+
 }  // namespace input_checks_test
