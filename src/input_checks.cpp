@@ -36,6 +36,7 @@ void check_workcell(Workcell& workcell, bool own_arm, std::vector<std::string>& 
   workcell.tool0_T_optical = made_rigid(workcell.tool0_T_optical, "tool0_T_optical", &notes);
   if (const auto fault = fault_of_hand_eye(workcell)) throw InputError("tool0_T_optical: " + *fault);
   if (workcell.tool0_T_tool) workcell.tool0_T_tool = made_rigid(*workcell.tool0_T_tool, "tool0_T_tool", &notes);
+  if (const auto fault = fault_of_gripper(workcell)) throw InputError("tool0_T_tool: " + *fault);
   workcell.sensor.check();
   for (const KeepOut& space : workcell.keep_out) space.check();
   check_input(workcell.start.allFinite(), "start: the joints are not finite");

@@ -54,8 +54,8 @@ class Pipeline {
   /// @param options reach, planner, seed, threads
   /// @throws ParameterError, also for keep-out spaces without size; InputError for poses that are not rigid within
   ///   kRigidTolerance, a scan volume that is empty, flat, longer than 50 m or more than 1 km from the origin, a camera
-  ///   more than 3 m from the flange, or a start posture that is not finite or, with the built-in arm model, outside
-  ///   its limits
+  ///   or gripper more than 3 m from the flange, or a start posture that is not finite or, with the built-in arm model,
+  ///   outside its limits
   explicit Pipeline(const Workcell& workcell, const Parameters& parameters = {}, PipelineOptions options = {});
   /// A pipeline can be moved, not copied.
   Pipeline(Pipeline&& other) noexcept;

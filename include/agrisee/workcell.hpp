@@ -31,13 +31,26 @@ struct Workcell {
   std::vector<KeepOut> keep_out;                                                ///< neither arm nor sensor may enter
 };
 
+/// What is wrong with the pose in tool0 of something that the flange holds: that it is more than 3 m away. Empty if
+/// nothing is.
+/// @param what is held: "the camera"
+inline std::optional<std::string> fault_of_held(const Pose& tool0_T_held, const std::string& what) {
+  constexpr double kFarthest = 3.0;  // m
+  const double held = tool0_T_held.translation().norm();
+  if (!(held > kFarthest)) return std::nullopt;
+  return what + " is " + metres(held) + " from the flange: is it in millimetres? Lengths have to be in metres";
+}
+
 /// What is wrong with the hand-eye transform: a camera more than 3 m from the flange, which no arm holds. Empty if
 /// nothing is.
 inline std::optional<std::string> fault_of_hand_eye(const Workcell& workcell) {
-  constexpr double kFarthest = 3.0;  // m
-  const double held = workcell.tool0_T_optical.translation().norm();
-  if (!(held > kFarthest)) return std::nullopt;
-  return "the camera is " + metres(held) + " from the flange: is it in millimetres? Lengths have to be in metres";
+  return fault_of_held(workcell.tool0_T_optical, "the camera");
+}
+
+/// What is wrong with the gripper's tool frame: a gripping point more than 3 m from the flange. Empty if nothing is.
+inline std::optional<std::string> fault_of_gripper(const Workcell& workcell) {
+  if (!workcell.tool0_T_tool) return std::nullopt;
+  return fault_of_held(*workcell.tool0_T_tool, "the gripping point");
 }
 
 /// The pose of the optical frame in world at joint angles `q` (rad), by the model of the arm and the hand-eye

@@ -104,7 +104,9 @@ TEST_CASE("values out of their range are named with file, line and the whole key
   refused("normals:\n  radius: -1\n", ":2: 'normals.radius' must be positive, got -1");
   refused("free_space: {margin: 0}\n", ":1: 'free_space.margin' must be positive, got 0");
   refused("icp: {degeneracy: 1}\n", ":1: 'icp.degeneracy' must be at least 0 and below 1, got 1");
-  refused("picking:\n  contact: 0.2\n", ":2: 'picking.contact' must be at most stand_off (0.12), got 0.2");
+  refused("picking:\n  contact: 0.2\n", ":2: 'picking.contact' must be from -1 to stand_off (0.12), got 0.2");
+  refused("picking: {gripper_radius: 20}\n",
+          ":1: 'picking.gripper_radius' must be from 0 to 1, got 20: lengths are in metres; 20 mm are 0.02");
   refused("normals: {radius: .inf}\n", ":1: 'normals.radius' must be a finite number, got inf");
   refused("split:\n  bodies:\n    min_roundness: .nan\n",
           ":3: 'split.bodies.min_roundness' must be a finite number, got nan");

@@ -332,6 +332,8 @@ TEST_CASE("degrees and millimetres in a scene are refused, and the likely cause 
                 "robot.start: joint 3 is 3.5 rad, outside of its limits, -3.142 to 3.142");
   folder.refuse(replaced(kScene, kRobot, kRobot + "  tool: {xyz: [0, 0, 30], rpy: [0, 0, 0]}\n"),
                 "robot.tool: the camera is 30 m from the flange: is it in millimetres?");
+  folder.refuse(replaced(kScene, kRobot, kRobot + "  gripper: {xyz: [0, 0, 150], rpy: [0, 0, 0]}\n"),
+                "robot.gripper: the gripping point is 150 m from the flange: is it in millimetres?");
   folder.refuse(replaced(kScene, kVolume, "scan_volume: {min: [-100, 400, 0], max: [100, 600, 300]}\n"),
                 "scan_volume: is 300 m long: is it in millimetres?");
   folder.refuse(replaced(kScene, "mesh: fruit.stl", "mesh: fruit.stl, scale: 1000"),

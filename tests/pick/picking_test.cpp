@@ -652,6 +652,10 @@ TEST_CASE("picking: bad input by name") {
   refused([](auto& p) { p.stand_off = -0.1; });
   refused([](auto& p) { p.contact = 0.2; });
   refused([](auto& p) { p.gripper_radius = kNan; });
+  refused([](auto& p) { p.stand_off = 120.0; });  // in millimetres
+  refused([](auto& p) { p.contact = -10.0; });
+  refused([](auto& p) { p.gripper_radius = 20.0; });
+  refused([](auto& p) { p.tool_length = 150.0; });
   refused([](auto& p) { p.directions = 0; });
   refused([](auto& p) { p.directions = 100001; });
   refused([](auto& p) { p.rolls = 0; });

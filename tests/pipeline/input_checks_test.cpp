@@ -121,4 +121,26 @@ TEST_CASE("keep-out spaces and start joints are checked for an own arm, too") {
   CHECK_THROWS_WITH(made(w), test::says("start: the joints are not finite"));
 }
 
+TEST_CASE("a gripper in millimetres is refused, and the likely cause is named") {
+  const bool own = GENERATE(false, true);
+  const auto made = [own](const Workcell& w, const Parameters& p = {}) {
+    Pipeline(w, p, own ? own_arm() : PipelineOptions{});
+  };
+  Workcell w = cell();
+  w.tool0_T_tool = pose_from_xyz_rpy({0.0, 0.0, 0.15}, {0.0, 0.0, 0.0});
+  CHECK_NOTHROW(made(w));
+  w.tool0_T_tool->translation() *= 1000.0;
+  CHECK_THROWS_WITH(made(w), test::says("tool0_T_tool: the gripping point is 150 m from the flange: is it in mill"));
+  const auto refused = [&](auto&& change, const std::string& message) {
+    Parameters p;
+    change(p.picking);
+    CHECK_THROWS_AS(made(cell(), p), ParameterError);
+    CHECK_THROWS_WITH(made(cell(), p), test::says(message));
+  };
+  refused([](auto& p) { p.stand_off = 120.0; },
+          "picking.stand_off must be from 0 to 3, got 120: lengths are in metres");
+  refused([](auto& p) { p.gripper_radius = 20.0; }, "picking.gripper_radius must be from 0 to 1, got 20: lengths are");
+  refused([](auto& p) { p.tool_length = 150.0; }, "picking.tool_length must be from 0 to 3, got 150: lengths are in");
+}
+
 }  // namespace input_checks_test

@@ -41,10 +41,11 @@ struct PickingParameters {
   template <typename P, typename F>
   static void fields(P& p, F&& f) {
     f("enabled", p.enabled);
-    f("stand_off", p.stand_off, Range::not_negative());
-    f("contact", p.contact, Range::finite().up_to({p.stand_off, "stand_off"}));
-    f("gripper_radius", p.gripper_radius, Range::not_negative());
-    f("tool_length", p.tool_length, Range::not_negative());
+    // No gripper is longer or thicker, and most lengths in millimetres are beyond.
+    f("stand_off", p.stand_off, Range::between(0.0, 3.0).in_metres());
+    f("contact", p.contact, Range::between(-1.0, {p.stand_off, "stand_off"}).in_metres());
+    f("gripper_radius", p.gripper_radius, Range::between(0.0, 1.0).in_metres());
+    f("tool_length", p.tool_length, Range::between(0.0, 3.0).in_metres());
     f("pedicel_angle", p.pedicel_angle, Range::between(0.0, {0.5 * kPi, "pi/2"}).in_radians());
     f("directions", p.directions, Range::between(6, 100000));
     f("rolls", p.rolls, Range::between(1, 3600));

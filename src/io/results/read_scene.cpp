@@ -37,6 +37,7 @@ void read_robot(const YamlValue& robot, Workcell& cell, std::vector<std::string>
   if (const std::string fault = cell.arm.limits.complaint(cell.start); !fault.empty())
     (robot.has("start") ? robot.at("start") : robot).fail(fault);
   if (const auto fault = fault_of_hand_eye(cell)) robot.at("tool").fail(*fault);
+  if (const auto fault = fault_of_gripper(cell)) robot.at("gripper").fail(*fault);
 }
 
 /// The published figures of a camera by its name.
