@@ -56,7 +56,7 @@ Pipeline::Pipeline(const Workcell& workcell, const Parameters& parameters, Pipel
     warnings_.push_back(std::move(doubt));
   map_ = make_map(workcell_, parameters_, threads_);
   if (!reach_ && !approach_) approach_ = pick::approach_of(workcell_, parameters_.picking);
-  reach_ = own_arm_ ? plan::reach_of(workcell_) : plan::checked(std::move(reach_));
+  reach_ = own_arm_ ? plan::reach_of(workcell_) : plan::checked(std::move(reach_), workcell_.sensor);
   if (!planner_) planner_ = make_planner(workcell_, parameters_, options.seed, threads_);
 }
 

@@ -20,34 +20,44 @@ arm::Mount mount_of(const Workcell& workcell) {
   return mount;
 }
 
+std::optional<ViewRequest> within_range(ViewRequest request, const sensor::DepthCamera& camera) {
+  request.distance_min = std::max(request.distance_min, camera.range_min);
+  request.distance_max = std::min(request.distance_max, camera.range_max);
+  if (request.distance_min > request.distance_max) return std::nullopt;
+  request.distance = std::clamp(request.distance, request.distance_min, request.distance_max);
+  return request;
+}
+
 Reach reach_of(const Workcell& workcell) {
   const arm::Mount mount = mount_of(workcell);
   mount.check();
-  const double nearest = workcell.sensor.range_min, farthest = workcell.sensor.range_max;
-  return [mount, nearest, farthest](const ViewRequest& request, const Joints& current) -> std::optional<ReachableView> {
+  const sensor::DepthCamera camera = workcell.sensor;
+  return [mount, camera](const ViewRequest& asked, const Joints& current) -> std::optional<ReachableView> {
+    const auto request = within_range(asked, camera);
+    if (!request) return std::nullopt;
     arm::ReachParameters parameters;
-    parameters.distance_min = std::max(request.distance_min, nearest);
-    parameters.distance_max = std::min(request.distance_max, farthest);
-    if (parameters.distance_min > parameters.distance_max) return std::nullopt;
-    parameters.distance = std::clamp(request.distance, parameters.distance_min, parameters.distance_max);
-    const auto reached = arm::reach(mount, current, request.target, request.direction, parameters);
+    parameters.distance_min = request->distance_min;
+    parameters.distance_max = request->distance_max;
+    parameters.distance = request->distance;
+    const auto reached = arm::reach(mount, current, request->target, request->direction, parameters);
     if (!reached) return std::nullopt;
     ReachableView view;
     view.world_T_optical = reached->world_T_optical;
-    view.target = request.target;
+    view.target = request->target;
     view.joints = reached->joints;
     view.move_time = reached->move_time;
     return view;
   };
 }
 
-Reach checked(Reach reach) {
-  return [reach = std::move(reach)](const ViewRequest& request, const Joints& current) {
+Reach checked(Reach reach, const sensor::DepthCamera& camera) {
+  return [reach = std::move(reach), camera](const ViewRequest& asked, const Joints& current) {
     constexpr double kOff = 0.1;  // m
-    const std::optional<ReachableView> view = reach(request, current);
+    const auto request = within_range(asked, camera);
+    const std::optional<ReachableView> view = request ? reach(*request, current) : std::nullopt;
     if (!view) return view;
     check_input(is_rigid(view->world_T_optical), "reach: world_T_optical of its answer is not a rigid pose");
-    const Eigen::Vector3d target = view->world_T_optical.inverse(Eigen::Isometry) * request.target;
+    const Eigen::Vector3d target = view->world_T_optical.inverse(Eigen::Isometry) * request->target;
     if (!(target.z() > 0.0) || !(target.head<2>().norm() <= kOff))
       throw InputError(
           "reach: the view of its answer does not look at the requested target: in the optical frame (z "

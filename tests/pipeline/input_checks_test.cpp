@@ -143,4 +143,29 @@ TEST_CASE("a gripper in millimetres is refused, and the likely cause is named") 
   refused([](auto& p) { p.tool_length = 150.0; }, "picking.tool_length must be from 0 to 3, got 150: lengths are in");
 }
 
+TEST_CASE("an own arm is asked only for distances in the camera's range, by every planner") {
+  const std::string planner = GENERATE("gain", "see", "fixed", "random");
+  Workcell w = cell();
+  w.sensor.range_min = 0.45, w.sensor.range_max = 0.5;
+  Parameters p;
+  p.planner = planner;
+  p.max_views = 3;
+  p.gain.candidates = 100;
+  PipelineOptions options = own_arm();
+  int asked = 0;
+  options.reach = [&, fly = options.reach](const plan::ViewRequest& r, const Joints& joints) {
+    ++asked;
+    CHECK(r.distance_min >= 0.45);
+    CHECK(r.distance_max <= 0.5);
+    CHECK((r.distance >= r.distance_min && r.distance <= r.distance_max));
+    return fly(r, joints);
+  };
+  Pipeline pipeline(w, p, std::move(options));
+  while (const auto next = pipeline.next_view(w.start))
+    pipeline.observe(test::render(test::kThreeFruit, w.sensor.intrinsics, next->world_T_optical),
+                     next->world_T_optical);
+  CHECK(asked > 0);
+  CHECK_FALSE(pipeline.views().empty());
+}
+
 }  // namespace input_checks_test

@@ -117,6 +117,30 @@ TEST_CASE("arm reach: a band of distances that the sensor does not measure has n
   CHECK(reach(request(30, 10, 0.40, 0.35, 0.45), start));
 }
 
+TEST_CASE("arm reach: another arm is not asked for distances that the sensor does not measure, either") {
+  std::vector<ViewRequest> asked;
+  const Reach reach = checked(
+      [&](const ViewRequest& r, const Joints&) {
+        asked.push_back(r);
+        return std::nullopt;
+      },
+      cell().sensor);
+  const auto ask = [&](double distance, double nearest, double farthest) {
+    asked.clear();
+    CHECK_FALSE(reach(request(30, 10, distance, nearest, farthest), cell().start));
+    if (asked.empty()) return Vector3d(0, 0, 0);
+    CHECK(asked[0].target == kTruss);
+    CHECK(asked[0].direction == request(30, 10, distance, nearest, farthest).direction);
+    return Vector3d(asked[0].distance, asked[0].distance_min, asked[0].distance_max);
+  };
+  CHECK(ask(0.40, 0.35, 0.45) == Vector3d(0.40, 0.35, 0.45));
+  CHECK(ask(0.40, 0.20, 0.90) == Vector3d(0.40, 0.33, 0.50));
+  CHECK(ask(0.25, 0.20, 0.40) == Vector3d(0.33, 0.33, 0.40));
+  CHECK(ask(0.80, 0.40, 0.90) == Vector3d(0.50, 0.40, 0.50));
+  CHECK(ask(0.25, 0.20, 0.32).isZero());  // not asked at all
+  CHECK(ask(0.60, 0.51, 0.70).isZero());
+}
+
 TEST_CASE("arm reach: what cannot be reached has no view, and an invalid mount is refused") {
   Workcell w = cell();
   ViewRequest far = request(30, 10, 0.38, 0.35, 0.45);
