@@ -8,6 +8,35 @@
 #include <utility>
 
 namespace agrisee::plan {
+namespace {
+
+/// @throws InputError for an answer that is not the view requested
+void check_answer(const ViewRequest& request, const ReachableView& view) {
+  constexpr double kOff = 0.1, kFarther = 0.02, kTurned = deg(15);  // m, m, rad
+  check_input(is_rigid(view.world_T_optical), "reach: world_T_optical of its answer is not a rigid pose");
+  const Eigen::Vector3d target = view.world_T_optical.inverse(Eigen::Isometry) * request.target;
+  if (!(target.z() > 0.0) || !(target.head<2>().norm() <= kOff))
+    throw InputError(
+        "reach: the view of its answer does not look at the requested target: in the optical frame (z "
+        "forward) the target is at " +
+        metres(target.x()) + ", " + metres(target.y()) + ", " + metres(target.z()) +
+        ". Is world_T_optical set, and the pose of the optical frame?");
+  const double distance = target.norm();
+  if (!(distance >= request.distance_min - kFarther && distance <= request.distance_max + kFarther))
+    throw InputError("reach: the view of its answer is " + metres(distance) +
+                     " from the target, but distance_min and distance_max of the request are " +
+                     metres(request.distance_min) + " and " + metres(request.distance_max));
+  const Eigen::Vector3d sight = (request.target - view.world_T_optical.translation()) / distance;
+  const double turned = std::atan2(sight.cross(request.direction).norm(), sight.dot(request.direction));
+  if (!(turned <= kTurned))
+    throw InputError("reach: the view of its answer sees the target from " + number_text(turned / deg(1), 3) +
+                     " degrees beside the requested direction");
+  check_input(!view.joints || view.joints->allFinite(), "reach: the joints of its answer are not finite");
+  check_input(std::isfinite(view.move_time) && view.move_time >= 0.0,
+              "reach: move_time of its answer is negative or not finite");
+}
+
+}  // namespace
 
 arm::Mount mount_of(const Workcell& workcell) {
   arm::Mount mount;
@@ -52,21 +81,9 @@ Reach reach_of(const Workcell& workcell) {
 
 Reach checked(Reach reach, const sensor::DepthCamera& camera) {
   return [reach = std::move(reach), camera](const ViewRequest& asked, const Joints& current) {
-    constexpr double kOff = 0.1;  // m
     const auto request = within_range(asked, camera);
     const std::optional<ReachableView> view = request ? reach(*request, current) : std::nullopt;
-    if (!view) return view;
-    check_input(is_rigid(view->world_T_optical), "reach: world_T_optical of its answer is not a rigid pose");
-    const Eigen::Vector3d target = view->world_T_optical.inverse(Eigen::Isometry) * request->target;
-    if (!(target.z() > 0.0) || !(target.head<2>().norm() <= kOff))
-      throw InputError(
-          "reach: the view of its answer does not look at the requested target: in the optical frame (z "
-          "forward) the target is at " +
-          metres(target.x()) + ", " + metres(target.y()) + ", " + metres(target.z()) +
-          ". Is world_T_optical set, and the pose of the optical frame?");
-    check_input(!view->joints || view->joints->allFinite(), "reach: the joints of its answer are not finite");
-    check_input(std::isfinite(view->move_time) && view->move_time >= 0.0,
-                "reach: move_time of its answer is negative or not finite");
+    if (view) check_answer(*request, *view);
     return view;
   };
 }

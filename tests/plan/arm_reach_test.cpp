@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "plan/plan_cases.hpp"
+#include "support/says.hpp"
 
 using namespace cases;
 
@@ -139,6 +140,36 @@ TEST_CASE("arm reach: another arm is not asked for distances that the sensor doe
   CHECK(ask(0.80, 0.40, 0.90) == Vector3d(0.50, 0.40, 0.50));
   CHECK(ask(0.25, 0.20, 0.32).isZero());  // not asked at all
   CHECK(ask(0.60, 0.51, 0.70).isZero());
+}
+
+TEST_CASE("arm reach: another arm's answers are the views requested, nearly") {
+  const ViewRequest asked = request(30, 10, 0.40, 0.35, 0.45);
+  const Vector3d beside = any_orthogonal<double>(asked.direction);
+  // The answer from some distance and this many degrees beside the direction, moved sideways so that it looks past.
+  const auto answered = [&](double distance, double turned, double past = 0.0) {
+    const Reach reach = checked(
+        [&](const ViewRequest& r, const Joints&) {
+          const Vector3d d = std::cos(deg(turned)) * r.direction + std::sin(deg(turned)) * beside;
+          ReachableView view;
+          view.world_T_optical = look_along(r.target - distance * d + past * any_orthogonal<double>(d), d, 1.0);
+          return std::optional(view);
+        },
+        cell().sensor);
+    return reach(asked, cell().start).has_value();
+  };
+  for (const double distance : {0.331, 0.35, 0.40, 0.45, 0.469}) CHECK(answered(distance, 0.0));
+  for (const double turned : {-14.9, -5.0, 5.0, 14.9}) CHECK(answered(0.40, turned));
+  CHECK(answered(0.40, 0.0, 0.09));
+  const auto says = [](const std::string& text) { return test::says(text); };
+  const std::string limits = " from the target, but distance_min and distance_max of the request are 0.35 m and 0.45 m";
+  CHECK_THROWS_WITH(answered(3.0, 0.0), says("reach: the view of its answer is 3 m" + limits));
+  CHECK_THROWS_WITH(answered(0.02, 0.0), says("reach: the view of its answer is 0.02 m" + limits));
+  CHECK_THROWS_WITH(answered(0.329, 0.0), says(limits));
+  CHECK_THROWS_WITH(answered(0.471, 0.0), says(limits));
+  const std::string direction = "degrees beside the requested direction";
+  CHECK_THROWS_WITH(answered(0.40, 40.0), says("sees the target from 40 " + direction));
+  for (const double turned : {-15.1, 15.1, 90.0, 180.0}) CHECK_THROWS_WITH(answered(0.40, turned), says(direction));
+  CHECK_THROWS_WITH(answered(0.40, 0.0, 0.11), says("does not look at the requested target"));
 }
 
 TEST_CASE("arm reach: what cannot be reached has no view, and an invalid mount is refused") {

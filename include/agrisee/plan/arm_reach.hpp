@@ -24,8 +24,9 @@ Reach reach_of(const Workcell& workcell);
 
 /// A reach that asks another only for distances in the camera's range, and checks its answers.
 /// @param reach of an arm that is not the workcell's
-/// @return throws InputError for an answer whose pose is not rigid, or does not look at the requested target to within
-///   0.1 m, whose joints are not finite, or whose move time is negative or not finite
+/// @return throws InputError for an answer whose pose is not rigid, does not look at the requested target to within
+///   0.1 m, is more than 0.02 m beyond the limits of the distance, or sees the target from more than 15 degrees beside
+///   the requested direction; whose joints are not finite, or whose move time is negative or not finite
 Reach checked(Reach reach, const sensor::DepthCamera& camera);
 
 }  // namespace agrisee::plan

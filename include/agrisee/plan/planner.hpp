@@ -37,7 +37,8 @@ struct ReachableView {
 };
 
 /// Answers a request with the view that the arm reaches soonest from its present joints `current` (rad), or with
-/// nothing when the request is out of reach. The view has to look at the target; its distance and roll are free.
+/// nothing when the request is out of reach. The view has to look at the target along the direction; its roll is free,
+/// and so is its distance, within the limits.
 using Reach = std::function<std::optional<ReachableView>(const ViewRequest&, const Joints& current)>;
 
 /// The state of a scan that a planner may read after each view: the merged cloud, and the views that made it.
