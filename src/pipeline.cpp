@@ -45,7 +45,7 @@ Pipeline::Pipeline(const Workcell& workcell, const Parameters& parameters, Pipel
     : workcell_(workcell),
       parameters_(parameters),
       reach_(std::move(options.reach)),
-      approach_(std::move(options.approach)),
+      approach_(pick::checked(std::move(options.approach))),
       planner_(std::move(options.planner)),
       threads_(options.threads),
       doubts_(std::make_unique<ScanDoubts>()) {

@@ -31,7 +31,8 @@ struct PipelineOptions {
   plan::Reach reach;             ///< whether and how the arm can take a view; empty: the built-in arm model decides.
                                  ///< Its answers are checked (plan::checked)
   pick::ReachApproach approach;  ///< whether and how the arm can approach a fruit; empty: the built-in arm model
-                                 ///< decides, but not if you supply `reach`, because the arm is then unknown
+                                 ///< decides, but not if you supply `reach`, because the arm is then unknown.
+                                 ///< Its answers are checked (pick::checked)
   std::unique_ptr<plan::Planner> planner;  ///< where to look next; empty: the planner that `parameters.planner` names
   std::uint64_t seed = 0;                  ///< of the planner's random draws
   int threads = 1;                         ///< number of threads; the result does not depend on it

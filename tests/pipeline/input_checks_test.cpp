@@ -3,6 +3,7 @@
 #include <agrisee/pipeline.hpp>
 
 #include <limits>
+#include <stdexcept>
 
 #include "catch.hpp"
 #include "spheres.hpp"
@@ -166,6 +167,29 @@ TEST_CASE("an own arm is asked only for distances in the camera's range, by ever
                      next->world_T_optical);
   CHECK(asked > 0);
   CHECK_FALSE(pipeline.views().empty());
+}
+
+TEST_CASE("answers of an own approach are checked, and what it throws leaves the scan as it was") {
+  const Workcell w = cell();
+  PipelineOptions options = own_arm();
+  enum class Answer { right, elsewhere, none } kind = Answer::elsewhere;
+  options.approach = [&](const pick::ApproachRequest& r, const Joints&) -> pick::ApproachAnswer {
+    if (kind == Answer::none) throw std::runtime_error("no answer");
+    const Pose pose = kind == Answer::right ? look_along(r.start, r.direction) : Pose::Identity();
+    return {pick::ReachableApproach{pose, std::nullopt}, PickingReason::reachable};
+  };
+  Pipeline pipeline(w, {}, std::move(options));
+  const auto next = pipeline.next_view(w.start);
+  REQUIRE(next);
+  pipeline.observe(test::render(test::kThreeFruit, w.sensor.intrinsics, next->world_T_optical), next->world_T_optical);
+  CHECK_THROWS_WITH(pipeline.result(), test::says("approach: the origin of world_T_pre_grasp of its answer is"));
+  kind = Answer::none;
+  CHECK_THROWS_WITH(pipeline.result(), "no answer");
+  kind = Answer::right;
+  const ScanResult result = pipeline.result();
+  REQUIRE_FALSE(result.fruits.empty());
+  for (const Fruit& f : result.fruits) CHECK(f.picking->reachable);
+  CHECK(pipeline.next_view(w.start));
 }
 
 }  // namespace input_checks_test

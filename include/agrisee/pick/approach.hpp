@@ -52,11 +52,18 @@ struct ReachableApproach {
 /// that may no longer hold after other fruit have been picked.
 struct ApproachAnswer {
   std::optional<ReachableApproach> reached;            ///< empty when the arm cannot follow the approach
-  PickingReason reason = PickingReason::out_of_reach;  ///< why it cannot
+  PickingReason reason = PickingReason::out_of_reach;  ///< `reachable` if it can, otherwise why it cannot
 };
 
 /// Answers an approach request for an arm whose joints are at `current` (rad). The same request has to get the same
 /// answer each time.
 using ReachApproach = std::function<ApproachAnswer(const ApproachRequest&, const Joints& current)>;
+
+/// An approach function that checks the answers of another.
+/// @param approach of an arm that is not the workcell's
+/// @return throws InputError for an answer whose reason contradicts it, whose pre-grasp pose is not rigid, or has its
+///   origin more than 2 mm from the start or its z axis more than 1 degree beside the direction of the request, or
+///   whose joints are not finite
+ReachApproach checked(ReachApproach approach);
 
 }  // namespace agrisee::pick
