@@ -192,4 +192,13 @@ TEST_CASE("answers of an own approach are checked, and what it throws leaves the
   CHECK(pipeline.next_view(w.start));
 }
 
+TEST_CASE("a scan without a view says that none was taken") {
+  CHECK_THAT(why_no_fruit(Pipeline(cell()).result()), test::says("no view was taken"));
+  PipelineOptions options;
+  options.reach = [](const plan::ViewRequest&, const Joints&) { return std::nullopt; };
+  Pipeline pipeline(cell(), {}, std::move(options));
+  CHECK_FALSE(pipeline.next_view(cell().start));
+  CHECK_THAT(why_no_fruit(pipeline.result()), test::says("no view was taken: the arm can reach no view"));
+}
+
 }  // namespace input_checks_test
