@@ -35,7 +35,7 @@ struct PipelineOptions {
                                  ///< Its answers are checked (pick::checked)
   std::unique_ptr<plan::Planner> planner;  ///< where to look next; empty: the planner that `parameters.planner` names
   std::uint64_t seed = 0;                  ///< of the planner's random draws
-  int threads = 1;                         ///< number of threads; the result does not depend on it
+  int threads = 1;                         ///< number of threads, below 1 as 1; the result does not depend on it
 };
 
 /// One scan of one truss. Use a pipeline in one thread at a time; several pipelines are independent of each other.
@@ -43,6 +43,10 @@ struct PipelineOptions {
 /// Any call can be cancelled from another thread (core/cancellation.hpp). It then throws Cancelled and leaves the
 /// pipeline as it was before the call. `observe` can be cancelled while it reconstructs and registers the frame; once
 /// it updates the map, which takes some tens of milliseconds, it ends as if it had not been cancelled.
+///
+/// `reach` and `approach` of the options are called one at a time, on the thread that called next_view() or result().
+/// What they throw comes out of that call, and so does InputError for an answer that cannot be. The pipeline is then as
+/// it was before the call.
 class Pipeline {
  public:
   /// The scan ends after this many refused views in a row.
@@ -93,7 +97,8 @@ class Pipeline {
   /// Where to look next; empty when the scan is over, for the reason `stop_reason`. Until observe() or refused() is
   /// called, it is asked about the same situation and answers alike.
   /// @param current joints at which the arm is now (rad)
-  /// @throws InputError when `current` is not finite or, with the built-in arm model, far outside its limits; Cancelled
+  /// @throws InputError when `current` is not finite or, with the built-in arm model, far outside its limits, or
+  ///   for an answer of `reach` (plan::checked); what `reach` throws; Cancelled
   std::optional<plan::ReachableView> next_view(const Joints& current);
 
   /// Report that the arm could not take the view that `next_view` returned last; then ask `next_view` for another one.
@@ -128,7 +133,8 @@ class Pipeline {
   const plan::Reach& reach() const { return reach_; }
 
   /// The result of the views so far: clean, segment, locate, and plan the picking from the arm's last posture.
-  /// @throws Cancelled
+  /// @throws InputError for an answer of `approach` (pick::checked), or if the points are so far apart that depths or
+  ///   poses cannot be in metres (check_units); what `approach` throws; Cancelled
   ScanResult result() const;
 
  private:

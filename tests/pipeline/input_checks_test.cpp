@@ -4,6 +4,8 @@
 
 #include <limits>
 #include <stdexcept>
+#include <thread>
+#include <vector>
 
 #include "catch.hpp"
 #include "spheres.hpp"
@@ -199,6 +201,52 @@ TEST_CASE("a scan without a view says that none was taken") {
   Pipeline pipeline(cell(), {}, std::move(options));
   CHECK_FALSE(pipeline.next_view(cell().start));
   CHECK_THAT(why_no_fruit(pipeline.result()), test::says("no view was taken: the arm can reach no view"));
+}
+
+TEST_CASE("what an own reach throws comes out of next_view, from its thread, and the scan goes on as without it") {
+  const std::string planner = GENERATE("gain", "see", "fixed", "random");
+  Parameters p = Parameters::named(planner == "see" ? "see" : "default");
+  p.planner = planner;
+  p.max_views = 3;
+  p.gain.candidates = 100;
+  // The poses of a scan with an arm that fails every now and then, and how often it was told.
+  const auto scan = [&](int period, int& told) {
+    PipelineOptions options = own_arm();
+    options.threads = 3;
+    int asked = 0;
+    options.reach = [&, fly = options.reach, caller = std::this_thread::get_id()](const plan::ViewRequest& r,
+                                                                                  const Joints& joints) {
+      CHECK(std::this_thread::get_id() == caller);
+      if (++asked == period) {
+        period = 2 * period + 1;
+        throw std::runtime_error("no answer");
+      }
+      return r.direction.y() > 0.3 ? fly(r, joints) : std::nullopt;
+    };
+    Pipeline pipeline(cell(), p, std::move(options));
+    std::vector<Pose> poses;
+    for (;;) {
+      std::optional<plan::ReachableView> next;
+      try {
+        next = pipeline.next_view(cell().start);
+      } catch (const std::runtime_error& e) {
+        CHECK(std::string(e.what()) == "no answer");
+        ++told;
+        continue;
+      }
+      if (!next) return poses;
+      poses.push_back(next->world_T_optical);
+      pipeline.observe(test::render(test::kThreeFruit, cell().sensor.intrinsics, poses.back()), poses.back());
+    }
+  };
+  int told = 0;
+  const std::vector<Pose> expected = scan(-1, told);
+  CHECK(told == 0);
+  CHECK(expected.size() == 3);
+  const std::vector<Pose> poses = scan(1, told);
+  CHECK(told > 1);
+  REQUIRE(poses.size() == expected.size());
+  for (std::size_t i = 0; i < poses.size(); ++i) CHECK(poses[i].matrix() == expected[i].matrix());
 }
 
 }  // namespace input_checks_test
