@@ -226,9 +226,15 @@ std::string in_words(const Change& change, const std::vector<Sample>& samples) {
   return "the camera were " + text + " in its own frame (is the hand-eye transform right?)";
 }
 
+/// A motion of the plant between two views.
+struct Motion {
+  Change change;
+  double apart, left;  // median distance along the normals of what views before and after show, without and with it (m)
+};
+
 /// The motion of the plant between two views that explains why those before and after it disagree, if they do. It is
 /// sought where the views before and after disagree most.
-std::optional<Change> motion_of(const std::vector<Sample>& samples, const std::vector<Match>& reported) {
+std::optional<Motion> motion_of(const std::vector<Sample>& samples, const std::vector<Match>& reported) {
   constexpr std::size_t kFew = 60;                   // matches that tell nothing
   constexpr double kDoubt = 0.0015, kLeast = 0.003;  // m; the distance, and the motion
   constexpr double kLeastShare = 5.0;                // of the motion, in distances that are left
@@ -249,7 +255,7 @@ std::optional<Change> motion_of(const std::vector<Sample>& samples, const std::v
   const double left = median_distance(after);
   if (after.size() < kFew || left > kBetter * apart || change.motion().norm() < std::max(kLeast, kLeastShare * left))
     return std::nullopt;
-  return change;
+  return Motion{change, apart, left};
 }
 
 }  // namespace
@@ -264,8 +270,11 @@ CalibrationCheck check_calibration(const std::vector<RegisteredView>& views, con
   CalibrationCheck out;
   if (reported.size() < kFew) return out;
   out.apart = out.mended = median_distance(reported);
-  const std::optional<Change> motion = motion_of(samples, reported);
-  if (out.apart < kDoubt && !motion) return out;
+  const std::optional<Motion> motion = motion_of(samples, reported);
+  if (out.apart < kDoubt) {
+    if (!motion) return out;
+    return {motion->apart, motion->left, in_words(motion->change, samples), motion->change.motion()};
+  }
 
   struct Tried {
     Change change;
@@ -282,14 +291,13 @@ CalibrationCheck check_calibration(const std::vector<RegisteredView>& views, con
     bool along_rays;
     Eigen::Index first, count;
   };
-  if (out.apart >= kDoubt)
-    for (const Unknowns& u : {Unknowns{true, 0, 0}, {false, 0, 1}, {false, 1, 1}, {false, 2, 3}, {false, 2, 6}}) {
-      Change change;
-      change.along_rays = u.along_rays;
-      improve(samples, u.first, u.count, change);
-      try_change(change);
-    }
-  if (motion) try_change(*motion);
+  for (const Unknowns& u : {Unknowns{true, 0, 0}, {false, 0, 1}, {false, 1, 1}, {false, 2, 3}, {false, 2, 6}}) {
+    Change change;
+    change.along_rays = u.along_rays;
+    improve(samples, u.first, u.count, change);
+    try_change(change);
+  }
+  if (motion) try_change(motion->change);
   if (out.mended > kBetter * out.apart && !motion) return out;
   bool shift_told = false;
   for (const Tried& t : all) {

@@ -21,7 +21,9 @@ namespace agrisee::fuse {
 
 /// How well the views of a scan agree on the fruit with the calibration as it is, and with another.
 struct CalibrationCheck {
-  double apart = 0.0;   ///< median distance along the normals of what two views show (m); 0 = nothing to compare
+  /// Median distance along the normals of what two views show (m); 0 = nothing to compare. If only a motion of the
+  /// plant is told: of what a view before and one after it show.
+  double apart = 0.0;
   double mended = 0.0;  ///< the same after the best change (m)
   /// The change in words, if the views agree so much better that it must be right. If several are as good, all of them:
   /// views from one distance cannot tell a wrong scale from a camera further ahead.
