@@ -53,7 +53,7 @@ Quality quality(const SurfaceImage& image) {
 
 TEST_CASE("the noise of normals is that of the middle image, without those that show nothing") {
   CHECK(normal_noise({}) == 0.0);
-  std::vector<SurfaceImage> images(6);  // the last two hold no returns
+  std::vector<SurfaceImage> images(6);                // the last two hold no returns
   const double noise[] = {0.001, 0.004, 0.002, 0.0};  // the last one was discarded
   for (std::size_t i = 0; i < 4; ++i) images[i].noise = noise[i];
   for (std::size_t i = 0; i < 3; ++i) images[i].points = {{0.0f, 0.0f, 0.5f}};
