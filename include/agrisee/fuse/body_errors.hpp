@@ -5,15 +5,16 @@
 /// Errors of neighboring pixels are correlated, so the mean of a view's points on a body is off, however many points
 /// there are. The mean residual of each view on each body, before registration, measures this shared error together
 /// with the error of the view's pose. Errors of poses also show as shifts across the sight lines, which give their
-/// variance; it is subtracted from the mean square of the residuals. What is left is propagated through the
-/// least-squares fit view by view, as for clustered errors (Liang & Zeger, Biometrika 1986). An error that is the same
-/// in all views causes no disagreement; half of the variance of an L515's correlated noise is of this kind, so the
-/// variance is doubled. Errors that only points near each other share are propagated in the same way, patch by patch of
-/// 15 degrees; their variance is that of the mean residuals of the patches about that of their view. Two terms are
-/// added: the scatter of the registration's shifts, divided by the number of views (to centers), and what is the same
-/// in all views: uneven skin, and steep surfaces that smoothing flattens, more so the more noise there is. Volumes
-/// change most if the whole surface is flattened at once, which is added as well. A body that only one or two views
-/// show takes over the variances of the others. Metres, world.
+/// variance; it is subtracted from the mean square of the residuals, but for what registration leaves of it: the less,
+/// the more views there are. What is left is propagated through the least-squares fit view by view, as for clustered
+/// errors (Liang & Zeger, Biometrika 1986). An error that is the same in all views causes no disagreement; half of the
+/// variance of an L515's correlated noise is of this kind, so the variance is doubled. Errors that only points near
+/// each other share are propagated in the same way, patch by patch of 15 degrees; their variance is that of the mean
+/// residuals of the patches about that of their view. Two terms are added: the scatter of the registration's shifts,
+/// divided by the number of views (to centers), and what is the same in all views: uneven skin, and steep surfaces that
+/// smoothing flattens, more so the more noise there is. Volumes change most if the whole surface is flattened at once,
+/// which is added as well. A body that only one or two views show takes over the variances of the others. Metres,
+/// world.
 #pragma once
 
 #include <agrisee/cloud/fit.hpp>
