@@ -38,7 +38,8 @@ struct CloudOrigin {
 };
 
 /// Check that a cloud can have been seen from its origin. `process` calls it.
-/// @throws InputError if a sensor is more than 20 m from the cloud (and from `origin.volume`, if that is known), so that
+/// @throws InputError if a sensor is more than 20 m from the cloud (and from `origin.volume`, if that is known), so
+/// that
 ///   its position must be in millimetres; if there are sensor positions, but the points have neither views nor normals;
 ///   if there are sensor positions, but none for a point's view; if `origin` has a viewpoint and no sensors, but
 ///   `cloud.views` names more than one view, as correct normals would be turned; if a position is not finite, or a
