@@ -40,7 +40,8 @@ std::optional<std::string> doubt_of_joints(const std::vector<View>& views, const
   }
   if (far == 0) return std::nullopt;
   return "by the joints of " + std::to_string(far) + " of " + std::to_string(views.size()) +
-         " views the sensor was up to " + metres(farthest) + " and " + number_text(most_turned / deg(1.0), 2) +
+         " views the sensor was up to " + metres(farthest) + " and " +
+         number_text(0.1 * std::round(most_turned / deg(0.1)), 2) +
          " degrees away from the reported pose: are the joints those of the moment, in radians? Are the arm, its base "
          "and the hand-eye transform right?";
 }
