@@ -163,19 +163,21 @@ TEST_CASE("a voted center that coincides with a candidate is left out") {
 }
 
 TEST_CASE("a small surface has no more than 60 proposals, a large one more") {
-  const auto proposed = [](double spacing, int columns) {
+  const auto proposed = [](double spacing, int columns, bool single_view = false) {
     Cloud cloud;
     for (int x = 0; x < columns; ++x)
       for (int z = 0; z < 8; ++z) test::add_sphere(cloud, {{0.1 * x, 0.5, 0.1 * z}, 0.03}, 0.01, test::everywhere);
     SplitParameters p;
     p.bodies = between(0.02, 0.045);  // one part
     std::vector<BodyCandidate> candidates;
-    detail::propose_voted(cloud, cloud, {}, Grid<float>(cloud, 0.01f), *stages_for(spacing, p), p, candidates);
+    detail::propose_voted(cloud, cloud, {}, Grid<float>(cloud, 0.01f), *stages_for(spacing, p), p, candidates,
+                          single_view);
     return candidates.size();
   };
   CHECK(proposed(0.002, 10) == 60);  // 80 balls, but together not the surface of 21 discs
   CHECK(proposed(0.01, 10) >= 80);   // 80 balls, the surface of over 140 discs
   CHECK(proposed(0.01, 60) >= 480);
+  CHECK(proposed(0.01, 60, true) == 400);
 }
 
 }  // namespace proposals_test

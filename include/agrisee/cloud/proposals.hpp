@@ -102,10 +102,12 @@ inline std::size_t BodyCounts::*propose(Sphere sphere, const char* by, const Bod
 /// A wide range of radii is divided, so that the cells that are voted for, and the votes that are needed, suit the
 /// size.
 /// @param fresh one per voter, as vote_for_centers takes it
+/// @param single_view whether one camera saw all points: then as many centers as vote_for_centers gives by default are
+///   enough, and weaker ones are leaves more often than fruit
 template <typename S>
 void propose_voted(const PointCloud<S>& cloud, const PointCloud<S>& voters, const std::vector<char>& fresh,
                    const Grid<S>& grid, const StageParameters& stages, const SplitParameters& parameters,
-                   std::vector<BodyCandidate>& candidates) {
+                   std::vector<BodyCandidate>& candidates, bool single_view = false) {
   constexpr double kWidest = 2.5;      // largest over smallest radius that vote together
   constexpr double kMost = 60;         // proposals of each part of the range; weaker maxima are noise
   constexpr double kMostOnDisc = 2.8;  // and of each disc of the largest radius, so that a whole tree has enough
@@ -114,7 +116,7 @@ void propose_voted(const PointCloud<S>& cloud, const PointCloud<S>& voters, cons
   const BodyParameters& bodies = parameters.bodies;
   const double discs = area / (kPi * bodies.radius_max * bodies.radius_max);
   const auto most = static_cast<std::size_t>(std::max(kMost, kMostOnDisc * discs));
-  const std::size_t voted = std::max(kMostVotedCenters, most);
+  const std::size_t voted = single_view ? kMostVotedCenters : std::max(kMostVotedCenters, most);
   const std::size_t known = candidates.size();
   const double range = bodies.radius_max / bodies.radius_min;
   const int parts = std::max(1, static_cast<int>(std::ceil(std::log(range) / std::log(kWidest) - 1e-9)));

@@ -231,7 +231,7 @@ void split_by_bodies(const PointCloud<S>& cloud, const Segments& segments, const
       if (std::size_t BodyCounts::*const fault = propose(*sphere, segments.found_by(s + 1), bodies, candidates))
         ++(not_proposed.*fault);
   const Grid<S> grid(cloud, static_cast<S>(stages.growing.radius), threads);
-  propose_voted(cloud, cloud, {}, grid, stages, parameters, candidates);
+  propose_voted(cloud, cloud, {}, grid, stages, parameters, candidates, static_cast<bool>(seen_on));
   for (const MaskBody& m : masks.bodies) candidates.push_back({m.fit.body, "mask", nullptr, m.fit, m.log_odds});
   const bool settles = settled(seen_on, masks);
   BodyParameters winners = bodies;
