@@ -233,23 +233,25 @@ struct Motion {
 };
 
 /// The motion of the plant between two views that explains why those before and after it disagree, if they do. It is
-/// sought where the views before and after disagree most.
+/// sought where the views before and after disagree most, by their distance and by the root of the number of matches:
+/// the distance alone is often largest where a single view is left on one side.
 std::optional<Motion> motion_of(const std::vector<Sample>& samples, const std::vector<Match>& reported) {
   constexpr std::size_t kFew = 60;                   // matches that tell nothing
   constexpr double kDoubt = 0.0015, kLeast = 0.003;  // m; the distance, and the motion
   constexpr double kLeastShare = 5.0;                // of the motion, in distances that are left
   constexpr double kBetter = 0.5;                    // share of the distance that may be left
   Change change;
-  double apart = kDoubt;
+  double apart = 0.0, most = 0.0;
   for (std::size_t v = 1; v < samples.size(); ++v) {
     const std::vector<Match> some = across(reported, v);
     if (some.size() < kFew) continue;
-    const double distance = median_distance(some);
-    if (distance <= apart) continue;
+    const double distance = median_distance(some), significance = distance * std::sqrt(double(some.size()));
+    if (distance <= kDoubt || significance <= most) continue;
+    most = significance;
     apart = distance;
     change.moved_before = v;
   }
-  if (apart <= kDoubt) return std::nullopt;
+  if (!(most > 0.0)) return std::nullopt;
   improve(samples, 8, 3, change);
   const std::vector<Match> after = across(matches(samples, change), change.moved_before);
   const double left = median_distance(after);
