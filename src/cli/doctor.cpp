@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // agrisee doctor: what this program and this machine can do, and whether a workcell makes sense.
 #include <agrisee/arm/collision.hpp>
+#include <agrisee/geometry/angle.hpp>
 #include <agrisee/io/scene.hpp>
 #include <agrisee/plan/arm_reach.hpp>
 #include <agrisee/plan/directions.hpp>
@@ -61,9 +62,7 @@ std::string place_text(const Eigen::Vector3d& p) {
 }
 
 /// The angle between two directions (degrees).
-double degrees_between(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
-  return std::atan2(a.cross(b).norm(), a.dot(b)) * 180.0 / kPi;
-}
+double degrees_between(const Eigen::Vector3d& a, const Eigen::Vector3d& b) { return angle_between(a, b) * 180.0 / kPi; }
 
 /// Where a program lies in PATH; empty if it does not.
 std::string found_in_path(const std::string& program) {

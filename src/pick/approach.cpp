@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <agrisee/geometry/angle.hpp>
 #include <agrisee/pick/approach.hpp>
 
-#include <cmath>
 #include <string>
 #include <utility>
 
@@ -25,8 +25,7 @@ void check_answer(const ApproachRequest& request, const ApproachAnswer& answer) 
   if (!(off <= kOff))
     throw InputError("approach: the origin of world_T_pre_grasp of its answer is " + metres(off) +
                      " from the start of the request. Is it the pose of the gripping point, in world and in metres?");
-  const Eigen::Vector3d z = pose.linear().col(2);
-  const double turned = std::atan2(z.cross(request.direction).norm(), z.dot(request.direction));
+  const double turned = angle_between(pose.linear().col(2), request.direction);
   if (!(turned <= kTurned))
     throw InputError("approach: the z axis of world_T_pre_grasp of its answer is " + number_text(turned / deg(1), 3) +
                      " degrees beside the direction of the request");

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <agrisee/arm/reachability.hpp>
 #include <agrisee/core/rigid_pose.hpp>
+#include <agrisee/geometry/angle.hpp>
 #include <agrisee/plan/arm_reach.hpp>
 
 #include <algorithm>
@@ -27,7 +28,7 @@ void check_answer(const ViewRequest& request, const ReachableView& view) {
                      " from the target, but distance_min and distance_max of the request are " +
                      metres(request.distance_min) + " and " + metres(request.distance_max));
   const Eigen::Vector3d sight = (request.target - view.world_T_optical.translation()) / distance;
-  const double turned = std::atan2(sight.cross(request.direction).norm(), sight.dot(request.direction));
+  const double turned = angle_between(sight, request.direction);
   if (!(turned <= kTurned))
     throw InputError("reach: the view of its answer sees the target from " + number_text(turned / deg(1), 3) +
                      " degrees beside the requested direction");

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <agrisee/core/parallel.hpp>
+#include <agrisee/geometry/angle.hpp>
 #include <agrisee/geometry/bvh.hpp>
 #include <agrisee/neighbors/kdtree.hpp>
 #include <agrisee/study/evaluate.hpp>
@@ -205,10 +206,7 @@ void judge_location(const Fruit& found, const TrueFruit& real, const Samples& sa
     out.centroid_error = (found.centroid - *mean).norm();
   if (const auto mean = mean_of(samples, flags.seen, real.id))
     out.centroid_error_seen = (found.centroid - *mean).norm();
-  if (real.growth_axis) {
-    const Eigen::Vector3d z = found.orientation.col(2);
-    out.axis_error = std::atan2(z.cross(*real.growth_axis).norm(), z.dot(*real.growth_axis));
-  }
+  if (real.growth_axis) out.axis_error = angle_between(found.orientation.col(2), *real.growth_axis);
   if (!found.body) return;
   const Eigen::Vector3d off = found.body->center - real.center;
   out.center_error = off.norm();
