@@ -13,6 +13,9 @@
 namespace agrisee::fuse {
 namespace {
 
+constexpr double kDoubt = 0.0015;  // m; views of a calibrated camera on a plant at rest are not as far apart
+constexpr double kBetter = 0.5;    // share of the distance that may be left after a change
+
 /// A change that may make the views agree: of the calibration, or of where later views are.
 struct Change {
   static constexpr Eigen::Index kUnknowns = 11;
@@ -160,11 +163,11 @@ double median_distance(const std::vector<Match>& matches) {
   return median(distances);
 }
 
-/// The matches of samples before a number with the others.
-std::vector<Match> across(const std::vector<Match>& matches, std::size_t number) {
-  std::vector<Match> out;
+/// The distances (m) of the matches between samples before a number and the others.
+std::vector<double> distances_across(const std::vector<Match>& matches, std::size_t number) {
+  std::vector<double> out;
   for (const Match& m : matches)
-    if ((m.first < number) != (m.second < number)) out.push_back(m);
+    if ((m.first < number) != (m.second < number)) out.push_back(std::abs(m.residual));
   return out;
 }
 
@@ -236,16 +239,15 @@ struct Motion {
 /// sought where the views before and after disagree most, by their distance and by the root of the number of matches:
 /// the distance alone is often largest where a single view is left on one side.
 std::optional<Motion> motion_of(const std::vector<Sample>& samples, const std::vector<Match>& reported) {
-  constexpr std::size_t kFew = 60;                   // matches that tell nothing
-  constexpr double kDoubt = 0.0015, kLeast = 0.003;  // m; the distance, and the motion
-  constexpr double kLeastShare = 5.0;                // of the motion, in distances that are left
-  constexpr double kBetter = 0.5;                    // share of the distance that may be left
+  constexpr std::size_t kFew = 60;     // matches that tell nothing
+  constexpr double kLeast = 0.003;     // m; of the motion
+  constexpr double kLeastShare = 5.0;  // of the motion, in distances that are left
   Change change;
   double apart = 0.0, most = 0.0;
   for (std::size_t v = 1; v < samples.size(); ++v) {
-    const std::vector<Match> some = across(reported, v);
+    std::vector<double> some = distances_across(reported, v);
     if (some.size() < kFew) continue;
-    const double distance = median_distance(some), significance = distance * std::sqrt(double(some.size()));
+    const double distance = median(some), significance = distance * std::sqrt(double(some.size()));
     if (distance <= kDoubt || significance <= most) continue;
     most = significance;
     apart = distance;
@@ -253,8 +255,8 @@ std::optional<Motion> motion_of(const std::vector<Sample>& samples, const std::v
   }
   if (!(most > 0.0)) return std::nullopt;
   improve(samples, 8, 3, change);
-  const std::vector<Match> after = across(matches(samples, change), change.moved_before);
-  const double left = median_distance(after);
+  std::vector<double> after = distances_across(matches(samples, change), change.moved_before);
+  const double left = median(after);
   if (after.size() < kFew || left > kBetter * apart || change.motion().norm() < std::max(kLeast, kLeastShare * left))
     return std::nullopt;
   return Motion{change, apart, left};
@@ -264,8 +266,6 @@ std::optional<Motion> motion_of(const std::vector<Sample>& samples, const std::v
 
 CalibrationCheck check_calibration(const std::vector<RegisteredView>& views, const std::vector<Ellipsoid>& bodies) {
   constexpr std::size_t kFew = 200;              // matches that tell nothing
-  constexpr double kDoubt = 0.0015;              // m; views of a calibrated camera are not as far apart
-  constexpr double kBetter = 0.5;                // share of the distance that may be left after a correction
   constexpr double kAsGood = 1.1, kSame = 1e-4;  // m; changes up to this ratio, and more, are as likely as the best
   const std::vector<Sample> samples = samples_of(views, bodies);
   const std::vector<Match> reported = matches(samples, {});
