@@ -34,6 +34,12 @@ std::unique_ptr<fuse::Views> make_map(const Workcell& workcell, const Parameters
   return std::make_unique<fuse::MergedViews>(workcell.scan_volume, parameters.see.min_separation(), filter, threads);
 }
 
+/// Set the standard error of a body's volume (m3), and that of its mass, which follows.
+void set_volume_error(Body& body, double error, const MassParameters& parameters) {
+  body.volume_error = error;
+  body.mass_error = mass_of({body.volume, error}, parameters).error;
+}
+
 /// Whether any pixel of a frame returned.
 bool shows_something(const sensor::DepthFrame& frame) {
   return std::any_of(frame.depth.begin(), frame.depth.end(), sensor::DepthFrame::valid);
@@ -286,8 +292,7 @@ void Pipeline::tell_body_errors(ScanResult& out) const {
     if (errors[i].center.isZero()) continue;
     Body& body = *bodies[i];
     body.center_covariance = body.center_covariance_by_shape + errors[i].center;
-    body.volume_error = std::hypot(body.volume_error_by_shape, body.volume * errors[i].volume);
-    body.mass_error = mass_of({body.volume, body.volume_error}, parameters_.mass).error;
+    set_volume_error(body, std::hypot(body.volume_error_by_shape, body.volume * errors[i].volume), parameters_.mass);
   }
 }
 
@@ -302,10 +307,9 @@ void Pipeline::doubt_calibration(ScanResult& out) const {
   for (Fruit& f : out.fruits) {
     if (!f.body || check.motion.isZero()) continue;
     constexpr double kSmaller = 0.75;  // of a body's relative volume, per motion in radii: its radius by a quarter
+    const double smaller = kSmaller * f.body->volume * check.motion.norm() / f.body->radii.mean();
     f.body->center_covariance += check.motion * check.motion.transpose();
-    f.body->volume_error =
-        std::hypot(f.body->volume_error, kSmaller * f.body->volume * check.motion.norm() / f.body->radii.mean());
-    f.body->mass_error = mass_of({f.body->volume, f.body->volume_error}, parameters_.mass).error;
+    set_volume_error(*f.body, std::hypot(f.body->volume_error, smaller), parameters_.mass);
   }
 }
 

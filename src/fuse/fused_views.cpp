@@ -90,7 +90,7 @@ Eigen::Vector3d FusedViews::shift_to_reported(const Eigen::Vector3d& center) con
   Eigen::Vector3d shift = Eigen::Vector3d::Zero();
   std::size_t used = 0;
   for (std::size_t v = 0; v < images_.size(); ++v) {
-    if (views_[v].discarded || views_[v].points_in == 0) continue;
+    if (!views_[v].in_map()) continue;
     const Pose reported_T_registered = views_[v].reported * images_[v].world_T_optical.inverse(Eigen::Isometry);
     shift += reported_T_registered * center - center;
     ++used;
@@ -111,7 +111,7 @@ CalibrationCheck FusedViews::check_calibration(const std::vector<Ellipsoid>& bod
 std::vector<RegisteredView> FusedViews::registered_views() const {
   std::vector<RegisteredView> views;
   for (std::size_t v = 0; v < images_.size(); ++v)
-    if (!views_[v].discarded && views_[v].points_in > 0) views.push_back({&images_[v], views_[v].reported, v});
+    if (views_[v].in_map()) views.push_back({&images_[v], views_[v].reported, v});
   return views;
 }
 
@@ -167,7 +167,7 @@ std::vector<std::size_t> FusedViews::views_that_agree(const sensor::SurfaceImage
 /// Number of earlier views that the map is made of.
 std::size_t FusedViews::views_in_map() const {
   std::size_t count = 0;
-  for (std::size_t v = 0; v + 1 < views_.size(); ++v) count += !views_[v].discarded && views_[v].points_in > 0;
+  for (std::size_t v = 0; v + 1 < views_.size(); ++v) count += views_[v].in_map();
   return count;
 }
 

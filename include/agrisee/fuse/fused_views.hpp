@@ -44,6 +44,7 @@ class FusedViews : public Views {
     Pose reported;
     std::size_t points_in;  // inside the scan volume
     bool discarded;
+    bool in_map() const { return !discarded && points_in > 0; }
   };
 
   struct Refuting {                                      // the views that looked through a surfel
