@@ -8,6 +8,7 @@
 #include <set>
 
 #include "catch.hpp"
+#include "pipeline/cell.hpp"
 #include "spheres.hpp"
 #include "support/says.hpp"
 
@@ -15,13 +16,7 @@ using namespace agrisee;
 
 namespace {
 
-Workcell cell() {
-  Workcell w;
-  w.scan_volume.extend({-0.17, 0.40, -0.02});
-  w.scan_volume.extend({0.17, 0.72, 0.42});
-  w.sensor.intrinsics = sensor::intrinsics_from_fov(400, 300, deg(70), deg(55));
-  return w;
-}
+Workcell cell() { return test::three_fruit_cell(); }
 
 /// A pose at this distance from the target (m), looking at it.
 Pose looking_at(const Eigen::Vector3d& target, const Eigen::Vector3d& direction, double distance) {

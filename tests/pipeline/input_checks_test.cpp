@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "catch.hpp"
+#include "pipeline/cell.hpp"
 #include "spheres.hpp"
 #include "support/says.hpp"
 
@@ -18,13 +19,7 @@ namespace {
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
-Workcell cell() {
-  Workcell w;
-  w.scan_volume.extend({-0.17, 0.40, -0.02});
-  w.scan_volume.extend({0.17, 0.72, 0.42});
-  w.sensor.intrinsics = sensor::intrinsics_from_fov(400, 300, deg(70), deg(55));
-  return w;
-}
+Workcell cell() { return test::three_fruit_cell(); }
 
 /// An arm that takes every view as it is asked for; its joints say nothing.
 PipelineOptions own_arm() {

@@ -6,6 +6,7 @@
 #include <agrisee/process.hpp>
 
 #include "catch.hpp"
+#include "pipeline/cell.hpp"
 #include "spheres.hpp"
 #include "support/says.hpp"
 
@@ -16,13 +17,10 @@ namespace pipeline_test {
 namespace {
 
 Workcell cell() {
-  Workcell w;
-  w.scan_volume.extend({-0.17, 0.40, -0.02});
-  w.scan_volume.extend({0.17, 0.72, 0.42});
+  Workcell w = test::three_fruit_cell();
   w.keep_out.push_back({"platform", Box{{0, -0.1, -0.06}, {0.7, 0.7, 0.1}}});
   w.keep_out.push_back({"plant", Box{{0, 0.85, 0.3}, {1.2, 0.5, 1.6}}});
   w.keep_out.push_back({"cluster", Cylinder{{0.015, 0.545, 0.21}, 0.30, 0.9}});
-  w.sensor.intrinsics = sensor::intrinsics_from_fov(400, 300, deg(70), deg(55));
   return w;
 }
 
