@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <agrisee/cloud/robust.hpp>
 #include <agrisee/core/cancellation.hpp>
 #include <agrisee/core/error.hpp>
 #include <agrisee/core/median.hpp>
@@ -183,7 +184,7 @@ void improve(const std::vector<Sample>& samples, Eigen::Index first, Eigen::Inde
     Eigen::MatrixXd information = Eigen::MatrixXd::Zero(count, count);
     Eigen::VectorXd rhs = Eigen::VectorXd::Zero(count);
     for (const Match& m : all) {
-      const double t = m.residual / gate, weight = std::abs(t) < 1.0 ? (1.0 - t * t) * (1.0 - t * t) : 0.0;
+      const double weight = biweight(m.residual / gate);
       const auto row = m.derivatives.segment(first, count);
       information.noalias() += weight * row * row.transpose();
       rhs -= weight * m.residual * row;

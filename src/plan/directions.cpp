@@ -1,21 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <agrisee/core/cancellation.hpp>
+#include <agrisee/geometry/spiral.hpp>
 #include <agrisee/plan/directions.hpp>
 
 #include <algorithm>
-#include <cmath>
 
 namespace agrisee::plan {
 
 std::vector<Eigen::Vector3d> spread_directions(int n) {
   std::vector<Eigen::Vector3d> out;
   out.reserve(static_cast<std::size_t>(std::max(n, 0)));
-  constexpr double kGoldenAngle = 2.399963229728653;
-  for (int i = 0; i < n; ++i) {
-    const double z = 1.0 - (2.0 * i + 1.0) / n;
-    const double s = std::sqrt(1.0 - z * z);
-    out.emplace_back(s * std::cos(kGoldenAngle * i), s * std::sin(kGoldenAngle * i), z);
-  }
+  for (int i = 0; i < n; ++i) out.push_back(spiral_direction(i, n));
   return out;
 }
 

@@ -291,7 +291,7 @@ TEST_CASE("evidence for an ellipsoid: another size costs little, an uneven surfa
     constexpr int kPoints = 2000;
     detail::SurfaceFit::Samples samples;
     for (int i = 0; i < kPoints; ++i) {
-      const Eigen::Vector3d d = detail::spiral_direction(i, kPoints);
+      const Eigen::Vector3d d = spiral_direction(i, kPoints);
       samples.points.push_back(body.center + radius(d) * d);
       samples.normals.push_back(d);
     }
@@ -407,7 +407,7 @@ TEST_CASE("bins of a ball lie at its radius, and what is no fruit's does not cou
   const Ellipsoid body(Sphere{{0.1, 0.5, 0.2}, 0.03});
   detail::SurfaceFit::Samples samples;
   for (int i = 0; i < kPoints; ++i) {
-    const Eigen::Vector3d d = detail::spiral_direction(i, kPoints);
+    const Eigen::Vector3d d = spiral_direction(i, kPoints);
     samples.points.push_back(body.center + 0.03 * d);
     samples.normals.push_back(d);
   }

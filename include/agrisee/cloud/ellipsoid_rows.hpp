@@ -5,6 +5,7 @@
 #pragma once
 
 #include <agrisee/cloud/body_shape.hpp>
+#include <agrisee/cloud/robust.hpp>
 
 #include <Eigen/Core>
 
@@ -79,8 +80,7 @@ RowTerms<Real> row_terms(const Ellipsoid& body, Real x, Real y, Real z, const Re
 /// @param cos_max cosine of the largest angle between the point's normal and the body's
 inline double row_weight(const RowTerms<double>& terms, double gate, double cos_max) {
   const double t = terms.residual / gate;
-  if (!(terms.g > 1e-9) || terms.along < cos_max * terms.steep || !(std::abs(t) < 1.0)) return 0.0;
-  return (1.0 - t * t) * (1.0 - t * t);
+  return terms.g > 1e-9 && terms.along >= cos_max * terms.steep ? biweight(t) : 0.0;
 }
 
 /// The same of several points, none of which is at the center.

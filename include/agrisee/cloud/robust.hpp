@@ -75,6 +75,13 @@ inline double robust_scale(const std::vector<Index>& matches, const std::vector<
   return std::max(least, 1.4826 * detail::nth_size(sizes, sizes.size() / 2));
 }
 
+/// Weight of a residual with Tukey's kernel: (1 - t^2)^2 within the gate, 0 beyond.
+/// @param t residual over gate
+inline double biweight(double t) {
+  const double u = std::max(0.0, 1.0 - t * t);
+  return u * u;
+}
+
 /// rho(r) (m2): r^2 / 2 for small residuals.
 /// @param r residual (m)
 /// @param scale of the residuals (m)
@@ -98,11 +105,7 @@ inline double robust_cost(RobustKernel kernel, double r, double scale) {
 inline double robust_weight(RobustKernel kernel, double r, double scale) {
   const double size = std::abs(r);
   if (kernel == RobustKernel::huber) return size <= 1.345 * scale ? 1.0 : 1.345 * scale / size;
-  if (kernel == RobustKernel::tukey) {
-    const double c = 4.685 * scale;
-    const double u = std::max(0.0, 1.0 - (r / c) * (r / c));
-    return u * u;
-  }
+  if (kernel == RobustKernel::tukey) return biweight(r / (4.685 * scale));
   return 1.0;
 }
 

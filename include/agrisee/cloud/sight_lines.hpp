@@ -12,6 +12,7 @@
 #include <agrisee/core/cloud.hpp>
 #include <agrisee/core/median.hpp>
 #include <agrisee/core/pose.hpp>
+#include <agrisee/geometry/spiral.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -151,10 +152,9 @@ inline double seen_on(const SightLines& lines, const Ellipsoid& body, double mar
   const Eigen::Matrix3d unit = body.A.inverse();  // from the unit sphere to the ellipsoid
   const Eigen::Vector3d front = (body.A * (lines.sensor() - body.center)).normalized();
   const Eigen::Vector3d side = any_orthogonal<double>(front), up = front.cross(side);
-  const double golden = kPi * (3.0 - std::sqrt(5.0));
   int on = 0, missed = 0;
   for (int i = 0; i < kDirections; ++i) {
-    const double rho = kDisc * std::sqrt((i + 0.5) / kDirections), phi = golden * i;
+    const double rho = kDisc * std::sqrt((i + 0.5) / kDirections), phi = kGoldenAngle * i;
     const Eigen::Vector3d u = rho * (std::cos(phi) * side + std::sin(phi) * up) + std::sqrt(1.0 - rho * rho) * front;
     const Eigen::Vector3d p = body.center + unit * u;
     const double range = (p - lines.sensor()).norm();

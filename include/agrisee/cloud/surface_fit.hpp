@@ -6,10 +6,12 @@
 
 #include <agrisee/cloud/body_shape.hpp>
 #include <agrisee/cloud/linear_model.hpp>
+#include <agrisee/cloud/robust.hpp>
 #include <agrisee/cloud/surface_model.hpp>
 #include <agrisee/core/median.hpp>
 #include <agrisee/core/pose.hpp>
 #include <agrisee/geometry/direction_bins.hpp>
+#include <agrisee/geometry/spiral.hpp>
 
 #include <algorithm>
 #include <array>
@@ -26,13 +28,6 @@ inline double log_distance(const Ellipsoid& body, const Eigen::Vector3d& from, c
   const Eigen::Vector3d o = body.times(from - body.center), a = body.times(u);  // |o + r a| = 1
   const double aa = a.squaredNorm(), ao = a.dot(o), root = ao * ao - aa * (o.squaredNorm() - 1.0);
   return std::log(std::max(1e-9, (std::sqrt(std::max(0.0, root)) - ao) / aa));
-}
-
-/// Direction i of `count` that are spread evenly over the sphere, on a spiral (Gonzalez, Mathematical Geosciences 42,
-/// 2010).
-inline Eigen::Vector3d spiral_direction(int i, int count) {
-  const double z = 1.0 - (2.0 * i + 1.0) / count, phi = 2.399963229728653322 * i, s = std::sqrt(1.0 - z * z);
-  return {s * std::cos(phi), s * std::sin(phi), z};
 }
 
 /// Fits a closed surface from one first guess of its axis.
@@ -315,7 +310,7 @@ class SurfaceFit {
       const double r = residuals_[i], t = r / (r > 0.0 ? outside : inside);
       const bool counts = i < samples_.own ? cosines[i] > (gates.any_normal && r < 0.0 ? 0.0 : kOwnCosine)
                                            : gates.join && cosines[i] > kJoinedCosine && std::abs(r) < parameters_.join;
-      weights_[i] = counts && std::abs(t) < 1.0 && !at_top(i) ? (1.0 - t * t) * (1.0 - t * t) : 0.0;
+      weights_[i] = counts && !at_top(i) ? biweight(t) : 0.0;
     }
     return true;
   }

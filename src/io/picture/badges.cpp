@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "io/picture/badges.hpp"
 
+#include <agrisee/geometry/spiral.hpp>
+
 #include <cmath>
 
 namespace agrisee::io {
@@ -39,8 +41,8 @@ std::vector<Badge> place_badges(const std::vector<Badge>& wanted, const std::vec
   for (const Badge& badge : wanted) {
     Badge best = badge;
     for (int k = 0; k < kPlaces; ++k) {  // the places of Vogel's spiral fill the plane evenly, the nearest first
-      constexpr float kGoldenAngle = 2.3999632f;
-      const float distance = kSpread * std::sqrt(static_cast<float>(k)), angle = kGoldenAngle * static_cast<float>(k);
+      const float distance = kSpread * std::sqrt(static_cast<float>(k)),
+                  angle = static_cast<float>(kGoldenAngle) * static_cast<float>(k);
       const Badge at{badge.center + distance * Eigen::Vector2f(std::cos(angle), std::sin(angle)), badge.radius};
       if (!is_free(at, placed, taken, within)) continue;
       best = at;
