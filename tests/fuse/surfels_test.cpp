@@ -133,6 +133,19 @@ TEST_CASE("surfels two cells away are not looked for, however uncertain they are
     }
 }
 
+TEST_CASE("surfels up to the agreement away are found along any normal") {
+  for (const Vector3f& n : {Vector3f(0, 0, 1), Vector3f(0, -1, 0), Vector3f(1, 1, 1), Vector3f(-0.6f, 0.0f, 0.8f)}) {
+    const Vector3f normal = n.normalized(), middle(0.3f, -0.7f, 0.1f);
+    for (const float side : {-1.0f, 1.0f}) {
+      CAPTURE(normal, side);
+      SurfelMap map = map_of(1.0, 5.0);
+      map.add(middle, normal, 0.01f, 0);
+      CHECK_FALSE(map.add(middle + side * 4.9f * normal, normal, 10.0f, 0));
+      CHECK(map.add(middle + side * 5.1f * normal, normal, 0.01f, 1));
+    }
+  }
+}
+
 TEST_CASE("a sample agrees within the agreement and three standard deviations along the normal") {
   const auto founds = [](double agreement, float z, float sigma) {
     SurfelMap map = map_of(4.0, agreement);

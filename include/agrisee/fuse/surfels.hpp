@@ -3,8 +3,10 @@
 /// Fuses the surfaces of many views into one: surfels at a minimum separation, each the weighted average of all
 /// measurements at its place (point-based fusion, cf. Keller et al., 3DV 2013).
 ///
-/// A sample within the separation of a surfel whose normal agrees moves that surfel along its normal, weighted by
-/// inverse variance. Any other sample creates a new surfel. The density therefore stays even, however often a place is
+/// A sample within the separation of a surfel, across the surface, whose normal agrees moves that surfel along its
+/// normal, weighted by inverse variance. Along the normal it may be off by the agreement and three standard deviations;
+/// the latter count as far as the cells next to the sample's reach (one to two separations), so that noisy samples of a
+/// leaf do not join those of a fruit behind it. Any other sample creates a new surfel. The density therefore stays even, however often a place is
 /// seen, and independent noise averages out. Metres, world. Cost: a few cells per sample; about 80 bytes of memory per
 /// surfel. Defined in `agrisee::agrisee`.
 #pragma once
@@ -55,8 +57,7 @@ class SurfelMap {
   Cloud cloud() const;
 
  private:
-  Index nearest_of_same_surface(const Eigen::Vector3f& p, const Eigen::Vector3f& n, float sigma,
-                                const CellIndex& center) const;
+  Index surfel_of(const Eigen::Vector3f& p, const Eigen::Vector3f& n, float sigma) const;
 
   SurfelParameters parameters_;
   double inverse_cell_ = 1.0;
