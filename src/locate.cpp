@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <agrisee/cloud/closed_surface.hpp>
+#include <agrisee/cloud/growth_axis.hpp>
 #include <agrisee/cloud/labels.hpp>
 #include <agrisee/cloud/poses.hpp>
 #include <agrisee/cloud/spacing.hpp>
@@ -100,11 +101,14 @@ Fruit fruit_of(const Cloud& cloud, const Labels& labels, const Indices& points, 
   fruit.centroid_cluster = c.mean - cluster_origin;  // {R} is parallel to world
   if (parameters.split.fit_bodies) fruit.body = body_of(cloud, points, found, surface, parameters);
   if (parameters.growth_axis && parameters.split.fit_bodies) {
-    BodyAxis round = symmetry_axis(found.fit);
-    if (surface && surface->weight > 0.5) round = {surface->axis, surface->axis_variance};
-    const Eigen::Vector3d z = growth_axis(cloud, labels, ellipsoid_of(*fruit.body), round, parameters.axis);
+    const bool by_surface = surface && surface->weight > 0.5;
+    const std::vector<BodyAxis> axes =
+        by_surface ? std::vector<BodyAxis>{{surface->axis, surface->axis_variance, 0.0}} : body_axes(found.fit);
+    const Eigen::Vector3d stem = stem_direction(cloud, labels, ellipsoid_of(*fruit.body), parameters.axis);
+    const GrowthAxis axis = growth_axis(stem, axes, parameters.axis);
     const double near = 0.2 * (fruit.body ? fruit.body->radii.mean() : parameters.split.bodies.radius_min);
-    fruit.orientation = frame_from_z_and_x(z, densest_point(cloud, points, near) - c.mean);
+    fruit.growth_axis_error = std::sqrt(axis.variance);
+    fruit.orientation = frame_from_z_and_x(axis.direction, densest_point(cloud, points, near) - c.mean);
   } else {
     fruit.orientation = paper_pose_frame(cloud, points, c.mean);
   }
@@ -148,7 +152,8 @@ std::vector<std::optional<ClosedSurface>> closed_surfaces(const Cloud& cloud, co
   for (std::size_t f = 0; f < members.size(); ++f) {
     if (members[f].empty() || split.found[f].by_mask) continue;
     const EllipsoidFit& fit = split.found[f].fit;
-    const Eigen::Vector3d axis = growth_axis(cloud, split.labels, fit, parameters.axis);
+    const Eigen::Vector3d stem = stem_direction(cloud, split.labels, fit.body, parameters.axis);
+    const Eigen::Vector3d axis = growth_axis(stem, body_axes(fit), parameters.axis).direction;
     ClosedSurfaceParameters closing;
     closing.noise = std::max(closing.noise, parameters.split.bodies.fit.sensor_noise / fit.body.mean_radius());
     surfaces[f] = closed_surface(cloud, members[f], residual(labels), fit.body, axis, closing, is_free);

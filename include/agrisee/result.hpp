@@ -133,6 +133,8 @@ struct Fruit {
   std::optional<Body> body;                                    ///< the fitted body, if any
   std::optional<Picking> picking;                              ///< the approach, if planned (pick/picking.hpp)
   std::optional<Ripeness> ripeness = {};                       ///< if the cloud has colors
+  std::optional<double> growth_axis_error = {};  ///< standard deviation (rad) of the orientation's z as the
+                                                 ///< direction to the calyx; none if it is not that
 
   /// Position of the fruit (m, world): the center of its body if one was fitted, else the centroid of its points.
   const Eigen::Vector3d& position() const { return body ? body->center : centroid; }

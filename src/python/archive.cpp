@@ -36,7 +36,7 @@ void members(A& a, Ripeness& r) {
 template <typename A>
 void members(A& a, Fruit& f) {
   a(f.id, f.truss, f.points, f.found_by, f.centroid, f.centroid_cluster, f.sigma, f.orientation, f.body, f.picking,
-    f.ripeness);
+    f.ripeness, f.growth_axis_error);
 }
 template <typename A>
 void members(A& a, FoundTruss& t) {

@@ -162,6 +162,8 @@ void bind_fruit(py::module_& m) {
           "sigma", [](const Fruit& f) { return f.sigma; }, "standard deviation of its points along each axis (m)")
       .def_property_readonly(
           "orientation", [](const Fruit& f) { return f.orientation; }, "3 x 3 rotation of pose")
+      .def_readonly("growth_axis_error", &Fruit::growth_axis_error,
+                    "standard deviation (rad) of the orientation's z as the growth axis, or None if it is not that")
       .def_readonly("body", &Fruit::body, "the ellipsoid, or None")
       .def_readonly("picking", &Fruit::picking, "how to pick it, or None if that was not planned")
       .def(

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <agrisee/cloud/fit.hpp>
 #include <agrisee/cloud/poses.hpp>
 #include <agrisee/core/random.hpp>
 
@@ -46,64 +45,6 @@ TEST_CASE("the paper's pose frame looks at the highest point of the cloud") {
   CHECK(frame.determinant() == Approx(1.0));
   // Nothing to go by: still a frame.
   CHECK(frame_from_z_and_x(Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero()).determinant() == Approx(1.0));
-}
-
-TEST_CASE("the growth axis points to the stem that meets the fruit") {
-  Cloud cloud;
-  test::add_sphere(cloud, {{0, 0, 0}, 0.03}, 0.003, test::everywhere);
-  Labels labels(cloud.size(), 1);
-  const Eigen::Vector3d up = Eigen::Vector3d(0.5, 0.2, 1.0).normalized();
-  for (int i = 0; i < 40; ++i) {
-    cloud.points.push_back(((0.031 + 0.0004 * i) * up).cast<float>());
-    labels.push_back(0);
-  }
-  EllipsoidFit ball;
-  ball.body = Ellipsoid{Sphere{{0, 0, 0}, 0.03}};
-  CHECK(std::acos(growth_axis(cloud, labels, ball).dot(up)) < deg(10));
-  CHECK(growth_axis(Cloud{}, {}, ball).z() == Approx(1.0));  // nothing but gravity
-}
-
-TEST_CASE("the growth axis is the one about which the body is round") {
-  const Eigen::Vector3d axis = Eigen::Vector3d(0.4, -0.5, 1.0).normalized();
-  for (const double polar : {0.85, 1.4}) {  // flat, and oblong
-    INFO("polar semi-axis " << polar);
-    const Eigen::Matrix3d along = axis * axis.transpose();
-    const Eigen::Matrix3d A = (Eigen::Matrix3d::Identity() - along + along / polar) / 0.03;
-    Ellipsoid truth{Sphere{{0.1, 0.5, 0.2}, 0.03}};
-    truth.A = A;
-    Cloud cloud;
-    Rng rng(4);
-    Indices indices;
-    while (cloud.size() < 1500) {
-      const Eigen::Vector3d p = truth.surface(rng.direction()), n = truth.normal(p);
-      if (n.y() > 0.3) continue;  // unseen from behind
-      indices.push_back(static_cast<Index>(cloud.size()));
-      cloud.points.push_back((p + 0.0003 * rng.normal() * n).cast<float>());
-      cloud.normals.push_back(n.cast<float>());
-    }
-    const auto fit = fit_ellipsoid(cloud, indices, Ellipsoid{Sphere{{0.1, 0.5, 0.2}, 0.031}});
-    REQUIRE(fit);
-    const BodyAxis round = symmetry_axis(*fit);
-    const double off = std::acos(std::min(std::abs(round.direction.dot(axis)), 1.0));
-    CHECK(off < deg(4));
-    CHECK(off < 4.0 * std::sqrt(round.variance));
-    CHECK(round.variance < deg(12) * deg(12));
-    const Labels all(cloud.size(), 1);
-    CHECK(std::acos(growth_axis(cloud, all, *fit).dot(axis)) < deg(6));
-    // Stem points at the wrong place, some 50 degrees off, turn it by a few degrees only.
-    Cloud more = cloud;
-    Labels labels = all;
-    const Eigen::Vector3d wrong = (axis + 1.2 * axis.unitOrthogonal()).normalized();
-    for (int i = 0; i < 40; ++i) {
-      more.points.push_back((truth.center + (truth.surface(wrong) - truth.center) * (1.02 + 0.01 * i)).cast<float>());
-      labels.push_back(0);
-    }
-    CHECK(std::acos(growth_axis(more, labels, *fit).dot(axis)) < deg(15));
-  }
-  // A sphere has no such axis.
-  EllipsoidFit ball;
-  ball.body = Ellipsoid{Sphere{{0, 0, 0}, 0.03}};
-  CHECK(!std::isfinite(symmetry_axis(ball).variance));
 }
 
 TEST_CASE("the densest point is the first of those with most others near, wherever it is") {
@@ -153,79 +94,4 @@ TEST_CASE("the centroid of points far from the origin loses no digits") {
   CHECK(c.sigma.y() == Approx(std::sqrt(12.0) * 1e-3).epsilon(1e-5));
   CHECK(c.sigma.z() == 0.0);
   CHECK(centroid(cloud, {2}).sigma.norm() == 0.0);
-}
-
-TEST_CASE("the symmetry axis and its variance by hand") {
-  EllipsoidFit fit;
-  for (int k = 0; k < 6; ++k) fit.shape_covariance(k, k) = k < 5 ? k + 1.0 : 20.0;  // of xx, yy, zz, xy, xz, yz
-  const auto axis = [&](double x, double y, double z) {
-    fit.body.A = Eigen::Vector3d(x, y, z).asDiagonal();
-    return symmetry_axis(fit);
-  };
-  // A flat body: z is short. Towards x the variance of xz counts, towards y that of yz, over the squared gap.
-  CHECK(std::abs(axis(30, 30, 40).direction.z()) == Approx(1.0));
-  CHECK(axis(30, 30, 40).variance == Approx(20.0 / 100.0));
-  // An oblong one: x is long; xy and xz count.
-  CHECK(std::abs(axis(20, 30, 30).direction.x()) == Approx(1.0));
-  CHECK(axis(20, 30, 30).variance == Approx(5.0 / 100.0));
-  // Three lengths: the other two differ by a quarter of what the axis does.
-  CHECK(std::abs(axis(32, 30, 40).direction.z()) == Approx(1.0));
-  CHECK(axis(32, 30, 40).variance == Approx(std::max(5.0 / 64.0, 20.0 / 100.0) + 1.0 / 16.0));
-  CHECK(std::abs(axis(38, 40, 30).direction.z()) == Approx(1.0));
-  CHECK(axis(38, 40, 30).variance == Approx(std::max(5.0 / 64.0, 20.0 / 100.0) + 1.0 / 16.0));
-  CHECK(std::abs(axis(30, 40, 20).direction.y()) == Approx(1.0));  // equal gaps: the shortest
-  CHECK(axis(30, 40, 20).variance == Approx(std::max(4.0 / 100.0, 20.0 / 400.0) + 1.0));
-  CHECK_FALSE(std::isfinite(axis(30, 30, 30).variance));
-  fit.shape_covariance.setZero();
-  CHECK_FALSE(std::isfinite(axis(30, 30, 40).variance));  // not measured
-  // Turned by 45 degrees about z, an oblong body has its axis between x and y; (xx - yy) / 2 tilts it.
-  fit.shape_covariance.diagonal() << 1, 2, 3, 4, 5, 6;
-  fit.body.A << 25, -5, 0, -5, 25, 0, 0, 0, 30;  // 20 along (1, 1), 30 across
-  const BodyAxis turned = symmetry_axis(fit);
-  CHECK(std::abs(turned.direction.dot(Eigen::Vector3d(1, 1, 0))) == Approx(std::sqrt(2.0)));
-  CHECK(turned.variance == Approx(std::max((1.0 + 2.0) / 4.0, (5.0 + 6.0) / 2.0) / 100.0));
-}
-
-TEST_CASE("the growth axis of a ball with one stem point, by hand") {
-  const double r = 0.04;
-  const Ellipsoid ball(Sphere{{0.1, 0.5, 0.2}, r});
-  const auto axis = [&](const Eigen::Vector3d& at, int label = 0, const BodyAxis& round = {}) {
-    Cloud cloud;
-    cloud.points = {(ball.center + r * at).cast<float>(), {5.0f, 5.0f, 5.0f}};
-    return growth_axis(cloud, {label, 0}, ball, round);
-  };
-  const Eigen::Vector3d up = Eigen::Vector3d::UnitZ();
-  const auto near = [](const Eigen::Vector3d& a, const Eigen::Vector3d& b) { return (a - b).norm() < 1e-5; };
-  const auto pulled = [](double x) { return Eigen::Vector3d(x, 0.0, 0.35).normalized(); };
-  // 0.15 radii above the surface, a third of the shell: its weight is (2 / 3)^2, of ten that would count fully.
-  CHECK(near(axis({1.15, 0, 0}), pulled(4.0 / 90.0)));
-  CHECK(near(axis({1.0, 0, 0}), pulled(0.1)));
-  CHECK(near(axis({0.75, 0, 0}), pulled(0.1)));  // in a dimple
-  CHECK(near(axis({0.69, 0, 0}), up));           // too deep
-  CHECK(near(axis({1.46, 0, 0}), up));           // too far
-  CHECK(near(axis({1.0, 0, 0}, 1), up));         // of a fruit
-  CHECK(near(axis({0.6, 0, 0.8}), (Eigen::Vector3d(0, 0, 0.35) + 0.164 * Eigen::Vector3d(0.6, 0, 0.8)).normalized()));
-  CHECK(near(axis({0.6, 0, -0.8}), (Eigen::Vector3d(0, 0, 0.35) + 0.036 * Eigen::Vector3d(0.6, 0, -0.8)).normalized()));
-  // The body's axis, with a variance of 0.01 against 0.1 of the stem: ten times the weight, in the sense of the rest.
-  BodyAxis round;
-  round.variance = 0.01;
-  round.direction = Eigen::Vector3d(0.8, 0, -0.6);
-  CHECK(near(axis({3, 0, 0}, 0, round), Eigen::Vector3d(-8.0, 0, 6.35).normalized()));
-  round.direction = -round.direction;
-  CHECK(near(axis({3, 0, 0}, 0, round), Eigen::Vector3d(-8.0, 0, 6.35).normalized()));
-  round.variance = 1e-9;  // no axis is known so well: a hundred times
-  CHECK(near(axis({3, 0, 0}, 0, round), Eigen::Vector3d(-80.0, 0, 60.35).normalized()));
-  // Points farther than two radii from the center are no calyx, however wide the shell.
-  Cloud stem;
-  stem.points = {(ball.center + r * Eigen::Vector3d(1.95, 0, 0)).cast<float>()};
-  GrowthAxisParameters wide;
-  wide.shell = 1.9;
-  CHECK(near(growth_axis(stem, {0}, ball, BodyAxis(), wide), pulled(0.1 * 0.25)));
-  stem.points[0] = (ball.center + r * Eigen::Vector3d(2.05, 0, 0)).cast<float>();
-  CHECK(near(growth_axis(stem, {0}, ball, BodyAxis(), wide), up));
-  GrowthAxisParameters level;
-  level.up_weight = 0.0;
-  CHECK(growth_axis(Cloud(), {}, ball, BodyAxis(), level) == up);  // nothing known: up
-  round.direction = Eigen::Vector3d(0.8, 0, -0.6);
-  CHECK(near(growth_axis(Cloud(), {}, ball, round, level), Eigen::Vector3d(-0.8, 0, 0.6)));  // upwards
 }

@@ -58,6 +58,7 @@ ScanResult some_result() {
     f.sigma = {0.01, 0.02, 1.0 / 70.0};
     f.orientation = rotation(0.3 + i, 2.0);
     if (i == 0) {
+      f.growth_axis_error = 0.21;
       Body b;
       b.center = {0.03, -0.49, 0.21};
       b.radii = {0.041, 0.04, 0.035};
@@ -151,6 +152,7 @@ TEST_CASE("a result folder holds every file of the contract and reads back") {
     CHECK(a.centroid_cluster == b.centroid_cluster);
     CHECK(a.sigma == b.sigma);
     CHECK(a.orientation.isApprox(b.orientation, 1e-14));
+    CHECK(a.growth_axis_error == b.growth_axis_error);
     CHECK(a.body.has_value() == b.body.has_value());
   }
   CHECK(fruits[0].body->center == result.fruits[0].body->center);
@@ -214,9 +216,10 @@ TEST_CASE("the text files have the contract's keys and columns") {
     for (const auto& fruit : fruits) CHECK(fruit.contains(key));
   for (const char* key : {"picking_order", "picking_after", "reachable", "picking_reason"})
     for (const auto& fruit : fruits) CHECK(fruit.contains(key));
-  for (const char* key : {"center_world", "radii", "body_orientation_world", "center_covariance_world", "completeness",
-                          "confidence", "volume", "volume_error", "mass", "mass_error", "approach_direction_world",
-                          "pre_grasp_position_world", "pre_grasp_orientation_world", "pre_grasp_joints"}) {
+  for (const char* key :
+       {"center_world", "radii", "body_orientation_world", "center_covariance_world", "completeness", "confidence",
+        "volume", "volume_error", "mass", "mass_error", "growth_axis_error", "approach_direction_world",
+        "pre_grasp_position_world", "pre_grasp_orientation_world", "pre_grasp_joints"}) {
     CHECK(fruits[0].contains(key));
     CHECK_FALSE(fruits[1].contains(key));
   }

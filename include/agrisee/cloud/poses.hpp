@@ -4,12 +4,10 @@
 /// Metres, world frame. Cost: linear in the points.
 #pragma once
 
-#include <agrisee/cloud/fit.hpp>
-#include <agrisee/cloud/parameters.hpp>
+#include <agrisee/core/cancellation.hpp>
+#include <agrisee/core/cloud.hpp>
 #include <agrisee/core/pose.hpp>
 #include <agrisee/neighbors/grid.hpp>
-
-#include <limits>
 
 namespace agrisee {
 
@@ -95,85 +93,6 @@ Eigen::Matrix3d paper_pose_frame(const PointCloud<S>& cloud, const Indices& indi
       top < 0 ? Eigen::Vector3d(Eigen::Vector3d::UnitZ())
               : Eigen::Vector3d(cloud.points[static_cast<std::size_t>(top)].template cast<double>() - mean);
   return frame_from_z_and_x(z, densest_point(cloud, indices, radius) - mean);
-}
-
-/// A line through a body's center, and how well its direction is known.
-struct BodyAxis {
-  Eigen::Vector3d direction = Eigen::Vector3d::UnitZ();       ///< unit; its sign means nothing
-  double variance = std::numeric_limits<double>::infinity();  ///< of the direction (rad2)
-};
-
-/// The axis about which a body is closest to round: the semi-axis whose length differs most from the other two. Its
-/// variance is that of the fit, and grows with the difference between the other two. It is infinite for a sphere and
-/// for a body whose covariance is not known.
-inline BodyAxis symmetry_axis(const EllipsoidFit& fit) {
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(fit.body.A);
-  const Eigen::Vector3d& inverse = solver.eigenvalues();  // inverse semi-axes, ascending
-  const double below = inverse[1] - inverse[0], above = inverse[2] - inverse[1];
-  const int apart = above >= below ? 2 : 0;
-  const double gap = std::max(below, above);
-  if (!(gap > 1e-9 * inverse[2]) || !(fit.shape_covariance.trace() > 0.0)) return {};  // a sphere, or not measured
-  BodyAxis axis;
-  axis.direction = solver.eigenvectors().col(apart);
-  double tilt =
-      0.0;  // (rad2): an eigenvector turns towards another by their entry of A over the gap of the eigenvalues
-  for (int other = 0; other < 3; ++other) {
-    if (other == apart) continue;
-    const Eigen::Vector3d u = axis.direction, v = solver.eigenvectors().col(other);
-    Eigen::Matrix<double, 6, 1> entry;
-    entry << u.x() * v.x(), u.y() * v.y(), u.z() * v.z(), u.x() * v.y() + u.y() * v.x(), u.x() * v.z() + u.z() * v.x(),
-        u.y() * v.z() + u.z() * v.y();
-    const double between = inverse[apart] - inverse[other];
-    tilt = std::max(tilt, entry.dot(fit.shape_covariance * entry) / (between * between));
-  }
-  const double oblong = std::min(below, above) / gap;
-  axis.variance = tilt + oblong * oblong;
-  return axis;
-}
-
-/// Direction (unit, world) from a fruit's center towards its calyx. Fruit are round about their growth axis, so the
-/// body's axis gives the line, weighted by its certainty. Its sense follows from unlabeled points just outside the
-/// body (calyx, pedicel; nearer ones weigh more) and, weakly, from gravity. If the body is a sphere, these two give the
-/// whole direction.
-/// @param cloud points (m, world)
-/// @param labels one per point; 0: the point belongs to no fruit
-/// @param body the fruit's body
-/// @param round the axis about which it is round
-/// @param parameters see their struct
-template <typename S>
-Eigen::Vector3d growth_axis(const PointCloud<S>& cloud, const Labels& labels, const Ellipsoid& body,
-                            const BodyAxis& round, const GrowthAxisParameters& parameters = {}) {
-  const double r = body.mean_radius();
-  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
-  double weights = 0.0;
-  for (std::size_t i = 0; i < cloud.size(); ++i) {
-    if (labels[i] != 0) continue;
-    const Eigen::Vector3d p = cloud.points[i].template cast<double>();
-    if ((p - body.center).squaredNorm() > 4.0 * r * r) continue;
-    const double d = body.distance(p);
-    if (d < -0.3 * r || d > parameters.shell * r) continue;
-    const double near = 1.0 - std::max(d, 0.0) / (parameters.shell * r);
-    const Eigen::Vector3d u = (p - body.center).normalized();
-    const double w = near * near * (1.0 + 0.8 * u.z());  // the stem of a hanging fruit is above it
-    sum += w * u;
-    weights += w;
-  }
-  Eigen::Vector3d axis = parameters.up_weight * Eigen::Vector3d::UnitZ();
-  if (weights > 0.0) axis += std::min(1.0, weights / 10.0) * sum / weights;
-  constexpr double kLeastVariance = 1e-3;  // rad2: no fruit's axis is known to better than 2 degrees
-  if (std::isfinite(round.variance)) {
-    const double certainty = 1.0 / (std::max(round.variance, kLeastVariance) * parameters.stem_certainty);
-    const double up = axis.norm() > 1e-9 ? round.direction.dot(axis) : round.direction.z();
-    axis += (up < 0.0 ? -certainty : certainty) * round.direction;
-  }
-  return axis.norm() > 1e-9 ? Eigen::Vector3d(axis.normalized()) : Eigen::Vector3d(Eigen::Vector3d::UnitZ());
-}
-
-/// growth_axis of a fitted body, with its symmetry_axis.
-template <typename S>
-Eigen::Vector3d growth_axis(const PointCloud<S>& cloud, const Labels& labels, const EllipsoidFit& fit,
-                            const GrowthAxisParameters& parameters = {}) {
-  return growth_axis(cloud, labels, fit.body, symmetry_axis(fit), parameters);
 }
 
 }  // namespace agrisee

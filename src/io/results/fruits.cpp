@@ -95,6 +95,7 @@ void add_head(CsvWriter& csv, bool ripeness) {
   for (const char* name : {"position_world", "position_cluster"})
     for (const char* axis : {"_x", "_y", "_z"}) csv.cell(std::string(name) + axis);
   csv.cell("truss");
+  csv.cell("growth_axis_error");
   if (ripeness)
     for (const char* name : {"ripeness_class", "ripeness_probability", "ripe_share", "ripe_share_error", "lab_l",
                              "lab_a", "lab_b", "hue", "hue_error"})
@@ -125,6 +126,8 @@ Json to_json(const Fruit& fruit) {
   j["centroid_world"] = json_list(fruit.centroid, "fruit: centroid_world is not finite");
   j["sigma_world"] = json_list(fruit.sigma, "fruit: sigma_world is not finite");
   j["orientation_world"] = json_list(xyzw(fruit.orientation), "fruit: orientation_world is not finite");
+  if (fruit.growth_axis_error)
+    j["growth_axis_error"] = finite(*fruit.growth_axis_error, "fruit: growth_axis_error is not finite");
   if (fruit.body) {
     const Body& body = *fruit.body;
     j["center_world"] = json_list(body.center, "fruit: center_world is not finite");
@@ -276,6 +279,10 @@ std::string fruits_csv_text(const std::vector<Fruit>& fruits) {
     csv.cells(fruit.position());
     csv.cells(fruit.position_cluster());
     csv.cell(static_cast<std::size_t>(fruit.truss));
+    if (fruit.growth_axis_error)
+      csv.cell(*fruit.growth_axis_error);
+    else
+      csv.empty_cells(1);
     if (ripeness) add_ripeness(csv, fruit.ripeness);
     csv.end_row();
   }
@@ -309,6 +316,7 @@ std::vector<Fruit> read_fruits(const std::filesystem::path& path) {
     fruit.centroid = value.at("centroid_world").numbers<3>();
     fruit.sigma = value.at("sigma_world").numbers<3>();
     fruit.orientation = rotation(value.at("orientation_world"));
+    if (value.has("growth_axis_error")) fruit.growth_axis_error = value.at("growth_axis_error").number();
     if (value.has("center_world") && value.has("radii")) fruit.body = body_of(value);
     if (value.has("picking_order")) fruit.picking = picking_of(value);
     if (value.has("ripeness")) fruit.ripeness = ripeness_of(value.at("ripeness"));
