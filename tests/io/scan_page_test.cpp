@@ -154,6 +154,28 @@ TEST_CASE("the page of a scan is complete, loads nothing and contains the result
   }
 }
 
+TEST_CASE("the page draws the arm and the camera of the workcell") {
+  Workcell workcell = cell();
+  workcell.arm = arm::ur_model("ur10e");
+  workcell.sensor.housing_radius = 0.065;
+  workcell.sensor.housing_depth = 0.126;
+  workcell.world_T_base.translation() = Eigen::Vector3d(0.1, -0.2, 0.7);
+  ScanResult result = scanned(10, 1);
+  View& view = result.views[0];
+  view.joints = workcell.start;
+  view.world_T_optical = optical_pose(workcell, workcell.start);
+  const nlohmann::json data = data_of(io::scan_page(result, workcell, {}, {}));
+  CHECK(data["arm_radii"].back() == 0.065);
+  const nlohmann::json housing = data["views"][0]["arm"].back();  // its back, then its front: the optical center
+  Eigen::Matrix<double, 6, 1> ends;
+  for (Eigen::Index i = 0; i < 6; ++i) ends[i] = housing[static_cast<std::size_t>(i)].get<double>();
+  const Eigen::Vector3d camera = view.world_T_optical.translation();
+  const Eigen::Vector3d behind = camera - 0.126 * view.world_T_optical.linear().col(2);
+  const Eigen::Vector3d first = ends.head<3>(), second = ends.tail<3>();
+  CHECK(std::min((first - camera).norm(), (second - camera).norm()) < 1e-4);
+  CHECK(std::min((first - behind).norm(), (second - behind).norm()) < 1e-4);
+}
+
 TEST_CASE("texts on the page of a scan cannot become markup") {
   ScanResult result = scanned(10, 1);
   Workcell workcell = cell();

@@ -3,6 +3,7 @@
 #include <agrisee/cloud/spacing.hpp>
 #include <agrisee/io/palette.hpp>
 #include <agrisee/io/scan_page.hpp>
+#include <agrisee/plan/arm_reach.hpp>
 
 #include <algorithm>
 #include <cstring>
@@ -212,9 +213,7 @@ std::string page_data(const ScanResult& result, const Workcell& workcell, const 
   for (const auto& [u, v] : {std::pair{0, 0}, {k.width - 1, 0}, {k.width - 1, k.height - 1}, {0, k.height - 1}})
     j["sensor_rays"].push_back(rounded(k.ray(u, v)));
 
-  arm::Mount mount;
-  mount.world_T_base = workcell.world_T_base;
-  mount.tool0_T_optical = workcell.tool0_T_optical;
+  const arm::Mount mount = plan::mount_of(workcell);
   for (const arm::Piece& piece : arm::pieces_in_world(Joints::Zero(), mount))
     j["arm_radii"].push_back(piece.cylinder.radius);
   j["views"] = Json::array();
