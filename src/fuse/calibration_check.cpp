@@ -233,7 +233,8 @@ std::string in_words(const Change& change, const std::vector<Sample>& samples) {
 /// A motion of the plant between two views.
 struct Motion {
   Change change;
-  double apart, left;  // median distance along the normals of what views before and after show, without and with it (m)
+  double apart = 0.0, left = 0.0;  ///< median distance of what views before and after show, without and with it (m)
+  double left_of_all = 0.0;        ///< with it, that of what any two views show (m)
 };
 
 /// The motion of the plant between two views that explains why those before and after it disagree, if they do. It is
@@ -256,61 +257,80 @@ std::optional<Motion> motion_of(const std::vector<Sample>& samples, const std::v
   }
   if (!(most > 0.0)) return std::nullopt;
   improve(samples, 8, 3, change);
-  std::vector<double> after = distances_across(matches(samples, change), change.moved_before);
+  const std::vector<Match> mended = matches(samples, change);
+  std::vector<double> after = distances_across(mended, change.moved_before);
   const double left = median(after);
   if (after.size() < kFew || left > kBetter * apart || change.motion().norm() < std::max(kLeast, kLeastShare * left))
     return std::nullopt;
-  return Motion{change, apart, left};
+  return Motion{change, apart, left, median_distance(mended)};
+}
+
+/// A change of the calibration, and the median distance that it leaves of what two views show, and of what views before
+/// and after the motion do (m).
+struct Tried {
+  Change change;
+  double left, left_across;
+};
+
+/// The best changes of the calibration, those of fewer unknowns first.
+std::vector<Tried> tried(const std::vector<Sample>& samples, std::size_t reported,
+                         const std::optional<Motion>& motion) {
+  struct Unknowns {
+    bool along_rays;
+    Eigen::Index first, count;
+  };
+  std::vector<Tried> all;
+  for (const Unknowns& u : {Unknowns{true, 0, 0}, {false, 0, 1}, {false, 1, 1}, {false, 2, 3}, {false, 2, 6}}) {
+    Change change;
+    change.along_rays = u.along_rays;
+    improve(samples, u.first, u.count, change);
+    const std::vector<Match> after = matches(samples, change);
+    if (2 * after.size() < reported) continue;  // it only tears the views apart
+    std::vector<double> across;
+    if (motion) across = distances_across(after, motion->change.moved_before);
+    const double infinity = std::numeric_limits<double>::infinity();
+    all.push_back({change, median_distance(after), across.empty() ? infinity : median(across)});
+  }
+  return all;
 }
 
 }  // namespace
 
 CalibrationCheck check_calibration(const std::vector<RegisteredView>& views, const std::vector<Ellipsoid>& bodies) {
-  constexpr std::size_t kFew = 200;              // matches that tell nothing
-  constexpr double kAsGood = 1.1, kSame = 1e-4;  // m; changes up to this ratio, and more, are as likely as the best
+  constexpr std::size_t kFew = 200;  // matches that tell nothing
   const std::vector<Sample> samples = samples_of(views, bodies);
   const std::vector<Match> reported = matches(samples, {});
   CalibrationCheck out;
   if (reported.size() < kFew) return out;
   out.apart = out.mended = median_distance(reported);
-  const std::optional<Motion> motion = motion_of(samples, reported);
-  if (out.apart < kDoubt) {
-    if (!motion) return out;
+  std::optional<Motion> motion = motion_of(samples, reported);
+  const auto of_motion = [&]() -> CalibrationCheck {
     return {motion->apart, motion->left, in_words(motion->change, samples), motion->change.motion()};
-  }
+  };
+  if (out.apart < kDoubt) return motion ? of_motion() : out;
 
-  struct Tried {
-    Change change;
-    double apart;
+  const auto as_good = [](double left, double best) {
+    constexpr double kAsGood = 1.1, kSame = 1e-4;  // m; changes up to this ratio, and more, are as likely as the best
+    return left <= kAsGood * best + kSame;
   };
-  std::vector<Tried> all;  // those of fewer unknowns first
-  const auto try_change = [&](const Change& change) {
-    const std::vector<Match> after = matches(samples, change);
-    if (2 * after.size() < reported.size()) return;  // it only tears the views apart
-    all.push_back({change, median_distance(after)});
-    out.mended = std::min(out.mended, all.back().apart);
-  };
-  struct Unknowns {
-    bool along_rays;
-    Eigen::Index first, count;
-  };
-  for (const Unknowns& u : {Unknowns{true, 0, 0}, {false, 0, 1}, {false, 1, 1}, {false, 2, 3}, {false, 2, 6}}) {
-    Change change;
-    change.along_rays = u.along_rays;
-    improve(samples, u.first, u.count, change);
-    try_change(change);
+  std::vector<Tried> all = tried(samples, reported.size(), motion);
+  for (const Tried& t : all) {
+    out.mended = std::min(out.mended, t.left);
+    if (motion && !as_good(motion->left, t.left_across)) motion.reset();
   }
-  if (motion) try_change(motion->change);
-  if (out.mended > kBetter * out.apart && !motion) return out;
+  if (motion) out.mended = std::min(out.mended, motion->left_of_all);
   bool shift_told = false;
   for (const Tried& t : all) {
-    if (t.apart > kAsGood * out.mended + kSame) continue;
+    if (t.left > kBetter * out.apart || !as_good(t.left, out.mended)) continue;
     const bool shifted = !t.change.shift().isZero();
     if (shifted && shift_told) continue;  // its turn explains nothing more
     shift_told |= shifted;
     out.mistake += (out.mistake.empty() ? "" : ", or if ") + in_words(t.change, samples);
-    out.motion = t.change.motion();  // tried last
   }
+  if (!motion) return out;
+  if (out.mistake.empty()) return of_motion();
+  out.mistake += ", or if " + in_words(motion->change, samples);
+  out.motion = motion->change.motion();
   return out;
 }
 

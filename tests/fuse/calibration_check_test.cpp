@@ -133,6 +133,33 @@ TEST_CASE("a plant that moves once is told from a camera that is not calibrated,
   CHECK(check.mistake == "the plant had moved by " + number_text(1e3 * check.motion.norm(), 2) + " mm between views " +
                              std::to_string(before - 1) + " and " + std::to_string(before));
   CHECK((check.motion - motion).norm() < 5e-4);
+  CHECK(check.mended < 0.5 * check.apart);
+}
+
+TEST_CASE("a plant that moves while each pose is a little wrong is not taken for a wrong hand-eye transform") {
+  struct Case {
+    double pose_error, motion;
+    unsigned seed;
+  };
+  const Case c = GENERATE(Case{0.002, 0.008, 1}, Case{0.002, 0.015, 2}, Case{0.002, 0.03, 3});
+  CAPTURE(c.pose_error, c.motion, c.seed);
+  std::mt19937 random(c.seed);
+  std::normal_distribution<double> normal(0.0, c.pose_error);
+  const CalibrationCheck check = scan_with(
+                                     no_mistake,
+                                     [&](const Pose& p, std::size_t v) {
+                                       Pose off = p;
+                                       for (int a = 0; a < 3; ++a) off.translation()[a] += normal(random);
+                                       return v < 4 ? off : Pose(Eigen::Translation3d(c.motion, 0.0, 0.0) * off);
+                                     },
+                                     0.001)
+                                     .check();
+  CHECK(check.mistake ==
+        "the plant had moved by " + number_text(1e3 * check.motion.norm(), 2) + " mm between views 3 and 4");
+  CHECK((check.motion - Eigen::Vector3d(c.motion, 0.0, 0.0)).norm() < 3.0 * c.pose_error);
+  // Of what is seen before and after the motion; what all views show is less than 4 mm apart.
+  CHECK(check.apart > std::min(0.0038, 0.48 * c.motion));
+  CHECK(check.mended < 0.5 * check.apart);
 }
 
 TEST_CASE("a plant that moves by less than the views may differ is not told") {
