@@ -81,11 +81,12 @@ ViewSample sample_of(const sensor::DepthFrame& frame, const Pose& world_T_optica
 
 double agreement(const std::vector<ViewSample>& views, double cell) {
   constexpr std::size_t kMost = 16;  // one bit of a cell's value each
-  std::vector<const ViewSample*> used;
-  const std::size_t step = (views.size() + kMost - 1) / kMost;
-  for (std::size_t i = 0; i < views.size(); i += std::max<std::size_t>(step, 1))
-    if (!views[i].points.empty()) used.push_back(&views[i]);
-  if (used.size() < 2) return 0.0;
+  std::vector<const ViewSample*> with_points, used;
+  for (const ViewSample& view : views)
+    if (!view.points.empty()) with_points.push_back(&view);
+  if (with_points.size() < 2) return 0.0;
+  const std::size_t count = std::min(kMost, with_points.size());
+  for (std::size_t k = 0; k < count; ++k) used.push_back(with_points[k * with_points.size() / count]);
   std::vector<std::vector<CellIndex>> cells(used.size());
   CellTable seen_by;
   for (std::size_t i = 0; i < used.size(); ++i)

@@ -5,7 +5,8 @@
 #include "catch.hpp"
 #include "fuse/three_fruit.hpp"
 
-using namespace test;
+using namespace agrisee;
+using namespace agrisee::test;
 
 namespace {
 
@@ -192,15 +193,26 @@ TEST_CASE("a view does not agree with itself, nor do views without points count"
   CHECK(agreement({twice, {}, elsewhere, {}, twice}, 0.01) == Approx(2.0 / 3.0));
 }
 
-TEST_CASE("of up to sixteen views all are compared, of up to thirty-two every second one") {
-  for (int count = 2; count <= 32; ++count) {
+TEST_CASE("of up to sixteen views all are compared, of more sixteen that are evenly picked") {
+  for (int count = 2; count <= 50; ++count) {
     std::vector<ViewSample> views;
     for (int i = 0; i < count; ++i)  // those with even numbers agree
       views.push_back(points_at({{i % 2 ? 9.0f + float(i) * 3.0f : 0.0f, 0, 1}}));
-    const int even = (count + 1) / 2;
-    const double share = count > 16 ? 1.0 : even > 1 ? double(even) / count : 0.0;
-    CHECK(agreement(views, 0.01) == Approx(share));
+    const int used = std::min(count, 16);
+    int even = 0;
+    for (int k = 0; k < used; ++k) even += k * count / used % 2 == 0;
+    CHECK(agreement(views, 0.01) == Approx(even > 1 ? double(even) / used : 0.0));
   }
+}
+
+TEST_CASE("views without points are not among those that are compared") {
+  std::vector<ViewSample> views(34);
+  for (std::size_t i = 1; i < views.size(); i += 3) views[i] = points_at({{0, 0, 1}});
+  CHECK(agreement(views, 0.01) == 1.0);
+  const std::vector<ViewSample> five = seen(inverted);
+  views.assign(34, ViewSample());
+  for (std::size_t i = 0; i < five.size(); ++i) views[3 * i + 1] = five[i];
+  CHECK(check_poses(views, kNowhere).mistake == "are inverted (optical_T_world)");
 }
 
 TEST_CASE("a mistake is named if 40 % of the points agree with it, and twice as many as without") {
