@@ -6,7 +6,8 @@
 #include "fuse/by_hand.hpp"
 #include "fuse/three_fruit.hpp"
 
-using namespace test;
+using namespace agrisee;
+using namespace agrisee::test;
 
 TEST_CASE("of two views that contradict one another the later is discarded") {
   FusedViews map(kVolume, fine(), 1);
