@@ -165,15 +165,17 @@ ScanResult Pipeline::result() const {
   ScanResult out = process(cloud_, parameters, origin, seen_through, threads_);
   out.raw = raw();
   const double located = out.seconds.locate;
-  timed(out.seconds.locate, [&] { tell_body_errors(out); });
+  timed(out.seconds.locate, [&] {
+    tell_body_errors(out);
+    doubt_calibration(out);
+  });
+  out.completeness = completeness();
   center_on_reported_poses(out);
   if (parameters_.picking.enabled) timed(out.seconds.locate, [&] { plan_picking(out); });
   out.views = views_;
   out.stop_reason = stop_reason_;
-  out.completeness = completeness();
   const std::vector<std::string> of_views = warnings();
   out.warnings.insert(out.warnings.begin(), of_views.begin(), of_views.end());
-  timed(out.seconds.locate, [&] { doubt_calibration(out); });
   out.seconds.plan = seconds_.plan;
   out.seconds.fuse = seconds_.fuse;
   out.seconds.filter += seconds_.filter;
@@ -313,7 +315,8 @@ void Pipeline::doubt_calibration(ScanResult& out) const {
   }
 }
 
-/// Move the result to where all views together, by their reported poses, put it.
+/// Move the result to where all views together, by their reported poses, put it. What compares bodies with the images
+/// of the map, which stay, comes before.
 void Pipeline::center_on_reported_poses(ScanResult& out) const {
   if (map_->images().empty() || out.cloud.empty()) return;
   Eigen::Vector3d center = Eigen::Vector3d::Zero();
@@ -327,6 +330,8 @@ void Pipeline::center_on_reported_poses(ScanResult& out) const {
     if (f.body) f.body->center += shift;
   }
   for (FoundTruss& truss : out.trusses) truss.world_T_truss.translation() += shift;
+  if (out.completeness)
+    for (Completeness::Part& part : out.completeness->fruits) part.center += shift;
 }
 
 /// How to pick each fruit, from where the arm stood last.

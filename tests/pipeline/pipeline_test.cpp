@@ -223,6 +223,31 @@ TEST_CASE("the planner says how complete the scan is") {
   CHECK(std::abs(result.completeness->seen - covered / all) < 0.05);
 }
 
+TEST_CASE("how complete each fruit is, is told of where the result puts it, with wrong poses too") {
+  const Workcell w = cell();
+  Parameters parameters;
+  parameters.max_views = 6;
+  Pipeline pipeline(w, parameters);
+  Joints joints = w.start;
+  while (const auto next = pipeline.next_view(joints)) {
+    joints = *next->joints;
+    const std::size_t number = pipeline.views().size();
+    Pose reported = next->world_T_optical;
+    if (number > 0) reported.pretranslate(Eigen::Vector3d(0.003, 0.0, 0.0));  // the first view is what others fit to
+    pipeline.observe(test::render(test::kThreeFruit, w.sensor.intrinsics, next->world_T_optical, 0.0005, number + 1),
+                     reported);
+  }
+  const ScanResult result = pipeline.result();
+  REQUIRE(result.completeness);
+  REQUIRE(result.fruits.size() == test::kThreeFruit.size());
+  for (const Fruit& fruit : result.fruits) {
+    double nearest = 1.0;
+    for (const Completeness::Part& part : result.completeness->fruits)
+      nearest = std::min(nearest, (part.center - fruit.body->center).norm());
+    CHECK(nearest < 0.001);
+  }
+}
+
 TEST_CASE("every planner terminates within its budget") {
   for (const char* name : {"gain", "see", "fixed", "random"}) {
     for (Parameters p : {Parameters{}, Parameters::paper()}) {
