@@ -4,6 +4,7 @@
 
 #include <agrisee/core/parameter_range.hpp>
 
+#include <algorithm>
 #include <cmath>
 #include <deque>
 #include <optional>
@@ -33,8 +34,9 @@ struct ChannelParameters {
   }
 };
 
-/// Depth images wait for the images that belong to them: a detector answers late, and not for every one. Depth is what
-/// the caller keeps of a depth image, Image a pointer to another image.
+/// Depth images wait for the images that belong to them: a detector answers late, and not for every one. Of more than
+/// 100 depth images those closest to others are dropped, whose labels are missed then; the wait is never shortened.
+/// Depth is what the caller keeps of a depth image, Image a pointer to another image.
 template <typename Depth, typename Image>
 class FrameMatcher {
  public:
@@ -48,7 +50,11 @@ class FrameMatcher {
   explicit FrameMatcher(const ChannelParameters& parameters) : parameters_(parameters) {}
 
   /// Stamps are in seconds.
-  void add_depth(double stamp, Depth depth) { add(depths_, stamp, std::move(depth)); }
+  void add_depth(double stamp, Depth depth) {
+    if (!depths_.empty() && stamp < depths_.front().first) depths_.clear();  // the clock was set back
+    depths_.emplace_back(stamp, std::move(depth));
+    if (depths_.size() > kMostDepths) depths_.erase(closest_to_others());
+  }
   void add_color(double stamp, Image image) { add(colors_, stamp, std::move(image)); }
   void add_labels(double stamp, Image image) { add(labels_, stamp, std::move(image)); }
 
@@ -62,8 +68,7 @@ class FrameMatcher {
       depths_.clear();
       return match;
     }
-    const bool full = depths_.size() == kMost;
-    if (!full && depths_.back().first - depths_.front().first < parameters_.wait) return std::nullopt;
+    if (depths_.back().first - depths_.front().first < parameters_.wait) return std::nullopt;
     Match match = matched(depths_.back().first, depths_.back().second);
     depths_.clear();
     return match;
@@ -73,14 +78,30 @@ class FrameMatcher {
   void forget_depths() { depths_.clear(); }
 
  private:
-  static constexpr std::size_t kMost = 40;  // images of a kind that are kept
+  static constexpr std::size_t kMostDepths = 100;
+  static constexpr std::size_t kMostOthers = 40;  // images of a kind that belong to no waiting depth image
   template <typename T>
   using Stamped = std::deque<std::pair<double, T>>;
 
-  template <typename T>
-  static void add(Stamped<T>& list, double stamp, T item) {
-    list.emplace_back(stamp, std::move(item));
-    if (list.size() > kMost) list.pop_front();
+  /// Of the depth images between the first and the last the one whose neighbors are closest to each other.
+  typename Stamped<Depth>::iterator closest_to_others() {
+    auto best = depths_.begin() + 1;
+    const auto gap = [](auto at) { return (at + 1)->first - (at - 1)->first; };
+    for (auto at = best; at + 1 != depths_.end(); ++at)
+      if (gap(at) < gap(best)) best = at;
+    return best;
+  }
+
+  void add(Stamped<Image>& list, double stamp, Image image) {
+    list.emplace_back(stamp, std::move(image));
+    const auto spare = [&](const std::pair<double, Image>& entry) {
+      return std::none_of(depths_.begin(), depths_.end(), [&](const std::pair<double, Depth>& depth) {
+        return std::abs(depth.first - entry.first) <= parameters_.slop;
+      });
+    };
+    if (list.size() <= kMostOthers || std::size_t(std::count_if(list.begin(), list.end(), spare)) <= kMostOthers)
+      return;
+    list.erase(std::find_if(list.begin(), list.end(), spare));
   }
 
   Match matched(double stamp, const Depth& depth) const {
