@@ -179,6 +179,25 @@ TEST_CASE("depths outside of the camera's range are no returns") {
   CHECK(depths(", depth_scale: 2").front() == Approx(0.2f));
 }
 
+TEST_CASE("a camera's range is of distances along the rays, not of depths") {
+  const TempFolder folder;
+  const sensor::DepthFrame frame = frame_of(0.5f);
+  io::write_depth_npy(folder / "d.npy", frame);
+  const std::string ends = "}\nviews: [{depth: d.npy, pose: " + kPose + "}]\n";
+  const std::string begins = kCamera.substr(0, kCamera.size() - 2);
+  for (const std::string lens : {"", ", distortion: [0.1, 0, 0, 0]"}) {
+    // Points at the corners are 0.524 m away, those beside the middle 0.504 m.
+    const auto depths = [&](const std::string& more) {
+      return io::read_frame(io::read_recorded_views(folder.file("views.yaml", begins + lens + more + ends)), 0).depth;
+    };
+    std::vector<float> corners = depths(""), middle = corners;
+    for (const std::size_t i : {1, 2, 5, 6}) corners[i] = 0.0f;
+    for (const std::size_t i : {0, 3, 4, 7}) middle[i] = 0.0f;
+    CHECK(depths(", range: [0.51, 2]") == corners);
+    CHECK(depths(", range: [0.2, 0.51]") == middle);
+  }
+}
+
 TEST_CASE("the extent of a frame holds its points in world") {
   sensor::DepthFrame frame = frame_of(0.5f);
   frame.depth[7] = 0.0f;  // the lower right corner

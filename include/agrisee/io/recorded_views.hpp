@@ -39,7 +39,7 @@ struct RecordedViews {
 ///   rigid to 1e-3, or an image that does not exist
 RecordedViews read_recorded_views(const std::filesystem::path& path);
 
-/// Read the depth image of one view with its other channels, rectified. Depths outside the camera's range become no
+/// Read the depth image of one view with its other channels, rectified. Points outside the camera's range become no
 /// return.
 /// @param recorded as read_recorded_views returns it
 /// @param view     number of the view, from 0

@@ -82,6 +82,17 @@ void check_scale(const std::string& place, const sensor::DepthFrame& frame, doub
                   format(scale) + " (metres per unit; for an image in millimetres 0.001)");
 }
 
+/// A rectified frame without the depths of points whose distances along the rays the camera does not measure.
+sensor::DepthFrame in_range(sensor::DepthFrame frame, const sensor::DepthCamera& camera) {
+  for (int v = 0; v < frame.intrinsics.height; ++v)
+    for (int u = 0; u < frame.intrinsics.width; ++u) {
+      float& z = frame.depth[frame.intrinsics.index(u, v)];
+      const double distance = double(z) * frame.intrinsics.ray(u, v).norm();
+      if (!(distance >= camera.range_min && distance <= camera.range_max)) z = 0.0f;
+    }
+  return frame;
+}
+
 std::string rows_of(const Pose& pose) {
   check_input(is_rigid(pose), "write_recorded_views: a pose is not rigid");
   std::string out;
@@ -119,12 +130,10 @@ sensor::DepthFrame read_frame(const RecordedViews& recorded, std::size_t number)
     const double scale = recorded.depth_scale.value_or(default_depth_scale(image));
     sensor::DepthFrame frame = to_frame(image, k, scale);
     check_scale((recorded.folder / view.depth).string(), frame, scale);
-    for (float& z : frame.depth)
-      if (!(double(z) >= camera.range_min && double(z) <= camera.range_max)) z = 0.0f;
     const auto whole = [&](const fs::path& path) { return path.empty() ? path : recorded.folder / path; };
     const ChannelFiles& files = view.channels;
     add_channels(frame, {whole(files.color), whole(files.masks), whole(files.boxes)});
-    return sensor::rectified(frame, recorded.distortion);
+    return in_range(sensor::rectified(frame, recorded.distortion), camera);
   } catch (const FileError& e) {
     throw FileError(view.place + ": " + e.what());
   }
