@@ -38,10 +38,11 @@ struct MistakenScan {
 /// @param mistake changes a point of the surface in the optical frame (m) into the one that is measured there
 /// @param reported changes a view's pose into the reported one
 /// @param farther every second view is from so much farther away (m)
+/// @param aside the views look this far beside the fruit, right and left in turns (m)
 MistakenScan scan_with(
     const std::function<Eigen::Vector3d(const Eigen::Vector3d&)>& mistake,
     const std::function<Pose(const Pose&, std::size_t)>& reported = [](const Pose& p, std::size_t) { return p; },
-    double noise = 0.0, std::size_t views = 8, double farther = 0.1) {
+    double noise = 0.0, std::size_t views = 8, double farther = 0.1, double aside = 0.0) {
   std::mt19937 random(1);
   std::normal_distribution<double> normal;
   MistakenScan out;
@@ -52,7 +53,8 @@ MistakenScan scan_with(
     const Eigen::Vector3d x = z.cross(Eigen::Vector3d::UnitZ()).normalized();
     Pose pose = Pose::Identity();
     pose.linear() << x, z.cross(x), z;
-    pose.translation() = Eigen::Vector3d(0.0, 0.55, 0.2) - (0.4 + (v % 2 ? farther : 0.0)) * z;
+    pose.translation() =
+        Eigen::Vector3d(0.0, 0.55, 0.2) - (0.4 + (v % 2 ? farther : 0.0)) * z + (v % 2 ? -aside : aside) * x;
     out.reported.push_back(reported(pose, v));
     sensor::SurfaceImage image;
     image.world_T_optical = out.reported.back();
@@ -99,9 +101,16 @@ TEST_CASE("a wrong scale of the depths is told from a wrong focal length and fro
       scan_with([](const Eigen::Vector3d& p) { return Eigen::Vector3d(1.2 * p.x(), 1.2 * p.y(), p.z()); }).check();
   CHECK(focal.mistake == "the focal lengths were multiplied by 1.2 (are the intrinsics those of the depth images?)");
 
-  const CalibrationCheck rays =
-      scan_with([](const Eigen::Vector3d& p) { return Eigen::Vector3d(p.norm() / p.z() * p); }).check();
-  CHECK((rays.apart < 0.0015 || rays.mistake == "the images held distances along the rays, not depths z"));
+  // Of what the middle of an image shows, distances along the rays hardly differ from depths.
+  const auto along_rays = [](double aside) {
+    return scan_with([](const Eigen::Vector3d& p) { return Eigen::Vector3d(p.norm() / p.z() * p); },
+                     [](const Pose& p, std::size_t) { return p; }, 0.0, 8, 0.1, aside)
+        .check();
+  };
+  CHECK(along_rays(0.0).apart < 0.0015);
+  const CalibrationCheck rays = along_rays(0.12);
+  CHECK(rays.apart > 0.0015);
+  CHECK(rays.mistake == "the images held distances along the rays, not depths z");
 }
 
 TEST_CASE("a hand-eye transform that is left out is found, with its size") {
