@@ -223,6 +223,9 @@ void reads_frames() {
       CHECK((frame.intrinsics.fx == 100.0 && frame.intrinsics.fy == 110.0));
       CHECK((frame.intrinsics.cx == 1.5 && frame.intrinsics.cy == 1.0));
     }
+  auto gray = image_4x3<Image>(true, true);
+  gray.encoding = "mono16";  // as some drivers call it
+  CHECK(interop::depth_frame(gray, info).depth == interop::depth_frame(image_4x3<Image>(true, true), info).depth);
   auto full = image_4x3<Image>(true, false);
   full.data[2] = full.data[3] = 0xff;  // the second pixel: no return
   CHECK(interop::depth_frame(full, info).at(1, 0) == 0.0f);

@@ -8,6 +8,7 @@
 #pragma once
 
 #include <agrisee/core/cloud.hpp>
+#include <agrisee/sensor/depth_encoding.hpp>
 #include <agrisee/sensor/depth_frame.hpp>
 #include <agrisee/sensor/rectify.hpp>
 
@@ -253,9 +254,9 @@ void add_labels(sensor::DepthFrame& frame, const Image& image, double score) {
 
 }  // namespace detail
 
-/// A depth image, `16UC1` (mm; 0 and 65535 = no return) or `32FC1` (m; 0, NaN and infinities = no return), as a frame
-/// in metres, with the colors and labels registered to it. The distortion that its CameraInfo states is removed from
-/// all of them.
+/// A depth image, `16UC1` or `mono16` (mm; 0 and 65535 = no return) or `32FC1` (m; 0, NaN and infinities = no return),
+/// as a frame in metres, with the colors and labels registered to it. The distortion that its CameraInfo states is
+/// removed from all of them.
 /// @param image sensor_msgs/Image  @param info the CameraInfo that came with it
 /// @param rectified whether the image was rectified before, see intrinsics_of
 /// @param channels images that belong to it; a label image without labels says that a detector found nothing
@@ -270,17 +271,12 @@ sensor::DepthFrame depth_frame(const Image& image, const Info& info, bool rectif
   check(image.width == info.width && image.height == info.height,
         std::to_string(image.width) + " x " + std::to_string(image.height) + " pixels, but CameraInfo says " +
             std::to_string(info.width) + " x " + std::to_string(info.height));
-  const bool millimetres = image.encoding == "16UC1", swap = detail::swapped(image);
-  check(millimetres || image.encoding == "32FC1",
-        "encoding has to be 16UC1 or 32FC1, got '" + std::string(image.encoding) + "'");
+  const std::size_t bytes = sensor::depth_bytes(std::string(image.encoding));
+  check(bytes > 0, "encoding has to be 16UC1 or 32FC1, got '" + std::string(image.encoding) + "'");
+  const auto big_endian = static_cast<bool>(image.is_bigendian);
   frame.depth.resize(frame.intrinsics.size());
-  detail::for_each_pixel(image, millimetres ? 2 : 4, [&](std::size_t i, const std::uint8_t* at) {
-    if (!millimetres) {
-      frame.depth[i] = detail::read_number<float>(at, swap);
-      return;
-    }
-    const auto z = detail::read_number<std::uint16_t>(at, swap);
-    frame.depth[i] = z == 0xFFFF ? 0.0f : 0.001f * static_cast<float>(z);
+  detail::for_each_pixel(image, bytes, [&](std::size_t i, const std::uint8_t* at) {
+    frame.depth[i] = sensor::depth_of_pixel(at, bytes, big_endian);
   });
   if (channels.color) detail::add_color(frame, *channels.color);
   if (channels.labels) detail::add_labels(frame, *channels.labels, channels.score);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <agrisee/io/files.hpp>
 #include <agrisee/io/mcap.hpp>
+#include <agrisee/sensor/depth_encoding.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -77,7 +78,7 @@ std::vector<mcap::Message> depth_images(const fs::path& path, const mcap::Conten
     all.push_back(topic);
     const std::string encoding = taken(path, contents, messages.front(),
                                        [](const std::string& bytes) { return ros::read_image(bytes).encoding; });
-    if (encoding == "32FC1" || encoding == "16UC1" || encoding == "mono16") depth.push_back(topic);
+    if (sensor::depth_bytes(encoding) > 0) depth.push_back(topic);
   }
   if (!wanted.empty()) {
     if (!by_topic.count(wanted)) fail(path, "has no images on " + wanted + did_you_mean(wanted, all));

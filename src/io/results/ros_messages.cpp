@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "io/results/ros_messages.hpp"
 
+#include <agrisee/sensor/depth_encoding.hpp>
+
 #include <algorithm>
 #include <cmath>
 
@@ -86,29 +88,17 @@ Image read_image(std::string_view message) {
 }
 
 std::vector<float> depths_of(const Image& image) {
-  const bool floats = image.encoding == "32FC1";
-  if (!floats && image.encoding != "16UC1" && image.encoding != "mono16")
+  const std::size_t bytes = sensor::depth_bytes(image.encoding);
+  if (bytes == 0)
     throw InputError("has the encoding " + excerpt(image.encoding) + ", not that of depths (32FC1 or 16UC1)");
-  const std::size_t bytes = floats ? 4 : 2, width = image.width, height = image.height, step = image.step;
+  const std::size_t width = image.width, height = image.height, step = image.step;
   check_input(width > 0 && height > 0 && step >= width * bytes && image.data.size() / step >= height,
               "has less data than its size says");
   std::vector<float> out(width * height);
+  const auto* data = reinterpret_cast<const std::uint8_t*>(image.data.data());
   for (std::size_t v = 0; v < height; ++v)
-    for (std::size_t u = 0; u < width; ++u) {
-      unsigned char raw[4] = {};
-      for (std::size_t b = 0; b < bytes; ++b)  // the lowest byte first
-        raw[b] = static_cast<unsigned char>(image.data[v * step + u * bytes + (image.big_endian ? bytes - 1 - b : b)]);
-      float z = 0.0f;
-      if (floats) {
-        const std::uint32_t bits =
-            raw[0] | std::uint32_t{raw[1]} << 8 | std::uint32_t{raw[2]} << 16 | std::uint32_t{raw[3]} << 24;
-        std::memcpy(&z, &bits, sizeof z);
-      } else {
-        const unsigned mm = raw[0] | unsigned{raw[1]} << 8;
-        z = mm == 65535 ? 0.0f : static_cast<float>(mm) * 0.001f;
-      }
-      out[v * width + u] = std::isfinite(z) && z > 0.0f ? z : 0.0f;
-    }
+    for (std::size_t u = 0; u < width; ++u)
+      out[v * width + u] = sensor::depth_of_pixel(data + v * step + u * bytes, bytes, image.big_endian);
   return out;
 }
 
