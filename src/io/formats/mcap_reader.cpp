@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
 #include <fstream>
-#include <zlib.h>
 
+#include "io/formats/crc32.hpp"
 #include "io/formats/mcap.hpp"
 #include "io/formats/mcap_records.hpp"
 #include "io/formats/text.hpp"
@@ -161,15 +161,15 @@ class Walk {
 
   std::uint32_t crc_of(std::uint64_t from, std::uint64_t size) {
     std::vector<char> block(1 << 20);
-    uLong crc = ::crc32(0, nullptr, 0);
+    std::uint32_t crc = 0;
     while (size > 0) {
       const std::uint64_t part = std::min<std::uint64_t>(size, block.size());
       source_.read(from, block.data(), part);
-      crc = ::crc32(crc, reinterpret_cast<const unsigned char*>(block.data()), static_cast<uInt>(part));
+      crc = crc32({block.data(), static_cast<std::size_t>(part)}, crc);
       from += part;
       size -= part;
     }
-    return static_cast<std::uint32_t>(crc);
+    return crc;
   }
 
   Source& source_;

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
 #include <functional>
-#include <zlib.h>
 
+#include "io/formats/crc32.hpp"
 #include "io/formats/mcap.hpp"
 #include "io/formats/mcap_records.hpp"
 
@@ -14,11 +14,6 @@ constexpr std::size_t kChunkSize = 4 << 20;  // bytes after which a chunk ends
 /// A record with opcode and length.
 std::string whole(std::uint8_t opcode, std::string_view content) {
   return Record().u8(opcode).u64(content.size()).bytes(content).str();
-}
-
-std::uint32_t crc_of(std::string_view bytes) {
-  return static_cast<std::uint32_t>(
-      ::crc32_z(0, reinterpret_cast<const unsigned char*>(bytes.data()), static_cast<z_size_t>(bytes.size())));
 }
 
 }  // namespace
@@ -76,7 +71,7 @@ void Writer::end_chunk() {
                     .u64(first_)
                     .u64(last_)
                     .u64(chunk_.size())
-                    .u32(crc_of(chunk_))
+                    .u32(crc32(chunk_))
                     .text("")
                     .u64(chunk_.size())
                     .bytes(chunk_)

@@ -12,6 +12,7 @@
 #define STBI_NO_STDIO
 #include <stb_image.h>
 
+#include "io/formats/crc32.hpp"
 #include "io/formats/png_file.hpp"
 
 namespace agrisee::io {

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "io/formats/png_file.hpp"
 
-#include <array>
+#include <cstdint>
 
+#include "io/formats/crc32.hpp"
 #include "io/formats/deflate.hpp"
 
 namespace agrisee::io {
@@ -21,20 +22,6 @@ void put_chunk(std::string& out, const char* type, std::string_view data) {
 }
 
 }  // namespace
-
-std::uint32_t crc32(std::string_view bytes) {
-  static const std::array<std::uint32_t, 256> table = [] {
-    std::array<std::uint32_t, 256> out{};
-    for (std::uint32_t n = 0; n < 256; ++n) {
-      out[n] = n;
-      for (int k = 0; k < 8; ++k) out[n] = out[n] & 1u ? 0xEDB88320u ^ out[n] >> 1 : out[n] >> 1;
-    }
-    return out;
-  }();
-  std::uint32_t crc = 0xFFFFFFFFu;
-  for (const char c : bytes) crc = table[(crc ^ static_cast<unsigned char>(c)) & 255u] ^ crc >> 8;
-  return ~crc;
-}
 
 std::string png_file(int width, int height, int bits, PngKind kind, std::string_view rows) {
   std::string header;

@@ -4,7 +4,6 @@
 /// how to write one.
 #pragma once
 
-#include <cstdint>
 #include <string>
 #include <string_view>
 
@@ -15,9 +14,6 @@ constexpr std::string_view kPngSignature("\x89PNG\r\n\x1a\n", 8);
 
 /// The kinds of images that are written, by the number that a PNG file has for them.
 enum class PngKind : char { gray = 0, rgb = 2 };
-
-/// The checksum of a chunk (CRC-32; annex D).
-std::uint32_t crc32(std::string_view bytes);
 
 /// The bytes of a PNG file.
 /// @param width, height of the image (pixels), at least 1
