@@ -37,26 +37,26 @@ void GainPlanner::observe(const Progress& progress) {
   model_.update(progress, split_, free_space_);
   ranked_.clear();
   left_out_.clear();
-  refused_first_ = 0;
+  refused_ = 0;
   if (last_) left_out_.push_back(*last_);  // taken just now: from the same place it shows the same
   last_.reset();
+  stopped_at_.reset();
 }
 
 std::optional<ReachableView> GainPlanner::next(const Progress& progress, const Joints& current, const Reach& reach) {
+  if (stopped_at_ && *stopped_at_ == current) return std::nullopt;
   if (progress.cloud.empty()) return front_view(static_cast<int>(progress.views.size()), current, reach);
   update_candidates(current, reach);
+  if (!last_ || current != asked_from_) rank_again(current);  // a view was refused, or the arm has moved
   if (ranked_.empty()) {
     const auto completeness = completeness_;
     try {
-      if (const auto reason = rank(current, reach)) return stop(*reason);
+      if (const auto reason = rank(current, reach)) return stop(*reason, current);
     } catch (...) {  // cancelled: do not keep half a ranking
       ranked_.clear();
       completeness_ = completeness;
       throw;
     }
-  } else if (!last_ || current != asked_from_) {  // a view was refused, or the arm has moved
-    rank_again(current);
-    if (ranked_.empty()) return stop(StopReason::no_reachable_view);
   }
   Scored& chosen = ranked_.front();
   // From the present joints the view may be reached with others.
@@ -69,7 +69,8 @@ std::optional<ReachableView> GainPlanner::next(const Progress& progress, const J
 void GainPlanner::refused() {
   if (last_) left_out_.push_back(*last_);
   last_.reset();
-  ++refused_first_;
+  stopped_at_.reset();
+  ++refused_;
 }
 
 std::vector<ReachableView> GainPlanner::candidates() const {
@@ -81,11 +82,9 @@ std::vector<ReachableView> GainPlanner::candidates() const {
 
 std::optional<ReachableView> GainPlanner::front_view(int taken, const Joints& current, const Reach& reach) {
   // Four views near the front that show nothing end the scan.
-  if (taken >= 4) return stop(StopReason::nothing_seen);
-  auto view =
-      first_view(volume_, robot_, current, reach, request(Eigen::Vector3d::UnitY()), refused_first_ + 12 * taken);
-  if (!view && taken > 0) return stop(StopReason::nothing_seen);
-  if (!view) return stop(StopReason::no_reachable_view);
+  if (taken >= 4) return stop(StopReason::nothing_seen, current);
+  auto view = first_view(volume_, robot_, current, reach, request(Eigen::Vector3d::UnitY()), refused_ + 12 * taken);
+  if (!view) return stop(taken > 0 ? StopReason::nothing_seen : StopReason::no_reachable_view, current);
   return view;
 }
 
@@ -134,6 +133,7 @@ std::optional<StopReason> GainPlanner::rank(const Joints& current, const Reach& 
   const auto poor = [least = least_gain()](const Scored& s) { return s.view.gain < least; };
   ranked_.erase(std::remove_if(ranked_.begin(), ranked_.end(), poor), ranked_.end());
   sort_ranked();
+  if (ranked_.empty() && refused_ > 0) return StopReason::no_reachable_view;  // the refused ones were worth taking
   if (ranked_.empty()) return any ? StopReason::low_gain : StopReason::no_frontier;
   return std::nullopt;
 }
@@ -199,8 +199,9 @@ double GainPlanner::least_gain() const {
   return parameters_.min_gain * std::max(model_.area(), 1e-6) / std::max(model_.reliability(), 1e-3);
 }
 
-std::optional<ReachableView> GainPlanner::stop(StopReason reason) {
+std::optional<ReachableView> GainPlanner::stop(StopReason reason, const Joints& current) {
   reason_ = reason;
+  stopped_at_ = current;
   return std::nullopt;
 }
 

@@ -269,9 +269,11 @@ TEST_CASE("every planner that is asked twice offers the same view until it is ta
     Parameters p;
     p.planner = name;
     p.max_views = 4;
+    p.see.rho = 5e5;  // else SEE++ finds no core point in so coarse a cloud, and ends after one view
     const Workcell w = cell();
     Pipeline pipeline(w, p);
     Joints joints = w.start;
+    int others = 0;  // offered after a refusal
     for (int step = 0; step < 8; ++step) {
       const auto next = pipeline.next_view(joints), again = pipeline.next_view(joints);
       REQUIRE(next.has_value() == again.has_value());
@@ -283,13 +285,15 @@ TEST_CASE("every planner that is asked twice offers the same view until it is ta
         pipeline.refused();
         const auto other = pipeline.next_view(joints);
         CHECK((!other || other->world_T_optical.matrix() != next->world_T_optical.matrix()));
+        others += other.has_value();
         continue;
       }
       joints = *next->joints;
       pipeline.observe(test::render(test::kThreeFruit, w.sensor.intrinsics, next->world_T_optical, 0.001),
                        next->world_T_optical, joints);
     }
-    if (p.planner != "see") CHECK(pipeline.views().size() >= 2);  // SEE++ may find no core point in a coarse cloud
+    CHECK(pipeline.views().size() >= 2);
+    CHECK(others >= 1);
   }
 }
 

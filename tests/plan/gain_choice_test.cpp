@@ -205,6 +205,44 @@ TEST_CASE("gain choice: a refused view is not returned again until the next view
   CHECK(game.ranking() == Ranking{8, 6, 4});
 }
 
+TEST_CASE("gain choice: when all are refused, the surroundings of those that were not among the eight best are tried") {
+  std::vector<std::optional<ReachableView>> views(9, Row::view(0, 8));
+  views[4] = Row::view(0, 2);  // less than a view is worth
+  Game game(12, views);
+  game.row.parameters.min_gain = 3.0 * Row::kArea / 1e-6;
+  game.planner = game.row.planner();
+  double distance = 0.0;  // of the poor one: candidates differ in it, and those around have that of their middle
+  const Reach reach = [&](const ViewRequest& r, const Joints& q) {
+    game.script.other.reset();
+    if (r.direction == spread_directions(9)[4]) distance = r.distance;
+    if (r.distance == distance) game.script.other = Row::view(0, 6);
+    return game.script.reach()(r, q);
+  };
+  const auto ask = [&](double seconds) {
+    const auto view = game.planner->next(game.row.scan.progress(), at_time(seconds), reach);
+    return view ? static_cast<int>(view->gain / Row::kArea) : 0;
+  };
+  for (int i = 0; i < 8; ++i) {
+    CHECK(ask(0.0) == 8);
+    game.planner->refused();
+  }
+  for (int i = 0; i < 6; ++i) {
+    CHECK(ask(0.0) == 6);
+    CHECK(ask(0.0) == 6);
+    game.planner->refused();
+  }
+  for (int i = 0; i < 2; ++i) {
+    CHECK(ask(0.0) == 0);
+    CHECK(game.planner->stop_reason() == StopReason::no_reachable_view);
+  }
+  // Where it has stopped, the arm is not asked again; from other joints it is.
+  const std::size_t asked = game.script.asked.size();
+  CHECK(ask(0.0) == 0);
+  CHECK(game.script.asked.size() == asked);
+  CHECK(ask(1.0) == 0);
+  CHECK(game.script.asked.size() > asked);
+}
+
 TEST_CASE("gain choice: the view just taken is not taken again at once, but later") {
   Game game(12, {Row::view(0, 4), Row::view(0, 8), Row::view(0, 6)});
   for (const int expected : {1, 2, 1, 2}) {

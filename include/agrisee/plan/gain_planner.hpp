@@ -69,7 +69,7 @@ class GainPlanner : public Planner {
   std::optional<StopReason> rank(const Joints& current, const Reach& reach);
   /// Ask again for the best of `ranked_` from the present joints, and add directions close to theirs.
   void refine(const Joints& current, const Reach& reach);
-  /// After a refusal: drop the refused view from `ranked_` and score the others from the present joints.
+  /// Drop the refused views from `ranked_` and score the others from the present joints.
   void rank_again(const Joints& current);
   /// Drop the views of `left_out_` from `ranked_`.
   void leave_out();
@@ -82,7 +82,8 @@ class GainPlanner : public Planner {
   /// The smallest promised gain (m2) that is worth a view.
   double least_gain() const;
 
-  std::optional<ReachableView> stop(StopReason reason);
+  /// Answer with nothing, now and whenever the arm asks again from these joints.
+  std::optional<ReachableView> stop(StopReason reason, const Joints& current);
 
   GainPlannerParameters parameters_;
   SplitParameters split_;
@@ -97,7 +98,8 @@ class GainPlanner : public Planner {
   std::optional<ViewRequest> last_;     // behind the view last returned, unless it was refused
   Joints asked_from_ = Joints::Zero();  // the joints for which it was returned
   std::optional<Completeness> completeness_;
-  int refused_first_ = 0;  // views refused since the last frame; the front view skips as many
+  int refused_ = 0;                   // views refused since the last frame; the front view skips as many
+  std::optional<Joints> stopped_at_;  // the joints for which nothing was returned since
   StopReason reason_ = StopReason::not_stopped;
 };
 
