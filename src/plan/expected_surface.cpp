@@ -54,6 +54,12 @@ double measured_share(const sensor::SurfaceImage& image, const fuse::FreeSpacePa
   return image.depth.empty() || image.fill >= free_space.min_fill ? 1.0 : std::max(kLeast, image.fill);
 }
 
+/// Whether an image tells where surface can be seen: not that of a view of which nothing was taken, nor one without
+/// returns.
+bool has_returns(const sensor::SurfaceImage& image) {
+  return std::any_of(image.depth.begin(), image.depth.end(), [](float z) { return z > 0.0f; });
+}
+
 /// Whether the last view has become part of the map with at least some points. A view that was discarded, or a frame
 /// without returns, says nothing of what its pose can show.
 bool shows_anything(const Progress& progress) {
@@ -131,9 +137,14 @@ void ExpectedSurface::update(const Progress& progress, const SplitParameters& sp
   for (const int axis : {0, 1, 2})
     for (const Eigen::Vector3f& p : thinned) obstacles_.push_back(p[axis]);
   // Samples that earlier views should have shown count less.
+  observable_ = areas_;
   for (const auto& image : progress.images) {
-    const double factor = 1.0 - (1.0 - parameters_.missed_factor) * measured_share(image, free_space);
-    for_each_shown(image.world_T_optical, [&](std::size_t i) { areas_[i] *= static_cast<float>(factor); });
+    const auto factor = static_cast<float>(1.0 - (1.0 - parameters_.missed_factor) * measured_share(image, free_space));
+    const bool tells = has_returns(image);
+    for_each_shown(image.world_T_optical, [&](std::size_t i) {
+      areas_[i] *= factor;
+      if (tells) observable_[i] *= factor;
+    });
   }
 }
 
@@ -341,7 +352,8 @@ Completeness ExpectedSurface::completeness(const std::vector<char>& can_be_seen)
   Completeness out;
   std::vector<double> open(bodies_.size(), 0.0);  // unseen surface of each fruit that can be seen (m2)
   for (std::size_t i = 0; i < samples_.size(); ++i)
-    if (samples_[i].body >= 0 && can_be_seen[i]) open[static_cast<std::size_t>(samples_[i].body)] += double(areas_[i]);
+    if (samples_[i].body >= 0 && can_be_seen[i])
+      open[static_cast<std::size_t>(samples_[i].body)] += double(observable_[i]);
   double all = 0.0;
   for (std::size_t b = 0; b < bodies_.size(); ++b) {
     if (!believed(bodies_[b])) continue;

@@ -319,6 +319,24 @@ TEST_CASE("expected surface: each view that should have shown a sample lowers it
   CHECK(ExpectedSurfaceParameters().missed_factor == 0.35);
 }
 
+TEST_CASE("expected surface: a frame that was not taken, or is empty, lowers the gain but not what is observable") {
+  Scan scan;
+  add_fruit(scan, kFruit);
+  const Pose above = look_at(kFruit, kFruit + Vector3d(0, 0, 0.385));
+  const double before = model_of(scan).gain(above);
+  sensor::SurfaceImage discarded;
+  discarded.world_T_optical = above;
+  const bool empty = GENERATE(false, true);
+  scan.images = {empty ? flat_image(above, 0.0, 0.0) : discarded};
+  ExpectedSurface model = model_of(scan);
+  CHECK(model.gain(above) == Approx((empty ? 1.0 - 0.25 * 0.65 : 0.35) * before));
+  CHECK(model.completeness(std::vector<char>(200, 1)).observable == Approx(1.0));
+  // One that shows something else there does.
+  scan.images.push_back(flat_image(above, 0.1));
+  model.update(scan.progress(), {}, {});
+  CHECK(model.completeness(std::vector<char>(200, 1)).observable == Approx((66 * 0.35 + 134) / 200));
+}
+
 TEST_CASE("expected surface: where sight lines pass, the surface is deeper, or not there") {
   Scan scan;
   add_fruit(

@@ -50,7 +50,8 @@ class ExpectedSurface {
   /// Share (0..1) of the surface expected of the last views that they did show; older views count less.
   double reliability() const;
 
-  /// How complete the scan is.
+  /// How complete the scan is. A view without returns, or of which nothing was taken, lowers areas() and gain(), so
+  /// that others are tried, but not what can be observed.
   /// @param can_be_seen one per sample: not zero when some reachable view shows it
   Completeness completeness(const std::vector<char>& can_be_seen) const;
 
@@ -129,6 +130,7 @@ class ExpectedSurface {
   std::size_t tracked_views_ = 0;  // views of the cloud in which `bodies_` were found
   std::vector<Sample> samples_;
   std::vector<float> areas_;         // one per sample (m2)
+  std::vector<float> observable_;    // the same, lowered only by views that tell what can be seen (m2)
   std::vector<Occluder> occluders_;  // ellipsoids a little smaller than the fruit
   std::vector<float> obstacles_;     // points that belong to no fruit, thinned: all x, then all y, then all z (m)
   double area_ = 0.0, covered_ = 0.0;
