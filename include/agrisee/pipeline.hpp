@@ -116,7 +116,7 @@ class Pipeline {
   const std::vector<View>& views() const { return views_; }
   /// The cloud merged so far, before the outlier removal at the end.
   const Cloud& merged() const { return cloud_; }
-  /// All points merged so far with their views, including those removed later.
+  /// All points that the views which are not discarded added, with their views, including those removed later.
   Cloud raw() const { return map_->all(); }
   /// Sentences about input that should be checked, with the likely cause: poses with rounded rotation matrices, joints
   /// far from the poses, many views that contradict the others, inverted poses, frames of another camera than the

@@ -69,7 +69,7 @@ class Views {
   /// The map: points, normals where known, and the view that each point came from.
   virtual Cloud cloud() const = 0;
 
-  /// All points ever added with their views, including those removed since; no normals.
+  /// All points that the views of the present map added, with their views, including those removed since; no normals.
   virtual Cloud all() const = 0;
 
   /// The surface image of each view, as evidence of free space; empty for raw points. Discarded views have only a pose.
