@@ -13,6 +13,27 @@
 #include "cloud/searches.hpp"
 
 namespace agrisee::fuse {
+namespace {
+
+/// Move an image with all it shows.
+void move_image(sensor::SurfaceImage& image, const Pose& to_T_from) {
+  const Eigen::Isometry3f motion = to_T_from.cast<float>();
+  for (std::size_t c = 0; c < image.points.size(); ++c) {
+    image.points[c] = motion * image.points[c];
+    image.normals[c] = motion.linear() * image.normals[c];
+  }
+  image.world_T_optical = to_T_from * image.world_T_optical;
+}
+
+/// An image where it was before it was registered to a map.
+sensor::SurfaceImage as_reported(sensor::SurfaceImage image, const Pose& reported) {
+  if (image.world_T_optical.matrix() == reported.matrix()) return image;
+  move_image(image, reported * image.world_T_optical.inverse(Eigen::Isometry));
+  image.world_T_optical = reported;
+  return image;
+}
+
+}  // namespace
 
 FusedViews::FusedViews(const Aabb& scan_volume, const FusionParameters& parameters, int threads)
     : scan_volume_(scan_volume), parameters_(parameters), threads_(threads), surfels_(parameters.surfels) {}
@@ -49,6 +70,7 @@ Change FusedViews::take(Observation seen, const Pose& world_T_optical) {
   Change change;
   change.points_in = seen.surface.points_in;
   change.observed = seen.surface.points;
+  if (parameters_.register_views || !seen.consistent) seen_.emplace(id, as_reported(seen.surface, world_T_optical));
   if (seen.consistent) {
     add(std::move(seen.surface), id, change.added);
     count_refuting();
@@ -56,7 +78,6 @@ Change FusedViews::take(Observation seen, const Pose& world_T_optical) {
   }
   // Do more of the discarded views agree with this one than there are views in the map?
   std::vector<std::size_t> group = views_that_agree(seen.surface);
-  withheld_.emplace(id, std::move(seen.surface));
   group.push_back(id);
   if (group.size() > views_in_map()) {
     start_again(group, change);
@@ -159,8 +180,8 @@ void FusedViews::learn_returns(const sensor::SurfaceImage& image) {
 /// The discarded views that agree with an image, by number.
 std::vector<std::size_t> FusedViews::views_that_agree(const sensor::SurfaceImage& image) const {
   std::vector<std::size_t> group;
-  for (const auto& [number, other] : withheld_)
-    if (agree(compare(other, image, parameters_.free_space))) group.push_back(number);
+  for (const auto& [number, other] : seen_)
+    if (views_[number].discarded && agree(compare(other, image, parameters_.free_space))) group.push_back(number);
   return group;
 }
 
@@ -171,7 +192,7 @@ std::size_t FusedViews::views_in_map() const {
   return count;
 }
 
-/// Make the map anew of some discarded views; all others are discarded.
+/// Make the map anew of some discarded views; all others are discarded, but remembered.
 void FusedViews::start_again(const std::vector<std::size_t>& views, Change& change) {
   const std::size_t before = surfels_.size();
   surfels_ = SurfelMap(parameters_.surfels);
@@ -184,9 +205,9 @@ void FusedViews::start_again(const std::vector<std::size_t>& views, Change& chan
   }
   for (const std::size_t v : views) {
     views_[v].discarded = false;
-    lay_on_map(withheld_.at(v));
-    add(std::move(withheld_.at(v)), v, change.added);
-    withheld_.erase(v);
+    sensor::SurfaceImage image = seen_.at(v);
+    lay_on_map(image);
+    add(std::move(image), v, change.added);
   }
   change.kept.emplace(change.added.size());
   std::iota(change.kept->begin(), change.kept->end(), static_cast<Index>(before));
@@ -240,12 +261,7 @@ void FusedViews::lay_on_map(sensor::SurfaceImage& image) const {
   const IcpResult icp =
       register_cloud(source, source.normals, target, target.normals, parameters_.icp, Pose::Identity(), threads_);
   if (!icp.accepted) return;
-  const Eigen::Isometry3f correction = icp.target_T_source.cast<float>();
-  for (std::size_t c = 0; c < image.points.size(); ++c) {
-    image.points[c] = correction * image.points[c];
-    image.normals[c] = correction.linear() * image.normals[c];
-  }
-  image.world_T_optical = icp.target_T_source * image.world_T_optical;
+  move_image(image, icp.target_T_source);
 }
 
 }  // namespace agrisee::fuse

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Fused views that contradict one another: which of them are kept.
 #include <agrisee/core/cancellation.hpp>
+#include <agrisee/core/random.hpp>
 
 #include "catch.hpp"
 #include "fuse/by_hand.hpp"
@@ -120,13 +121,35 @@ TEST_CASE("the map starts again only when more views agree than it is made of") 
   CHECK(map.all().views.back() == 4);
   for (const std::size_t v : {1, 3, 4}) CHECK_FALSE(map.images()[v].depth.empty());
   for (const std::size_t v : {0, 2}) CHECK(map.images()[v].depth.empty());
-  // What the first map was made of does not come back, but new views can overthrow this one, too.
-  see(map, 0);
+  // What the first map was made of still counts: with one more there are three against three, then four.
   see(map, 1);
-  see(map, 2);
-  CHECK(discarded(map) == std::vector<bool>{true, false, true, false, false, true, true, true});
+  CHECK(discarded(map) == std::vector<bool>{true, false, true, false, false, true});
   see(map, 3);
-  CHECK(discarded(map) == std::vector<bool>{true, true, true, true, true, false, false, false, false});
+  CHECK(discarded(map) == std::vector<bool>{false, true, false, true, true, false, false});
+  // The map is that of the right views alone.
+  FusedViews right(kVolume, fine(), 1);
+  for (const int i : {0, 2, 1, 3}) see(right, i);
+  REQUIRE(map.all().size() > 1000);
+  CHECK(map.all().size() == Approx(right.all().size()).epsilon(0.01));
+  for (const auto& [view, place_of] : {std::pair(0, 0), {2, 2}, {5, 1}, {6, 3}})
+    CHECK(distance(map.images()[static_cast<std::size_t>(view)].world_T_optical, place(place_of)) < 0.0003);
+}
+
+TEST_CASE("three wrong views do not win against five right ones, in any order") {
+  const std::vector<std::pair<int, bool>> views{{0, true},  {1, false}, {3, false}, {2, true},
+                                                {4, false}, {1, true},  {3, true},  {4, true}};
+  std::vector<std::size_t> order{0, 1, 2, 3, 4, 5, 6, 7};
+  Rng rng(5);
+  for (int round = 0; round < 12; ++round) {
+    FusedViews map(kVolume, fine(), 1);
+    std::vector<bool> wrong;
+    for (const std::size_t i : order) {
+      see(map, views[i].first, views[i].second ? kRight : kNearer);
+      wrong.push_back(!views[i].second);
+    }
+    CHECK(discarded(map) == wrong);
+    for (std::size_t i = order.size(); i-- > 1;) std::swap(order[i], order[rng.below(i + 1)]);
+  }
 }
 
 TEST_CASE("views that saw nothing and views that were skipped have no say") {

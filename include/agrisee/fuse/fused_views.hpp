@@ -3,8 +3,10 @@
 /// Fuses the surfaces of a scan's views into one, and discards views that contradict the rest.
 ///
 /// A view whose frame does not belong to its pose puts surface where other views looked through, and looks through
-/// surface that other views saw (fuse/contradiction.hpp). Of views that contradict one another, the larger consistent
-/// group is kept, so that even a wrong first view is detected. World frame, metres. Defined in `agrisee::agrisee`.
+/// surface that other views saw (fuse/contradiction.hpp). When more of the discarded views agree with a new one, itself
+/// counted, than there are views in the map, the map starts again with them: of views that contradict one another the
+/// larger group is kept, so that even a wrong first view is detected. World frame, metres. Defined in
+/// `agrisee::agrisee`.
 #pragma once
 
 #include <agrisee/fuse/contradiction.hpp>
@@ -72,9 +74,10 @@ class FusedViews : public Views {
   SurfelMap surfels_;
   std::vector<Refuting> refuting_;  // one a surfel
   std::vector<Taken> views_;
-  std::vector<Returned> measured_;                        // one a view: what it measures of what later ones show
-  std::vector<sensor::SurfaceImage> images_;              // what each view saw; of discarded ones only the pose
-  std::map<std::size_t, sensor::SurfaceImage> withheld_;  // what discarded views saw, by number
+  std::vector<Returned> measured_;                    // one a view: what it measures of what later ones show
+  std::vector<sensor::SurfaceImage> images_;          // what each view saw; of discarded ones only the pose
+  std::map<std::size_t, sensor::SurfaceImage> seen_;  // all of it, by number, at the reported poses; of skipped views,
+                                                      // and of all that are not registered, nothing
 };
 
 }  // namespace agrisee::fuse
