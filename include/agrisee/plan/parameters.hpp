@@ -16,10 +16,12 @@ struct ExpectedSurfaceParameters {
   double cover_radius = 0.005;     ///< a sample is covered if a point is at most this far from it (m)
   double voxel = 0.015;            ///< edge of the voxels of unknown space (m)
   double neighborhood = 0.06;      ///< unknown space counts if it is at most this far from a body's surface (m)
-  double unknown_weight = 0.03;  ///< fruit surface expected behind the face of an unknown voxel, as a share of the face
+  /// Fruit surface expected behind the face of an unknown voxel, as a share of the face. Merged raw points prove no
+  /// space empty: with them all voxels stay unknown, and only the view budget ends a scan, unless this is 0.
+  double unknown_weight = 0.03;
   double least_confidence = 0.1;  ///< least probability of a fruit for a body that the planner looks at
   double missed_factor = 0.35;  ///< a sample's area is multiplied by this for every view that should have shown it but
-                                ///< did not
+                                ///< did not; without effect where raw points are merged
 
   /// @throws FieldError for the first field that is out of its range
   void check() const { check_fields(*this); }
