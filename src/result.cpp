@@ -66,8 +66,8 @@ std::string discarded_views(const std::vector<View>& views) {
       many ? "contradict the others (is each pose that of its image, in metres, from the optical frame to world? Are "
              "the images upright? Are hand-eye transform and intrinsics right? Did the plant move between views?)"
            : "contradict the others (are their poses wrong?)");
-  add(DiscardReason::repeated_frame, "repeats the frame before (does the camera hang?)",
-      "repeat the frame before (does the camera hang?)");
+  add(DiscardReason::repeated_frame, "repeats the frame before (is the camera frozen?)",
+      "repeat the frame before (is the camera frozen?)");
   add(DiscardReason::none, "for an unknown reason", "for an unknown reason");
   const auto n = std::count_if(views.begin(), views.end(), [](const View& v) { return v.discarded; });
   if (n == 0) return "";

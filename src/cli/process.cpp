@@ -217,9 +217,9 @@ void add_process(CLI::App& app, Run& run) {
   add_shard_option(*command, options->shard);
   command->footer(
       "Normals in the file are kept; those that face away from their sensor are turned. Missing normals are\n"
-      "estimated; without viewpoint or views they are turned so that neighbors agree. --viewpoint is refused for\n"
-      "points of several views, if more than 1 % of the normals face away from it, if more than 3 % of the points\n"
-      "are hidden behind others, and if it lies on the hollow side of curved surfaces.\n"
+      "estimated; without viewpoint or views they are turned so that neighbors agree. --viewpoint is refused if the\n"
+      "points come from several views, if more than 1 % of the normals face away from it, if more than 3 % of the\n"
+      "points are hidden behind others, or if it lies on the hollow side of curved surfaces.\n"
       "Examples:\n"
       "  agrisee process cloud.ply -o result\n"
       "  agrisee process recorded/views.yaml -o result\n"

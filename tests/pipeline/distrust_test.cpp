@@ -136,7 +136,7 @@ TEST_CASE("a frame that comes again is discarded") {
   CHECK(discarded(result) == std::set<int>{4});
   CHECK(result.views[4].discard_reason == DiscardReason::repeated_frame);
   CHECK(discarded_views(result.views) ==
-        "1 of 8 views was discarded: view 4 repeats the frame before (does the camera hang?)");
+        "1 of 8 views was discarded: view 4 repeats the frame before (is the camera frozen?)");
   check_found(result);
 }
 
