@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <agrisee/arm/mount.hpp>
 
+#include <algorithm>
+#include <cmath>
+
 namespace agrisee::arm {
 
 void Mount::check() const {
@@ -11,6 +14,11 @@ void Mount::check() const {
                   sensor.radius);
   check_parameter(sensor.depth > 0.0 && std::isfinite(sensor.depth), "sensor.housing_depth", "positive", sensor.depth);
   for (const KeepOut& space : keep_out) space.check();
+}
+
+bool on_last_axis(const Pose& tool0_T_frame) {
+  const Eigen::Vector3d offset = tool0_T_frame.translation(), ahead = tool0_T_frame.linear().col(2);
+  return std::max({std::abs(offset.x()), std::abs(offset.y()), std::abs(ahead.x()), std::abs(ahead.y())}) < 1e-9;
 }
 
 OrientedCylinder housing(const SensorBody& sensor, const Pose& world_T_optical) {

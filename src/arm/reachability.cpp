@@ -40,9 +40,8 @@ void add_solutions(const Mount& mount, const Pose& base_T_tool0, const Joints& p
 // The sense in which the view rolls when the last joint turns: +1 or -1 if the optical axis is the axis of that joint,
 // otherwise 0; then a different roll needs a different posture of the whole arm.
 int roll_of_last_joint(const Mount& mount) {
-  const Eigen::Vector3d offset = mount.tool0_T_optical.translation(), ahead = mount.tool0_T_optical.linear().col(2);
-  const double off = std::max({std::abs(offset.x()), std::abs(offset.y()), std::abs(ahead.x()), std::abs(ahead.y())});
-  return off < 1e-9 ? (ahead.z() > 0.0 ? 1 : -1) : 0;
+  if (!on_last_axis(mount.tool0_T_optical)) return 0;
+  return mount.tool0_T_optical.linear()(2, 2) > 0.0 ? 1 : -1;
 }
 
 // A roll of a sensor on the axis of the last joint, and that joint's angle (rad).

@@ -25,12 +25,6 @@ bool meets_any(const Joints& q, const arm::Mount& mount, const std::vector<Orien
 
 namespace {
 
-/// Whether a frame's origin and z axis lie on the axis of the last joint.
-bool on_last_axis(const Pose& tool0_T_frame) {
-  const Eigen::Vector3d offset = tool0_T_frame.translation(), ahead = tool0_T_frame.linear().col(2);
-  return std::max({std::abs(offset.x()), std::abs(offset.y()), std::abs(ahead.x()), std::abs(ahead.y())}) < 1e-9;
-}
-
 /// The straight approach of one request, for an arm.
 struct StraightApproach {
   const arm::Mount& mount;  // with the keep-out spaces that apply to the fruit
@@ -124,7 +118,7 @@ class ArmApproach {
         base_T_world_(mount.world_T_base.inverse()),
         tool_T_tool0_(tool0_T_tool.inverse()),
         parameters_(parameters),
-        symmetric_(on_last_axis(tool0_T_tool) && on_last_axis(mount.tool0_T_optical) &&
+        symmetric_(arm::on_last_axis(tool0_T_tool) && arm::on_last_axis(mount.tool0_T_optical) &&
                    tool0_T_tool.linear()(2, 2) > 0.0) {}
 
   ApproachAnswer operator()(const ApproachRequest& request, const Joints& current) const {

@@ -31,6 +31,9 @@ struct Mount {
   void check() const;
 };
 
+/// Whether a frame's origin and z axis lie on the axis of the last joint, which then only turns the frame about its z.
+bool on_last_axis(const Pose& tool0_T_frame);
+
 /// The housing, in world, of a sensor at world_T_optical.
 OrientedCylinder housing(const SensorBody& sensor, const Pose& world_T_optical);
 
