@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scan_doubts.hpp"
 
+#include <agrisee/geometry/angle.hpp>
 #include <agrisee/sensor/detection_check.hpp>
 
 #include <algorithm>
@@ -33,7 +34,7 @@ std::optional<std::string> doubt_of_joints(const std::vector<View>& views, const
     if (!v.joints) continue;
     const Pose by_joints = optical_pose(workcell, *v.joints);
     const double off = (by_joints.translation() - v.world_T_optical.translation()).norm();
-    const double turned = Eigen::AngleAxisd(by_joints.linear().transpose() * v.world_T_optical.linear()).angle();
+    const double turned = turn_between(by_joints, v.world_T_optical);
     far += off > kFar || turned > kTurned;
     farthest = std::max(farthest, off);
     most_turned = std::max(most_turned, turned);

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <agrisee/core/parameter_range.hpp>
+#include <agrisee/geometry/angle.hpp>
 #include <agrisee/pipeline.hpp>
 
 namespace agrisee::robot {
@@ -52,11 +53,6 @@ inline const char* to_string(SessionState state) {
       return "done";
   }
   return "unknown";
-}
-
-/// Angle (rad) between two orientations.
-inline double angle_between(const Pose& a, const Pose& b) {
-  return Eigen::AngleAxisd(a.linear().transpose() * b.linear()).angle();
 }
 
 /// One scan after another of one workcell, driven by start, stop, reset, time and frames.
@@ -202,7 +198,7 @@ class ScanSession {
     double length, angle;  // m, rad
     Distance(double metres, double radians) : length(metres), angle(radians) {}
     Distance(const Pose& a, const Pose& b)
-        : length((a.translation() - b.translation()).norm()), angle(angle_between(a, b)) {}
+        : length((a.translation() - b.translation()).norm()), angle(turn_between(a, b)) {}
     bool within(double most_length, double most_angle) const { return length <= most_length && angle <= most_angle; }
     std::string text() const { return number_text(1e3 * length, 3) + " mm and " + number_text(angle, 3) + " rad"; }
   };

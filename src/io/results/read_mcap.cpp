@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <agrisee/geometry/angle.hpp>
 #include <agrisee/io/files.hpp>
 #include <agrisee/io/mcap.hpp>
 #include <agrisee/sensor/depth_encoding.hpp>
@@ -137,11 +138,6 @@ std::string world_of(const fs::path& path, const ros::TransformTree& tree, const
   }
   if (chain.size() < 2) fail(path, "has no transform (tf) to the camera's frame '" + frame + "'");
   return has("world") ? "world" : has("base_link") ? "base_link" : chain.back();
-}
-
-/// Angle (rad) between two orientations.
-double turn_between(const Pose& a, const Pose& b) {
-  return Eigen::AngleAxisd(Eigen::Matrix3d(a.linear().transpose() * b.linear())).angle();
 }
 
 bool near(const Pose& a, const Pose& b, double move, double turn) {
