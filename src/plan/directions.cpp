@@ -4,6 +4,7 @@
 #include <agrisee/plan/directions.hpp>
 
 #include <algorithm>
+#include <cmath>
 
 namespace agrisee::plan {
 
@@ -12,6 +13,14 @@ std::vector<Eigen::Vector3d> spread_directions(int n) {
   out.reserve(static_cast<std::size_t>(std::max(n, 0)));
   for (int i = 0; i < n; ++i) out.push_back(spiral_direction(i, n));
   return out;
+}
+
+void spread_aim(ViewRequest& request, double i, const Eigen::Vector3d& size, double spread) {
+  const auto part = [](double x) { return x - std::floor(x); };
+  const Eigen::Vector3d where(part(i * 0.8566748838545029), part(i * 0.7338918566271260), part(i * 0.6287067210378087));
+  request.target += spread * (where.array() - 0.5).matrix().cwiseProduct(size);
+  request.distance =
+      request.distance_min + part(i * 0.5385972572236101) * (request.distance_max - request.distance_min);
 }
 
 Eigen::Vector3d level_direction(const Eigen::Vector3d& from, const Eigen::Vector3d& to) {

@@ -97,21 +97,12 @@ void GainPlanner::update_candidates(const Joints& current, const Reach& reach) {
   const std::vector<Eigen::Vector3d> directions = spread_directions(parameters_.candidates);
   for (std::size_t i = 0; i < directions.size(); ++i) {
     throw_if_cancelled();
-    const ViewRequest r = candidate(static_cast<double>(i), directions[i], extent);
+    ViewRequest r = request(directions[i]);
+    spread_aim(r, static_cast<double>(i), extent.size(), parameters_.spread);
     if (auto view = reach(r, current)) candidates.push_back({r, std::move(*view)});
   }
   extent_ = extent;
   candidates_ = std::move(candidates);
-}
-
-ViewRequest GainPlanner::candidate(double i, const Eigen::Vector3d& direction, const Aabb& extent) const {
-  // Roberts' R4 sequence: the fractional parts of i times powers of 1 / 1.1673.
-  const auto part = [](double x) { return x - std::floor(x); };
-  const Eigen::Vector3d where(part(i * 0.8566748838545029), part(i * 0.7338918566271260), part(i * 0.6287067210378087));
-  ViewRequest r = request(direction);
-  r.target += parameters_.spread * (where.array() - 0.5).matrix().cwiseProduct(extent.size());
-  r.distance = r.distance_min + part(i * 0.5385972572236101) * (r.distance_max - r.distance_min);
-  return r;
 }
 
 ViewRequest GainPlanner::request(const Eigen::Vector3d& direction) const {

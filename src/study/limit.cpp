@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <agrisee/core/parallel.hpp>
 #include <agrisee/plan/arm_reach.hpp>
+#include <agrisee/plan/directions.hpp>
 #include <agrisee/study/limit.hpp>
 
 #include <algorithm>
@@ -12,21 +13,16 @@ namespace {
 
 /// The i-th candidate of reachable_views().
 plan::ViewRequest candidate(std::size_t i, const Aabb& box, const LimitParameters& parameters) {
-  const auto fraction = [](double x) { return x - std::floor(x); };
   const auto k = static_cast<double>(i);
   const double z = 1.0 - (2.0 * k + 1.0) / parameters.candidates;
-  const double azimuth = kTwoPi * fraction(k * 0.6180339887498949);
+  const double turns = k * 0.6180339887498949, azimuth = kTwoPi * (turns - std::floor(turns));
   const double s = std::sqrt(std::max(0.0, 1.0 - z * z));
-  // R4: powers of 1 / 1.1673, the inverse of the generalised golden ratio in four dimensions.
-  const Eigen::Vector3d where(fraction(k * 0.8566748838545029), fraction(k * 0.7338918566271260),
-                              fraction(k * 0.6287067210378087));
   plan::ViewRequest request;
-  request.target = box.center() + 0.6 * (where.array() - 0.5).matrix().cwiseProduct(box.size());
+  request.target = box.center();
   request.direction = {s * std::cos(azimuth), s * std::sin(azimuth), z};
   request.distance_min = parameters.distance_min;
   request.distance_max = parameters.distance_max;
-  request.distance =
-      parameters.distance_min + fraction(k * 0.5385972572236101) * (parameters.distance_max - parameters.distance_min);
+  plan::spread_aim(request, k, box.size(), 0.6);
   return request;
 }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// @file
-/// Directions to look along, and the first view of a scan. World frame.
+/// Directions to look along, points to look at, and the first view of a scan. World frame.
 #pragma once
 
 #include <agrisee/geometry/aabb.hpp>
@@ -10,6 +10,13 @@ namespace agrisee::plan {
 
 /// `n` unit vectors spread evenly over the sphere (spherical Fibonacci lattice).
 std::vector<Eigen::Vector3d> spread_directions(int n);
+
+/// Set target and distance of the i-th of many requests that are spread evenly over the points to look at and the
+/// distances: Roberts' R4 sequence, the fractional parts of i times powers of 1 / 1.1673, the inverse of the
+/// generalised golden ratio in four dimensions.
+/// @param request its target is the middle of the points; its limits are those of the distances
+/// @param size of the box about that middle (m), of which the share `spread` is looked at
+void spread_aim(ViewRequest& request, double i, const Eigen::Vector3d& size, double spread);
 
 /// The horizontal unit vector that points from `from` to `to` (m, world); +y when one is straight above the other.
 Eigen::Vector3d level_direction(const Eigen::Vector3d& from, const Eigen::Vector3d& to);

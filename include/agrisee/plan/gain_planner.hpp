@@ -59,8 +59,6 @@ class GainPlanner : public Planner {
   std::optional<ReachableView> front_view(int taken, const Joints& current, const Reach& reach);
   /// Find the candidates anew when the extent of the fruit has changed by more than 2 cm.
   void update_candidates(const Joints& current, const Reach& reach);
-  /// The i-th candidate's request: its target and distance follow a low-discrepancy sequence.
-  ViewRequest candidate(double i, const Eigen::Vector3d& direction, const Aabb& extent) const;
   /// Request for a view of the model's center along `direction`.
   ViewRequest request(const Eigen::Vector3d& direction) const;
 
