@@ -10,7 +10,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 #include <limits>
 #include <optional>
 
@@ -150,25 +149,17 @@ void ExpectedSurface::update(const Progress& progress, const SplitParameters& sp
 
 void ExpectedSurface::read_sight_lines(const std::vector<sensor::SurfaceImage>& images,
                                        const fuse::FreeSpaceParameters& free_space) {
-  std::vector<SightLines> now;
-  for (const sensor::SurfaceImage& image : images)
-    now.push_back(image.depth.empty()                 ? SightLines::none
-                  : image.fill >= free_space.min_fill ? SightLines::all
-                                                      : SightLines::returned);
-  const auto end = now.begin() + static_cast<std::ptrdiff_t>(std::min(images_read_.size(), now.size()));
-  const auto changed = [&](auto&& same) {
-    return !std::equal(images_read_.begin(), images_read_.end(), now.begin(), end, same);
-  };
-  if (changed([](SightLines a, SightLines b) { return (a == SightLines::none) == (b == SightLines::none); })) {
+  std::vector<char> show;
+  for (const sensor::SurfaceImage& image : images) show.push_back(!image.depth.empty());
+  if (!std::equal(images_read_.begin(), images_read_.end(), show.begin(),
+                  show.begin() + static_cast<std::ptrdiff_t>(std::min(images_read_.size(), show.size())))) {
+    known_ = KnownSpace(volume_, parameters_.voxel);
+    images_read_.clear();
     bodies_.clear();
     tracked_views_ = segmented_at_ = 0;
   }
-  if (changed(std::equal_to<>())) {
-    known_ = KnownSpace(volume_, parameters_.voxel);
-    images_read_.clear();
-  }
   for (std::size_t v = images_read_.size(); v < images.size(); ++v) known_.add(images[v], free_space);
-  images_read_ = std::move(now);
+  images_read_ = std::move(show);
 }
 
 std::vector<ExpectedSurface::Promise> ExpectedSurface::promises(const Progress& progress) const {

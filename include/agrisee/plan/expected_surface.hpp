@@ -79,10 +79,6 @@ class ExpectedSurface {
     int body;                 // index of its fruit
   };
 
-  /// Which sight lines of a view prove something: none of a discarded one, and where it has lost many returns, those
-  /// that returned.
-  enum class SightLines : char { none, returned, all };
-
   /// A sample that a view was expected to show.
   struct Promise {
     Eigen::Vector3f point;  // m, world
@@ -95,8 +91,8 @@ class ExpectedSurface {
   /// Compare what was expected of a view with the cloud and the space that are known since.
   /// @param measured share (0..1) of the surface before it that the view measured
   void weigh(const std::vector<Promise>& promised, const Cloud& cloud, double measured);
-  /// Mark what the sight lines of new views have reached, and those of all views anew where earlier ones are others
-  /// than before. Where the views are, as the map has started again, the fruit are forgotten, too.
+  /// Mark what the sight lines of new views have reached. Where earlier ones are others than before, as the map has
+  /// started again, everything is forgotten.
   void read_sight_lines(const std::vector<sensor::SurfaceImage>& images, const fuse::FreeSpaceParameters& free_space);
   /// Find the fruit in the merged cloud and set `bodies_`; returns one label per point, 0 = no fruit.
   Labels find_fruit(const Progress& progress, const SplitParameters& split_parameters,
@@ -122,8 +118,8 @@ class ExpectedSurface {
   sensor::DepthCamera sensor_;
   Aabb volume_;
   ExpectedSurfaceParameters parameters_;
-  KnownSpace known_;                     // what sight lines have reached
-  std::vector<SightLines> images_read_;  // of each view: which of its sight lines are marked in `known_`
+  KnownSpace known_;               // what sight lines have reached
+  std::vector<char> images_read_;  // views whose sight lines are marked in `known_`: whether they have some
   std::vector<FoundBody> bodies_;
   double min_confidence_ = 0.0;    // a body is believed from this probability on
   std::size_t segmented_at_ = 0;   // size of the cloud when it was last segmented from scratch
