@@ -5,6 +5,7 @@
 #include <agrisee/cloud/poses.hpp>
 #include <agrisee/cloud/spacing.hpp>
 #include <agrisee/cloud/split.hpp>
+#include <agrisee/cloud/surface_beyond.hpp>
 #include <agrisee/cloud/volume.hpp>
 #include <agrisee/geometry/direction_bins.hpp>
 #include <agrisee/geometry/pca.hpp>
@@ -125,18 +126,22 @@ enum class Likeness {
 /// What the size and shape of a closed surface say of a body. The ellipsoid about a part of a pot, a trough or a trunk
 /// can have those of a fruit while the surface, which follows the points further, has not. Its size is that of a ball
 /// of its volume, and half its width: its middle semi-axis, of a flat fruit the larger one, of a long one the smaller.
-Likeness likeness(const ClosedSurface& surface, const BodyParameters& bodies) {
+/// @param ellipsoid by which it was found; a fruit that is known to be long may have a surface that is so
+Likeness likeness(const ClosedSurface& surface, const Ellipsoid& ellipsoid, const BodyParameters& bodies) {
   constexpr double kSlender = 0.6;  // of the least roundness; a surface that is longer still is no error
+  constexpr double kLonger = 0.5;   // the surface of a fruit that was found as a long one may be longer than it
   const Eigen::Vector3d variance = principal_axes<double>(surface.center, surface.spread).variance;  // ascending
-  // A semi-axis squared is five times the variance along it.
-  if (!bodies.plausible(std::cbrt(surface.volume / (4.0 / 3.0 * kPi))) ||
-      !bodies.plausible(std::sqrt(5.0 * variance[1])))
+  const Eigen::Vector3d radii = (5.0 * variance.reverse()).cwiseSqrt();
+  if (!bodies.plausible(std::cbrt(surface.volume / (4.0 / 3.0 * kPi))) || !bodies.plausible(radii[1]) ||
+      detail::too_long(radii, bodies))
     return Likeness::no_fruit;
   // In the middle of an ellipsoid the smaller principal curvature is to the larger as its semi-axes squared.
-  if (variance[0] >= bodies.min_roundness * variance[2]) return Likeness::fruit;
-  const bool maybe =
-      variance[0] >= kSlender * bodies.min_roundness * variance[2] && bodies.plausible(std::sqrt(5.0 * variance[2]));
-  return maybe ? Likeness::unsure : Likeness::no_fruit;
+  const Eigen::Vector3d found = semi_axes(ellipsoid).first;
+  const double roundness = std::pow(found[2] / found[0], 2);
+  const double least = roundness < bodies.min_roundness ? kLonger * roundness : bodies.min_roundness;
+  if (variance[0] >= least * variance[2]) return Likeness::fruit;
+  return variance[0] >= kSlender * least * variance[2] && bodies.plausible(radii[0]) ? Likeness::unsure
+                                                                                     : Likeness::no_fruit;
 }
 
 /// The closed surface of each found fruit, empty where there is none, as for bodies by masks, of which few points are
@@ -158,7 +163,8 @@ std::vector<std::optional<ClosedSurface>> closed_surfaces(const Cloud& cloud, co
     closing.noise = std::max(closing.noise, parameters.split.bodies.fit.sensor_noise / fit.body.mean_radius());
     surfaces[f] = closed_surface(cloud, members[f], residual(labels), fit.body, axis, closing, is_free);
     if (!surfaces[f]) continue;
-    const Likeness like = surfaces[f]->weight > 0.5 ? likeness(*surfaces[f], parameters.split.bodies) : Likeness::fruit;
+    const Likeness like =
+        surfaces[f]->weight > 0.5 ? likeness(*surfaces[f], fit.body, parameters.split.bodies) : Likeness::fruit;
     if (like == Likeness::unsure) {
       surfaces[f].reset();
       continue;
@@ -275,12 +281,19 @@ std::vector<Fruit> locate(const Cloud& cloud, const Split& split, const Eigen::V
   members.resize(split.found.size());
   Labels with_joined = split.labels;
   const auto surfaces = closed_surfaces(cloud, split, parameters, is_free, members, with_joined);
+  // Of 520 fruit in scans of leafy plants and trusses none has more, of parts of posts, bottles and cucumbers most do.
+  constexpr double kPart = 0.035;
+  const Grid<float> grid(cloud, static_cast<float>(parameters.split.bodies.cell()));
   std::vector<Fruit> fruits;
   std::vector<std::size_t> source;  // the entry of split.found that each fruit comes from
   for (std::size_t f = 0; f < members.size(); ++f) {
     if (members[f].empty()) continue;
-    fruits.push_back(fruit_of(cloud, with_joined, members[f], split.found[f], surfaces[f] ? &*surfaces[f] : nullptr,
-                              cluster_origin, parameters));
+    Fruit fruit = fruit_of(cloud, with_joined, members[f], split.found[f], surfaces[f] ? &*surfaces[f] : nullptr,
+                           cluster_origin, parameters);
+    if (is_free && fruit.body && !split.found[f].by_mask &&
+        surface_beyond(cloud, grid, with_joined, static_cast<int>(f) + 1, ellipsoid_of(*fruit.body)) > kPart)
+      continue;
+    fruits.push_back(std::move(fruit));
     source.push_back(f);
   }
   std::vector<std::size_t> order(fruits.size());

@@ -11,7 +11,10 @@
 #include <agrisee/geometry/pca.hpp>
 #include <agrisee/neighbors/grid.hpp>
 
+#include <Eigen/Eigenvalues>
+
 #include <algorithm>
+#include <array>
 #include <bitset>
 #include <cmath>
 #include <optional>
@@ -22,10 +25,18 @@ namespace agrisee::detail {
 /// Points near a body are looked up within this multiple of its mean radius from its center.
 constexpr double kNearBody = 1.35;
 
+/// Distance (m) from a body's center within which points are near it: 1.35 mean radii, of a long body more.
+inline double near_radius(const Ellipsoid& body) {
+  constexpr double kLong = 1.15;  // of the largest semi-axis
+  Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver;
+  solver.computeDirect(body.A, Eigen::EigenvaluesOnly);
+  return std::max(kNearBody * body.mean_radius(), kLong / solver.eigenvalues()[0]);
+}
+
 /// Calls f(index) for the points near a body.
 template <typename S, typename F>
 void visit_near(const Grid<S>& grid, const Ellipsoid& body, F&& f) {
-  grid.visit(body.center.cast<S>(), static_cast<S>(kNearBody * body.mean_radius()), [&](Index i, S) { f(i); });
+  grid.visit(body.center.cast<S>(), static_cast<S>(near_radius(body)), [&](Index i, S) { f(i); });
 }
 
 /// Points within this share of the radius from the surface that do not lie on it are clutter.
@@ -39,6 +50,11 @@ inline double loose_cosine(const BodyParameters& parameters) {
   return std::cos(std::min(kPi / 2, 1.6 * parameters.max_angle));
 }
 
+/// Hardly a larger share of a fruit's surface goes on outside of its body.
+constexpr double kGoesOn = 0.02;
+/// A body of which more than this share is covered was seen nearly from end to end.
+constexpr double kMostly = 0.5;
+
 /// The evidence for a body from the points that are still free, and from sight lines.
 struct Verdict {
   double coverage = 0.0;       ///< share of the surface covered by points on it
@@ -47,11 +63,15 @@ struct Verdict {
   double roundness = 0.0;      ///< smallest over largest curvature of the points on the surface
   double normal_spread = 0.0;  ///< root mean square sine of the angle between the normals of points on it and its own
   double clutter = 0.0;        ///< points close to the surface that do not lie on it, for each that does
+  double beyond = 0.0;         ///< share of the directions in which a surface goes on outside of the body, as it would
+                               ///< if the body were the end of something longer
   std::size_t support = 0;     ///< points on the surface
   std::optional<double> seen_on = {};  ///< see SeenOn; empty if not known
   double score() const { return coverage - 2.0 * inside - 1.5 * seen_through; }
   /// Sight lines through the surface, as a share of these and of what is covered.
   double through_share() const { return seen_through / (coverage + seen_through); }
+  /// Whether several views show a long body from end to end: a cucumber, not a piece of a post.
+  bool closed() const { return beyond < 0.5 * kGoesOn && coverage > kMostly; }
   /// How far the roundness is below that of nearly all fruit, as several views show it.
   double flatness() const { return std::max(0.0, 0.5 - roundness); }
 };
@@ -98,7 +118,7 @@ struct SupportSums {
 };
 
 /// The evidence from the points that `visit` shows.
-/// @param visit visit(f) calls f(index) for points within kNearBody radii of the body's center
+/// @param visit visit(f) calls f(index) for points within near_radius of the body's center
 /// @param each number of points that each of these represents
 /// @param taken whether a point belongs to a body that has won already
 /// @param single_view whether all points were seen from one side
@@ -109,7 +129,11 @@ Verdict judge_points(const PointCloud<S>& cloud, Visit&& visit, std::size_t each
   const double r = body.mean_radius();
   const double near = parameters.near(r);
   const double cos_max = std::cos(parameters.max_angle), cos_loose = loose_cosine(parameters);
+  constexpr double kOutside = 0.2, kNoise = 3.0, kFollows = 0.7;  // radii, standard deviations; cosine to its normal
   std::bitset<DirectionBins::kCount> covered, filled;
+  std::array<double, DirectionBins::kCount> outside{};  // largest distance of a point that follows the surface (m)
+  double inside_sq = 0.0;  // of the distances of points inside, which noise alone puts there
+  std::size_t inside = 0;
   SupportSums sums;
   double sines_sq = 0.0;        // of the angles between the normals of the points and the body's
   std::size_t on = 0, off = 0;  // points on the surface; points near it, but not on it
@@ -122,9 +146,17 @@ Verdict judge_points(const PointCloud<S>& cloud, Visit&& visit, std::size_t each
       return;
     }
     const double distance = std::abs(foot.distance);
-    if (taken[i] || distance > std::max(kClutter * r, 2.0 * near)) return;
+    if (distance > std::max(kClutter * r, 2.0 * near)) return;
     const Eigen::Vector3d normal = cloud.normals[i].template cast<double>();
     const double cosine = foot.normal.dot(normal);
+    if (cosine > kFollows && foot.distance > 0.0) {
+      double& most = at(outside, DirectionBins::bin(q));
+      most = std::max(most, foot.distance);
+    } else if (cosine > kFollows) {
+      inside_sq += distance * distance;
+      ++inside;
+    }
+    if (taken[i]) return;
     if (distance <= 2.0 * near && cosine >= cos_loose) sums.add(q, normal);
     if (distance <= near && cosine >= cos_max) {
       covered.set(static_cast<std::size_t>(DirectionBins::bin(q)));
@@ -134,8 +166,11 @@ Verdict judge_points(const PointCloud<S>& cloud, Visit&& visit, std::size_t each
       ++off;
     }
   });
+  const double noise = std::sqrt(inside_sq / static_cast<double>(std::max<std::size_t>(inside, 1)));
+  const double far = std::max({kOutside * r, near, kNoise * noise});
   for (std::size_t b = 0; b < DirectionBins::kCount; ++b) {
     if (covered[b]) v.coverage += DirectionBins::shares()[b];
+    if (outside[b] > far && !covered[b]) v.beyond += DirectionBins::shares()[b];
     if (filled[b]) v.inside += DirectionBins::shares()[b];
   }
   v.support = each * on;
@@ -159,7 +194,7 @@ Verdict judge(const PointCloud<S>& cloud, const Grid<S>& grid, const std::vector
 }
 
 /// Judge a body quickly, by at most kQuick of the points near it, evenly picked.
-/// @param near points within kNearBody radii of about its center
+/// @param near points within near_radius of about its center
 /// @param single_view whether all points were seen from one side
 template <typename S>
 Verdict judge_quickly(const PointCloud<S>& cloud, const Indices& near, const std::vector<char>& taken,
@@ -170,8 +205,25 @@ Verdict judge_quickly(const PointCloud<S>& cloud, const Indices& near, const std
     for (std::size_t k = 0; k < near.size(); k += step) f(near[k]);
   };
   Verdict v = judge_points(cloud, visit, step, taken, body, parameters, single_view);
+  v.beyond = 0.0;                    // a better fit may take in what goes on
   if (single_view) v.seen_on = 1.0;  // at most; the sensor is asked only about bodies that are worth it
   return v;
+}
+
+/// Whether a body is longer than any fruit. Posts that end on both sides are, and bottles; cucumbers up to 3.2 times as
+/// long as wide are not, by the default `min_roundness`.
+/// @param radii semi-axes (m), the largest first
+inline bool too_long(const Eigen::Vector3d& radii, const BodyParameters& parameters) {
+  constexpr double kLongest = 0.28;  // of min_roundness: (shortest / longest)^2, the roundness of an ellipsoid's middle
+  constexpr double kLargest = 1.4;   // longest semi-axis, in largest expected radii
+  return radii[2] * radii[2] < kLongest * parameters.min_roundness * radii[0] * radii[0] ||
+         radii[0] > kLargest * parameters.radius_max;
+}
+
+/// Whether a body is round enough for a fruit. One that several views show from end to end may be long.
+inline bool round_enough(const Verdict& v, const Ellipsoid& body, const BodyParameters& parameters) {
+  if (v.roundness >= parameters.min_roundness) return true;
+  return !v.seen_on && v.closed() && !too_long(semi_axes(body).first, parameters);
 }
 
 /// A larger misfit of a body to its points, as a share of its radius, changes nothing.
@@ -194,7 +246,7 @@ inline double fruit_probability(const Verdict& v, const EllipsoidFit& fit, const
   if (v.support == 0 || !(v.coverage > 0.0)) return 0.0;
   constexpr double kMostPoints = 1500.0, kRoundEnough = 0.8, kLarge = 0.5;  // more changes nothing
   constexpr double kSingleView = -0.4, kSeenOn = 2.8, kUsual = 0.42, kCornered = 1.5, kWidest = 0.3;
-  constexpr double kBeyond = 30.0;
+  constexpr double kTooLong = 30.0, kBeyond = 100.0, kMostBeyond = 0.01, kClosed = 0.5;
   const double radius = fit.body.mean_radius();
   // The same share of a smaller surface has fewer points. Where several views agree on a body they count as on one of
   // 0.42 times the largest expected radius; in a single view scraps of leaves are small, too.
@@ -208,9 +260,11 @@ inline double fruit_probability(const Verdict& v, const EllipsoidFit& fit, const
                           5.65 * v.inside / v.coverage + 1.7 * std::min(radius / parameters.radius_max, kLarge);
   // Several views see that a stump is a cylinder, and that a box has corners. One does not.
   const double view = v.seen_on ? kSingleView + kSeenOn * std::log(*v.seen_on)
-                                : -parameters.ridge * (v.flatness() + kCornered * std::max(0.0, spread - kWidest));
-  const double beyond = std::max(0.0, fit.body.mean_semi_axis() / parameters.radius_max - 1.0);
-  return from_log_odds(evidence + view - kBeyond * beyond + prior);
+                                : -parameters.ridge * ((v.closed() ? kClosed : 1.0) * v.flatness() +
+                                                       kCornered * std::max(0.0, spread - kWidest)) -
+                                      kBeyond * std::clamp(v.beyond - kGoesOn, 0.0, kMostBeyond);
+  const double too_long = std::max(0.0, fit.body.mean_semi_axis() / parameters.radius_max - 1.0);
+  return from_log_odds(evidence + view - kTooLong * too_long + prior);
 }
 
 /// By how much the sensor's noise explains the misfit of a body to its points, as a share of the radius.

@@ -285,13 +285,13 @@ class Competition {
       return e.alive ? nullptr : &BodyCounts::doubtful;
     }
     e.alive = right_size && e.verdict.score() >= parameters_.min_coverage &&
-              e.verdict.roundness >= parameters_.min_roundness &&
+              round_enough(e.verdict, e.fit.body, parameters_) &&
               e.confidence >= kHopeless * parameters_.min_confidence;
     if (e.alive) return nullptr;
     if (!right_size) return wrong_size(e.fit.body.mean_radius(), parameters_);
     if (!(e.verdict.coverage >= parameters_.min_coverage)) return &BodyCounts::little_seen;
     if (!(e.verdict.score() >= parameters_.min_coverage)) return &BodyCounts::contradicted;
-    if (!(e.verdict.roundness >= parameters_.min_roundness)) return &BodyCounts::too_flat;
+    if (!round_enough(e.verdict, e.fit.body, parameters_)) return &BodyCounts::too_flat;
     return &BodyCounts::doubtful;
   }
 
