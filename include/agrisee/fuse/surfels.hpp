@@ -6,9 +6,9 @@
 /// A sample within the separation of a surfel, across the surface, whose normal agrees moves that surfel along its
 /// normal, weighted by inverse variance. Along the normal it may be off by the agreement and three standard deviations;
 /// the latter count as far as the cells next to the sample's reach (one to two separations), so that noisy samples of a
-/// leaf do not join those of a fruit behind it. Any other sample creates a new surfel. The density therefore stays even, however often a place is
-/// seen, and independent noise averages out. Metres, world. Cost: a few cells per sample; about 80 bytes of memory per
-/// surfel. Defined in `agrisee::agrisee`.
+/// leaf do not join those of a fruit behind it. Any other sample creates a new surfel. The density therefore stays
+/// even, however often a place is seen, and independent noise averages out. Metres, world. Cost: a few cells per
+/// sample; about 80 bytes of memory per surfel. Defined in `agrisee::agrisee`.
 #pragma once
 
 #include <agrisee/core/cloud.hpp>
