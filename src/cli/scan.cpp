@@ -196,7 +196,8 @@ void run_task(const fs::path& folder, const io::ScanTask& task, const io::SceneF
   print_summary(result, folder.string(), options);
   if (result.views.empty())
     throw ScanFailed(std::string("no view could be taken (") + to_string(result.stop_reason) +
-                     "): the scan volume is out of the arm's reach");
+                     "): the scan volume is out of the arm's reach, or the arm or its camera would collide; agrisee "
+                     "doctor shows which");
 }
 
 void run_scan(const ScanOptions& options) {
