@@ -4,6 +4,7 @@
 #pragma once
 
 #include <agrisee/cloud/fit.hpp>
+#include <agrisee/cloud/outside_surface.hpp>
 #include <agrisee/cloud/parameters.hpp>
 #include <agrisee/cloud/seen_through.hpp>
 #include <agrisee/core/log_odds.hpp>
@@ -14,7 +15,6 @@
 #include <Eigen/Eigenvalues>
 
 #include <algorithm>
-#include <array>
 #include <bitset>
 #include <cmath>
 #include <optional>
@@ -122,18 +122,17 @@ struct SupportSums {
 /// @param each number of points that each of these represents
 /// @param taken whether a point belongs to a body that has won already
 /// @param single_view whether all points were seen from one side
+/// @param look_beyond whether to look for a surface that goes on outside
 template <typename S, typename Visit>
 Verdict judge_points(const PointCloud<S>& cloud, Visit&& visit, std::size_t each, const std::vector<char>& taken,
-                     const Ellipsoid& body, const BodyParameters& parameters, bool single_view) {
+                     const Ellipsoid& body, const BodyParameters& parameters, bool single_view, bool look_beyond) {
   Verdict v;
   const double r = body.mean_radius();
   const double near = parameters.near(r);
   const double cos_max = std::cos(parameters.max_angle), cos_loose = loose_cosine(parameters);
-  constexpr double kOutside = 0.2, kNoise = 3.0, kFollows = 0.7;  // radii, standard deviations; cosine to its normal
+  constexpr double kNoise = 3.0;  // standard deviations
   std::bitset<DirectionBins::kCount> covered, filled;
-  std::array<double, DirectionBins::kCount> outside{};  // largest distance of a point that follows the surface (m)
-  double inside_sq = 0.0;  // of the distances of points inside, which noise alone puts there
-  std::size_t inside = 0;
+  OutsideSurface outside;
   SupportSums sums;
   double sines_sq = 0.0;        // of the angles between the normals of the points and the body's
   std::size_t on = 0, off = 0;  // points on the surface; points near it, but not on it
@@ -149,12 +148,11 @@ Verdict judge_points(const PointCloud<S>& cloud, Visit&& visit, std::size_t each
     if (distance > std::max(kClutter * r, 2.0 * near)) return;
     const Eigen::Vector3d normal = cloud.normals[i].template cast<double>();
     const double cosine = foot.normal.dot(normal);
-    if (cosine > kFollows && foot.distance > 0.0) {
-      double& most = at(outside, DirectionBins::bin(q));
-      most = std::max(most, foot.distance);
-    } else if (cosine > kFollows) {
-      inside_sq += distance * distance;
-      ++inside;
+    if (look_beyond && cosine > OutsideSurface::kFollows) {
+      if (foot.distance > 0.0)
+        outside.add(DirectionBins::bin(q), foot.distance);
+      else
+        outside.add_noise(distance);
     }
     if (taken[i]) return;
     if (distance <= 2.0 * near && cosine >= cos_loose) sums.add(q, normal);
@@ -166,13 +164,11 @@ Verdict judge_points(const PointCloud<S>& cloud, Visit&& visit, std::size_t each
       ++off;
     }
   });
-  const double noise = std::sqrt(inside_sq / static_cast<double>(std::max<std::size_t>(inside, 1)));
-  const double far = std::max({kOutside * r, near, kNoise * noise});
   for (std::size_t b = 0; b < DirectionBins::kCount; ++b) {
     if (covered[b]) v.coverage += DirectionBins::shares()[b];
-    if (outside[b] > far && !covered[b]) v.beyond += DirectionBins::shares()[b];
     if (filled[b]) v.inside += DirectionBins::shares()[b];
   }
+  if (look_beyond) v.beyond = outside.share(covered, r, near, kNoise);
   v.support = each * on;
   if (v.support < kLeastSupport) return v;
   v.roundness = sums.roundness(r, single_view);
@@ -187,7 +183,7 @@ template <typename S>
 Verdict judge(const PointCloud<S>& cloud, const Grid<S>& grid, const std::vector<char>& taken, const Ellipsoid& body,
               const BodyParameters& parameters, const SeenThrough& seen_through, const SeenOn& seen_on = {}) {
   const auto visit = [&](auto&& f) { visit_near(grid, body, f); };
-  Verdict v = judge_points(cloud, visit, 1, taken, body, parameters, static_cast<bool>(seen_on));
+  Verdict v = judge_points(cloud, visit, 1, taken, body, parameters, static_cast<bool>(seen_on), true);
   if (seen_through && v.support >= kLeastSupport) v.seen_through = seen_through(body);
   if (seen_on && v.support >= kLeastSupport) v.seen_on = seen_on(body);
   return v;
@@ -204,8 +200,8 @@ Verdict judge_quickly(const PointCloud<S>& cloud, const Indices& near, const std
   const auto visit = [&](auto&& f) {
     for (std::size_t k = 0; k < near.size(); k += step) f(near[k]);
   };
-  Verdict v = judge_points(cloud, visit, step, taken, body, parameters, single_view);
-  v.beyond = 0.0;                    // a better fit may take in what goes on
+  // A better fit may take in what goes on outside.
+  Verdict v = judge_points(cloud, visit, step, taken, body, parameters, single_view, false);
   if (single_view) v.seen_on = 1.0;  // at most; the sensor is asked only about bodies that are worth it
   return v;
 }

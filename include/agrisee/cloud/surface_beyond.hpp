@@ -5,20 +5,17 @@
 #pragma once
 
 #include <agrisee/cloud/body_verdict.hpp>
+#include <agrisee/cloud/outside_surface.hpp>
 #include <agrisee/core/cloud.hpp>
 #include <agrisee/geometry/direction_bins.hpp>
 #include <agrisee/neighbors/grid.hpp>
 
-#include <algorithm>
-#include <array>
 #include <bitset>
-#include <cmath>
 
 namespace agrisee {
 
 /// Share (0..1) of the directions from a body's center without points of its own in which other points lie outside of
-/// it, 0.2 to 0.3 radii from its surface and beyond its points' noise, with normals like its own. Leaves and neighbors
-/// that touch a fruit have other normals.
+/// it, 0.2 to 0.3 radii from its surface and beyond its points' noise, with normals like its own.
 /// @param cloud points (m) with normals
 /// @param grid of the cloud
 /// @param labels one per point
@@ -26,12 +23,10 @@ namespace agrisee {
 template <typename S>
 double surface_beyond(const PointCloud<S>& cloud, const Grid<S>& grid, const Labels& labels, int label,
                       const Ellipsoid& body) {
-  constexpr double kNear = 0.2, kFar = 0.3, kNoise = 4.0, kFollows = 0.7;  // radii, standard deviations, cosine
+  constexpr double kFar = 0.3, kNoise = 4.0;  // radii; standard deviations
   const double r = body.mean_radius();
   std::bitset<DirectionBins::kCount> own;
-  std::array<double, DirectionBins::kCount> outside{};  // largest distance (m)
-  double squares = 0.0;
-  std::size_t count = 0;
+  detail::OutsideSurface outside;
   detail::visit_near(grid, body, [&](Index index) {
     const auto i = static_cast<std::size_t>(index);
     const Eigen::Vector3d p = cloud.points[i].template cast<double>();
@@ -39,18 +34,13 @@ double surface_beyond(const PointCloud<S>& cloud, const Grid<S>& grid, const Lab
     const auto foot = body.foot(p);
     if (labels[i] == label) {
       own.set(static_cast<std::size_t>(bin));
-      squares += foot.distance * foot.distance;
-      ++count;
-    } else if (foot.distance < kFar * r && foot.normal.dot(cloud.normals[i].template cast<double>()) > kFollows) {
-      at(outside, bin) = std::max(at(outside, bin), foot.distance);
+      outside.add_noise(foot.distance);
+    } else if (foot.distance < kFar * r &&
+               foot.normal.dot(cloud.normals[i].template cast<double>()) > detail::OutsideSurface::kFollows) {
+      outside.add(bin, foot.distance);
     }
   });
-  const double noise = std::sqrt(squares / static_cast<double>(std::max<std::size_t>(count, 1)));
-  const double least = std::max(kNear * r, kNoise * noise);
-  double share = 0.0;
-  for (std::size_t b = 0; b < DirectionBins::kCount; ++b)
-    if (outside[b] > least && !own[b]) share += DirectionBins::shares()[b];
-  return share;
+  return outside.share(own, r, 0.0, kNoise);
 }
 
 }  // namespace agrisee
