@@ -283,15 +283,16 @@ std::vector<Fruit> locate(const Cloud& cloud, const Split& split, const Eigen::V
   const auto surfaces = closed_surfaces(cloud, split, parameters, is_free, members, with_joined);
   // Of 520 fruit in scans of leafy plants and trusses none has more, of parts of posts, bottles and cucumbers most do.
   constexpr double kPart = 0.035;
-  const Grid<float> grid(cloud, static_cast<float>(parameters.split.bodies.cell()));
+  std::optional<Grid<float>> grid;
+  if (is_free) grid.emplace(cloud, static_cast<float>(parameters.split.bodies.cell()));
   std::vector<Fruit> fruits;
   std::vector<std::size_t> source;  // the entry of split.found that each fruit comes from
   for (std::size_t f = 0; f < members.size(); ++f) {
     if (members[f].empty()) continue;
     Fruit fruit = fruit_of(cloud, with_joined, members[f], split.found[f], surfaces[f] ? &*surfaces[f] : nullptr,
                            cluster_origin, parameters);
-    if (is_free && fruit.body && !split.found[f].by_mask &&
-        surface_beyond(cloud, grid, with_joined, static_cast<int>(f) + 1, ellipsoid_of(*fruit.body)) > kPart)
+    if (grid && fruit.body && !split.found[f].by_mask &&
+        surface_beyond(cloud, *grid, with_joined, static_cast<int>(f) + 1, ellipsoid_of(*fruit.body)) > kPart)
       continue;
     fruits.push_back(std::move(fruit));
     source.push_back(f);
