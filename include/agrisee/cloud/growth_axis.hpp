@@ -116,14 +116,14 @@ inline GrowthAxis growth_axis(const Eigen::Vector3d& stem, const std::vector<Bod
     best = &axis;
     most = likelihood;
   }
-  Eigen::Vector3d known = stem, surely = kStemSurely * stem;
+  Eigen::Vector3d line = Eigen::Vector3d::Zero();
   if (best && std::isfinite(best->variance)) {
     const double variance = best->variance + (sum > 0.0 ? kWrong * (1.0 - most / sum) : kWrong);
     const double certainty = 1.0 / (std::max(variance, kLeastVariance) * parameters.stem_certainty);
     const double up = stem.norm() > 1e-9 ? best->direction.dot(stem) : best->direction.z();
-    known += (up < 0.0 ? -certainty : certainty) * best->direction;
-    surely += (up < 0.0 ? -certainty : certainty) * best->direction;
+    line = (up < 0.0 ? -certainty : certainty) * best->direction;
   }
+  const Eigen::Vector3d known = stem + line, surely = kStemSurely * stem + line;
   GrowthAxis out;
   if (!(known.norm() > 1e-9)) return out;
   out.direction = known.normalized();
