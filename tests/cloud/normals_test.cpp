@@ -197,6 +197,35 @@ TEST_CASE("normals without views turn outwards, patch by patch") {
   for (const auto& n : orient_normals_consistently(mixed, plane)) CHECK(n.z() == -1.0);
 }
 
+TEST_CASE("normals without views turn outwards on fruit between leaves") {
+  Rng rng(3);
+  std::size_t wrong = 0;
+  for (int scene = 0; scene < 20; ++scene) {  // a fruit between two curled leaves that touch it
+    const double radius = rng.uniform(0.01, 0.03);
+    cases::Points<double> points;
+    std::vector<Eigen::Vector3d> truth;
+    const auto noise = [&] { return 0.0007 * Eigen::Vector3d(rng.normal(), rng.normal(), rng.normal()); };
+    for (int i = 0; i < 1200; ++i) {
+      const Eigen::Vector3d n = Eigen::Vector3d(rng.normal(), rng.normal(), rng.normal()).normalized();
+      if (std::abs(n.z()) > 0.8) continue;  // the leaves hide it
+      truth.push_back(n);
+      points.push_back(radius * n + noise());
+    }
+    for (const double side : {-1.0, 1.0}) {
+      const double curl = rng.uniform(-15.0, 15.0);  // 1/m
+      for (int i = 0; i < 3000; ++i) {
+        const double x = rng.uniform(-0.05, 0.05), y = rng.uniform(-0.05, 0.05);
+        points.push_back(Eigen::Vector3d(x, y, side * (0.85 * radius + curl * x * x)) + noise());
+      }
+    }
+    const auto turned = orient_normals_consistently(estimate_normals(points), points);
+    std::size_t inwards = 0;
+    for (std::size_t i = 0; i < truth.size(); ++i) inwards += turned[i].dot(truth[i]) < 0.0;
+    wrong += 20 * inwards > truth.size();
+  }
+  CHECK(wrong == 0);
+}
+
 TEST_CASE("normals of next to nothing, and bad input") {
   using P = cases::Points<float>;
   const P none;

@@ -3,9 +3,9 @@
 /// Turns the normals of a cloud whose views are not known, so that they agree with one another: signs spread along a
 /// minimum spanning tree of the neighbor graph, in which an edge costs 1 - |n_i . n_j| (Hoppe et al., SIGGRAPH 1992).
 ///
-/// Where two bodies touch, their surfaces run side by side, and an edge between them would give one of them the wrong
-/// sign. The outside of a curved patch is known: there its normals face away from its centroid. So an edge does not
-/// join two patches if the outsides of both are known and disagree.
+/// Where two bodies touch, or a leaf lies on one, their surfaces run side by side, and an edge between them would give
+/// one of them the wrong sign. Where a surface bulges to one side, that side is its outside, and there the sign does
+/// not come from neighbors. The rest takes it from the bulging places, along the tree.
 ///
 /// Any frame; metres, radians. Cost: the k nearest neighbors of every point and a sort of the O(k n) edges; 16 k bytes
 /// a point.
@@ -14,7 +14,10 @@
 #include <agrisee/core/parameter_range.hpp>
 #include <agrisee/neighbors/neighbor_lists.hpp>
 
+#include <algorithm>
 #include <cmath>
+#include <utility>
+#include <vector>
 
 namespace agrisee {
 
@@ -39,34 +42,26 @@ struct OrientationParameters {
 
 namespace detail {
 
-/// Sums over the points of a patch that tell whether its normals face away from its centroid.
-struct PatchSums {
-  double count = 0.0;
-  Eigen::Vector3d points = Eigen::Vector3d::Zero(), normals = Eigen::Vector3d::Zero();
-  double flux = 0.0, squares = 0.0;  // sums of n . p and p . p
+/// To which side of the normals a point or a patch of points bulges.
+struct Bulge {
+  double value = 0.0;  ///< positive: the normals face outwards; negative: inwards
+  bool known = false;  ///< whether that is clear
 
-  void add(const PatchSums& other, double sign) {
-    count += other.count;
-    points += other.points;
-    normals += sign * other.normals;
-    flux += sign * other.flux;
-    squares += other.squares;
+  /// Join another one, whose normals have this sign. Where it is clear, what is not clear does not count.
+  void add(const Bulge& other, double sign) {
+    if (known == other.known)
+      value += sign * other.value;
+    else if (other.known)
+      value = sign * other.value;
+    known = known || other.known;
   }
-  /// Mean of n . (p - centroid) over the root mean square of |p - centroid|: 1 for a sphere, about 0.35 times the
-  /// opening half-angle for a small cap of one, 0 for a plane, negative where the normals face inwards.
-  double outwardness() const {
-    const Eigen::Vector3d centroid = points / count;
-    const double spread = std::sqrt(std::max(0.0, squares / count - centroid.squaredNorm()));
-    return spread > 0.0 ? (flux - normals.dot(centroid)) / (count * spread) : 0.0;
-  }
-  /// Whether it is clear which side is the outside.
-  bool decided() const { return count >= 20.0 && std::abs(outwardness()) > 0.1; }
 };
 
 /// Disjoint patches of points. Each point knows whether its sign differs from that of its patch's first point.
 class Patches {
  public:
-  explicit Patches(std::vector<PatchSums> points) : parent_(points.size()), flip_(points.size(), 0), sums_(points) {
+  explicit Patches(std::vector<Bulge> points)
+      : parent_(points.size()), flip_(points.size(), 0), bulges_(std::move(points)) {
     for (std::size_t i = 0; i < parent_.size(); ++i) parent_[i] = i;
   }
   /// The first point of i's patch.
@@ -89,28 +84,25 @@ class Patches {
   }
   /// Whether the sign of point i differs from that of its patch's first point; call root(i) before.
   bool differs(std::size_t i) const { return flip_[i] != 0; }
-  /// The sums of a patch, given its first point.
-  const PatchSums& sums(std::size_t root) const { return sums_[root]; }
+  /// The bulge of a patch, given its first point.
+  const Bulge& bulge(std::size_t root) const { return bulges_[root]; }
 
-  /// Join the patches of a and b, unless the outsides of both are known and one would be turned inside out.
+  /// Join the patches of a and b, unless the outsides of both are known.
   /// @param differ whether a and b have different signs
   void join(std::size_t a, std::size_t b, bool differ) {
     const std::size_t ra = root(a), rb = root(b);
-    if (ra == rb) return;
+    if (ra == rb || (bulges_[ra].known && bulges_[rb].known)) return;
     const bool flip = (differs(a) != differs(b)) != differ;
-    const double sign = flip ? -1.0 : 1.0;
-    if (sums_[ra].decided() && sums_[rb].decided() && sign * sums_[ra].outwardness() * sums_[rb].outwardness() < 0.0)
-      return;
     const std::size_t first = std::min(ra, rb), second = std::max(ra, rb);
     parent_[second] = first;
     flip_[second] = flip ? 1 : 0;
-    sums_[first].add(sums_[second], sign);
+    bulges_[first].add(bulges_[second], flip ? -1.0 : 1.0);
   }
 
  private:
   std::vector<std::size_t> parent_;
   std::vector<char> flip_;
-  std::vector<PatchSums> sums_;  // at roots
+  std::vector<Bulge> bulges_;  // at roots
 };
 
 /// An edge of the neighbor graph; a < b.
@@ -168,30 +160,64 @@ std::vector<OrientationEdge<scalar_t<C>>> orientation_edges(const std::vector<Ve
   return edges;
 }
 
-/// Every known point as a patch of its own.
+/// How each known point's surroundings bulge: the correlation of the normals with the positions of its neighbors, 1 on
+/// a sphere, 0.7 on a cylinder, 0 on a plane or a saddle, negative where the normals face inwards. What noise makes of
+/// it is smoothed away among neighbors.
 template <typename C, typename Known>
-std::vector<PatchSums> single_points(const std::vector<Vector3<scalar_t<C>>>& normals, const C& cloud,
-                                     const Known& known) {
+std::vector<Bulge> bulges(const std::vector<Vector3<scalar_t<C>>>& normals, const C& cloud,
+                          const OrientationParameters& parameters, const NeighborLists& lists, int threads,
+                          const Known& known) {
+  using S = scalar_t<C>;
+  constexpr double kClear = 0.25;
+  constexpr int kRounds = 3;
   const std::size_t n = agrisee::size(cloud);
-  std::vector<PatchSums> points(n);
-  Eigen::Vector3d origin = Eigen::Vector3d::Zero();  // the first known point; sums about it lose fewer digits
-  for (std::size_t i = n; i-- > 0;)
-    if (known(i)) origin = point(cloud, i).template cast<double>();
-  for (std::size_t i = 0; i < n; ++i) {
-    if ((i & 0x3FFF) == 0) throw_if_cancelled();
-    if (!known(i)) continue;
-    const Eigen::Vector3d p = point(cloud, i).template cast<double>() - origin;
-    const Eigen::Vector3d normal = normals[i].template cast<double>();
-    points[i] = {1.0, p, normal, normal.dot(p), p.squaredNorm()};
+  const S cos_min = static_cast<S>(std::cos(parameters.max_angle));
+  const S reach_sq = static_cast<S>(parameters.max_distance * parameters.max_distance);
+  // f(j, p_j - p_i, differ) for the neighbors j on the surface of i; whether their normals have different signs
+  const auto visit = [&](std::size_t i, auto&& f) {
+    lists.visit(i, [&](Index index) {
+      const auto j = static_cast<std::size_t>(index);
+      if (j == i || !known(j)) return;
+      const Vector3<S> apart = point(cloud, j) - point(cloud, i);
+      const S cosine = normals[i].dot(normals[j]);
+      if (apart.squaredNorm() <= reach_sq && std::abs(cosine) >= cos_min) f(j, apart, cosine < S(0));
+    });
+  };
+  std::vector<double> now(n, 0.0), next(n, 0.0);
+  throw_if_cancelled();
+  parallel_for(n, threads, [&](std::size_t i) {
+    if (!known(i)) return;
+    double products = 0.0, distances = 0.0, changes = 0.0;
+    visit(i, [&](std::size_t j, const Vector3<S>& apart, bool differ) {
+      const Vector3<S> change = (differ ? Vector3<S>(-normals[j]) : normals[j]) - normals[i];
+      products += double(apart.dot(change));
+      distances += double(apart.squaredNorm());
+      changes += double(change.squaredNorm());
+    });
+    if (distances > 0.0 && changes > 0.0) now[i] = products / std::sqrt(distances * changes);
+  });
+  for (int round = 0; round < kRounds; ++round) {
+    throw_if_cancelled();
+    parallel_for(n, threads, [&](std::size_t i) {
+      if (!known(i)) return;
+      double sum = now[i], count = 1.0;
+      visit(i, [&](std::size_t j, const Vector3<S>&, bool differ) {
+        sum += differ ? -now[j] : now[j];
+        ++count;
+      });
+      next[i] = sum / count;
+    });
+    now.swap(next);
   }
-  return points;
+  std::vector<Bulge> out(n);
+  for (std::size_t i = 0; i < n; ++i) out[i] = {now[i], std::abs(now[i]) > kClear};
+  return out;
 }
 
 }  // namespace detail
 
-/// The normals, turned so that neighbors agree and that each connected patch faces away from its own centroid: outwards
-/// for whole bodies and for the convex parts of them that are seen. A patch without such a side (a plane) keeps the
-/// sign of its first point. Normals that are zero stay so.
+/// The normals, turned so that they face outwards where the surface bulges, and neighbors agree elsewhere. A patch that
+/// bulges nowhere (a plane) keeps the sign of its first point. Normals that are zero stay so.
 /// @param normals one unit normal per point; zero if unknown
 /// @param cloud points (m)
 /// @param parameters see their struct
@@ -209,9 +235,7 @@ std::vector<Vector3<scalar_t<C>>> orient_normals_consistently(std::vector<Vector
               "orienting normals needs one a point, and the cloud's neighbor lists");
   const auto known = [&](std::size_t i) { return is_finite(point(cloud, i)) && normals[i].squaredNorm() > 0; };
   const auto edges = detail::orientation_edges(normals, cloud, parameters, lists, threads, known);
-  auto points = detail::single_points(normals, cloud, known);
-  throw_if_cancelled();
-  detail::Patches patches(std::move(points));
+  detail::Patches patches(detail::bulges(normals, cloud, parameters, lists, threads, known));
   for (const auto& e : edges) {  // Kruskal's algorithm: an edge inside a patch changes nothing
     if (((&e - edges.data()) & 0xFFFF) == 0) throw_if_cancelled();
     const auto a = static_cast<std::size_t>(e.a), b = static_cast<std::size_t>(e.b);
@@ -219,7 +243,7 @@ std::vector<Vector3<scalar_t<C>>> orient_normals_consistently(std::vector<Vector
   }
   for (std::size_t i = 0; i < n; ++i) {
     if (!known(i)) continue;
-    const bool inward = patches.sums(patches.root(i)).outwardness() < -1e-6;
+    const bool inward = patches.bulge(patches.root(i)).value < -1e-6;
     if (patches.differs(i) != inward) normals[i] = -normals[i];
   }
   return normals;
