@@ -50,6 +50,9 @@ constexpr double kSightMargin = 0.12;
 /// Whether one viewpoint is given for all points.
 bool has_one_viewpoint(const CloudOrigin& origin) { return origin.viewpoint && origin.sensors.empty(); }
 
+/// Whether all points are known to be seen from one place.
+bool is_one_view(const CloudOrigin& origin) { return has_one_viewpoint(origin) || origin.sensors.size() == 1; }
+
 /// Evidence of free space from the points of a cloud; empty where no body asks for it, or no sensor's place is known.
 /// @param noise standard deviation (m) of the points about their own surface
 SeenThrough free_space_of(const Cloud& cloud, const Parameters& parameters, const CloudOrigin& origin, double noise) {
@@ -262,8 +265,10 @@ ScanResult process(Cloud&& cloud, const Parameters& parameters, const CloudOrigi
   });
   Parameters fitted = parameters;
   BodyParameters& bodies = fitted.split.bodies;
-  constexpr double kAlike = 5.0;  // errors of neighbors are alike, so a body that they carry is off by more than one's
-  bodies.fit.sensor_noise = std::max(bodies.fit.sensor_noise, kAlike * noise.points);
+  // Within a view the errors of neighbors are alike, so a body that they carry is off by more than they differ. Where
+  // views are merged, they differ by the errors of the views.
+  const double alike = is_one_view(origin) ? 5.0 : 1.0;
+  bodies.fit.sensor_noise = std::max(bodies.fit.sensor_noise, alike * noise.points);
   const bool unknown = !(noise.points > 0.0) && has_one_viewpoint(origin);  // its normals came with the cloud
   bodies.point_noise = std::max(bodies.point_noise, unknown ? point_noise(result.cloud, parameters) : noise.points);
   bodies.normal_noise = std::max(bodies.normal_noise, 1.2 * noise.normals);

@@ -342,6 +342,26 @@ TEST_CASE("normals that are missing are estimated on their neighbors' side") {
     }
 }
 
+TEST_CASE("fruit of different sizes in a cloud of merged views are measured each for itself") {
+  Rng rng(11);
+  Cloud cloud;
+  const double radii[] = {0.034, 0.028, 0.022, 0.016, 0.011};
+  for (std::size_t f = 0; f < 5; ++f)
+    for (int i = 0; i < int(400.0 * std::pow(radii[f] / 0.02, 2)); ++i) {
+      const Eigen::Vector3d n = rng.direction();
+      if (n.y() > 0.3) continue;  // no view shows the back
+      const Eigen::Vector3d noise(rng.normal(), rng.normal(), rng.normal());
+      const Eigen::Vector3d center(0.0, 0.5, 0.3 - 0.06 * double(f));
+      cloud.points.push_back((center + radii[f] * n + 0.0007 * noise).cast<float>());
+    }
+  const ScanResult result = process(cloud);
+  REQUIRE(result.fruits.size() == 5);
+  for (std::size_t f = 0; f < 5; ++f) {  // from top to bottom
+    CHECK(std::abs(result.fruits[f].body->radii.mean() - radii[f]) < 0.0007);
+    CHECK((result.fruits[f].body->center - Eigen::Vector3d(0.0, 0.5, 0.3 - 0.06 * double(f))).norm() < 0.0012);
+  }
+}
+
 TEST_CASE("a cloud's own noise widens its neighborhoods") {
   for (const double sigma : {0.0, 0.001, 0.002}) {
     const Cloud cloud = seen(sigma);
