@@ -185,6 +185,18 @@ std::vector<std::optional<ClosedSurface>> closed_surfaces(const Cloud& cloud, co
   return surfaces;
 }
 
+/// Whether a body is only the end of something longer, such as a post. Then it is longer than wide, unlike a round
+/// fruit below which the underside of a shelf shows.
+/// @param labels one per point
+/// @param label of the body's own points
+bool is_part(const Cloud& cloud, const Grid<float>& grid, const Labels& labels, int label, const Body& body) {
+  constexpr double kLonger = 1.15;
+  // Of 520 fruit in scans of leafy plants and trusses none has more, of parts of posts, bottles and cucumbers most do.
+  constexpr double kPart = 0.035;
+  return body.radii[0] > kLonger * body.radii[1] &&
+         surface_beyond(cloud, grid, labels, label, ellipsoid_of(body)) > kPart;
+}
+
 /// The radius of a fruit (m), roughly where no body was fitted.
 double radius_of(const Fruit& fruit) { return fruit.body ? fruit.body->radii.mean() : fruit.sigma.norm(); }
 
@@ -281,8 +293,6 @@ std::vector<Fruit> locate(const Cloud& cloud, const Split& split, const Eigen::V
   members.resize(split.found.size());
   Labels with_joined = split.labels;
   const auto surfaces = closed_surfaces(cloud, split, parameters, is_free, members, with_joined);
-  // Of 520 fruit in scans of leafy plants and trusses none has more, of parts of posts, bottles and cucumbers most do.
-  constexpr double kPart = 0.035;
   std::optional<Grid<float>> grid;
   if (is_free) grid.emplace(cloud, static_cast<float>(parameters.split.bodies.cell()));
   std::vector<Fruit> fruits;
@@ -292,7 +302,7 @@ std::vector<Fruit> locate(const Cloud& cloud, const Split& split, const Eigen::V
     Fruit fruit = fruit_of(cloud, with_joined, members[f], split.found[f], surfaces[f] ? &*surfaces[f] : nullptr,
                            cluster_origin, parameters);
     if (grid && fruit.body && !split.found[f].by_mask &&
-        surface_beyond(cloud, *grid, with_joined, static_cast<int>(f) + 1, ellipsoid_of(*fruit.body)) > kPart)
+        is_part(cloud, *grid, with_joined, static_cast<int>(f) + 1, *fruit.body))
       continue;
     fruits.push_back(std::move(fruit));
     source.push_back(f);

@@ -294,6 +294,11 @@ ScanResult process(Cloud&& cloud, const Parameters& parameters, const CloudOrigi
   timed(t.locate, [&] {
     result.fruits = locate(result.cloud, found, result.cluster_origin, fitted, result.labels, origin.is_free);
   });
+  if (parameters.split.fit_bodies &&
+      result.bodies.taken > result.fruits.size()) {  // the rest are parts of larger things
+    result.bodies.too_flat += result.bodies.taken - result.fruits.size();
+    result.bodies.taken = result.fruits.size();
+  }
   result.trusses = found_trusses(result.fruits);
   timed(t.locate, [&] {
     if (result.cloud.colors.empty()) result.cloud.colors = fuse::colors_of(result.cloud, origin.detected);

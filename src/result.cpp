@@ -99,11 +99,10 @@ std::string why_no_fruit(const ScanResult& result) {
   add(n.inside_out, "with normals that face inwards (is the position of the sensor right?)");
   add(n.little_seen, "of which too little was seen");
   add(n.contradicted, "with points inside, or through which a view looked");
-  add(n.too_flat, "too flat, as leaves and stems are");
+  add(n.too_flat, "too flat, as leaves and stems are, or parts of something larger");
   add(n.doubtful, "too unlike a fruit, as scraps of leaves are (see min_confidence)");
   add(n.overlapping, "inside another");
   add(n.not_fitted, "that no ellipsoid fits");
-  add(n.taken, "without points of its own");
   return "none of the surfaces that might be fruit is one: " + listed(parts);
 }
 

@@ -116,6 +116,51 @@ TEST_CASE("points labeled as a fruit's that lie far outside its closed surface l
   CHECK(fruits[0].points == skin);
 }
 
+TEST_CASE("the end of a post is no fruit, a fruit on a thin shelf is one") {
+  constexpr double kRadius = 0.03;
+  const IsFree nothing = [](const Eigen::Vector3d&) { return false; };
+  Parameters parameters;
+  const auto count = [&](const Cloud& cloud, std::size_t own) {
+    Indices first(own);
+    std::iota(first.begin(), first.end(), Index{0});
+    Split split;
+    split.labels.assign(cloud.size(), 0);
+    std::fill_n(split.labels.begin(), own, 1);
+    split.found.resize(1);
+    const auto fit = fit_ellipsoid(cloud, first, Ellipsoid(Sphere{Eigen::Vector3d::Zero(), kRadius}));
+    REQUIRE(fit);
+    split.found[0].fit = *fit;
+    Labels labels;
+    return locate(cloud, split, Eigen::Vector3d::Zero(), parameters, labels, nothing).size();
+  };
+  const auto above = [](const Eigen::Vector3d& d) { return d.z() > -0.6; };
+  Cloud shelf;
+  test::add_sphere(shelf, {Eigen::Vector3d::Zero(), kRadius}, 0.002, above);
+  const std::size_t fruit = shelf.size();
+  for (double x = -0.08; x <= 0.08; x += 0.002)
+    for (double y = -0.08; y <= 0.08; y += 0.002)
+      for (const float side : {-1.0f, 1.0f}) {  // 4 mm thick; what lies below the fruit shows from below alone
+        if (side > 0.0f && std::hypot(x, y) < 0.7 * kRadius) continue;
+        shelf.points.emplace_back(float(x), float(y), float(-kRadius - 0.002) + 0.002f * side);
+        shelf.normals.emplace_back(0.0f, 0.0f, side);
+      }
+  CHECK(count(shelf, fruit) == 1);
+  // A post with a rounded end, of which a body took the upper 55 mm.
+  Cloud post;
+  test::add_sphere(post, {Eigen::Vector3d::Zero(), kRadius}, 0.002,
+                   [](const Eigen::Vector3d& d) { return d.z() >= 0.0; });
+  std::size_t end = 0;
+  for (double z = -0.001; z > -0.15; z -= 0.002) {
+    for (double a = 0.0; a < 2.0 * kPi; a += 0.002 / kRadius) {
+      const Eigen::Vector3d n(std::cos(a), std::sin(a), 0.0);
+      post.points.push_back((kRadius * n + z * Eigen::Vector3d::UnitZ()).cast<float>());
+      post.normals.push_back(n.cast<float>());
+    }
+    if (z > -0.025) end = post.size();
+  }
+  CHECK(count(post, end) == 0);
+}
+
 TEST_CASE("a body whose ellipsoid explains it is not judged by a closed surface") {
   Cloud ball;
   test::add_sphere(ball, {{0.1, 0.5, 0.2}, 0.03}, 0.0025, [](const Eigen::Vector3d& d) { return d.y() < 0.3; });

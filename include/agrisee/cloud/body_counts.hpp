@@ -16,7 +16,7 @@ struct BodyCounts {
   std::size_t inside_out = 0;    ///< the normals of its points face inwards
   std::size_t little_seen = 0;   ///< points cover too little of its surface (`split.bodies.min_coverage`)
   std::size_t contradicted = 0;  ///< points lie inside it, or sight lines pass through it
-  std::size_t too_flat = 0;      ///< its points are flat or ridge-like: leaves and stems (`split.bodies.min_roundness`)
+  std::size_t too_flat = 0;      ///< flat, ridge-like (`split.bodies.min_roundness`), or a part of something larger
   std::size_t doubtful = 0;      ///< probability of a fruit too low (`split.bodies.min_confidence`)
   std::size_t overlapping = 0;   ///< it penetrates a better body too deeply (`split.bodies.max_overlap`)
   std::size_t not_fitted = 0;    ///< no ellipsoid fits its points
