@@ -71,6 +71,7 @@ void add_front(const Silhouette& s, const Ellipsoid& body, double size, Sums& su
     const Eigen::Vector3d sight = (s.sensor - p).normalized();
     if (!(body.normal(p).dot(sight) > kFacing)) continue;
     const auto row = detail::ellipsoid_row(body, p, Eigen::Vector3d::Zero(), size, (kGate + 1.0) * sigma, kAnyNormal);
+    if (!(row.weight > 0.0)) continue;  // its derivatives are not computed
     derivatives += row.weight * row.derivatives;
     residual += row.weight * row.residual;
     weights += row.weight;

@@ -62,6 +62,12 @@ const Sphere kBall{{0.1, 0.2, 0.7}, 0.04};
 const Eigen::Vector3d kNearest(0.1, 0.2, 0.66);
 constexpr double kRigid = 1e-3;  // a prior that leaves nothing but balls
 
+/// Fill the stack below the caller with bytes that make no number.
+[[gnu::noinline]] void fill_stack() {
+  volatile unsigned char bytes[65536];
+  for (volatile unsigned char& byte : bytes) byte = 0xff;
+}
+
 bool same(const EllipsoidFit& a, const EllipsoidFit& b) {
   return (a.body.center - b.body.center).norm() < 1e-9 && (a.body.A - b.body.A).norm() < 1e-6 &&
          a.inliers == b.inliers && std::abs(a.rms - b.rms) < 1e-9;
@@ -220,6 +226,20 @@ TEST_CASE("the front counts where it faces the sensor") {
   CHECK(nearer->body.center.z() - nearer->body.mean_radius() == Approx(0.658).margin(0.0002));
   CHECK(nearer->body.center.z() < kBall.center.z() - 0.0015);
   CHECK(add(deg(40.0), 0.003)->body.center.z() < kBall.center.z() - 0.0015);
+}
+
+TEST_CASE("of points before the gate nothing counts, whatever memory held before") {
+  fuse::Silhouette front, leaf;  // the derivatives of the leaf's rows are not computed
+  const fuse::Silhouette outline = outline_of_ball(kBall, kSensor);
+  front.sensor = leaf.sensor = kSensor;
+  front.front = leaf.front = {kNearest};
+  leaf.front.insert(leaf.front.begin(), kNearest - Eigen::Vector3d(0.0, 0.0, 0.03));
+  const auto fit = fuse::fit_silhouettes({front, outline}, Ellipsoid(kBall), std::nullopt, kRigid);
+  fill_stack();
+  const auto with_leaf = fuse::fit_silhouettes({leaf, outline}, Ellipsoid(kBall), std::nullopt, kRigid);
+  REQUIRE(fit);
+  REQUIRE(with_leaf);
+  CHECK(same(*with_leaf, *fit));
 }
 
 TEST_CASE("without a front the expected radius says how far away a body is") {

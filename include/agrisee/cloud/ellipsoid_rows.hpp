@@ -24,7 +24,8 @@ using Matrix9 = Eigen::Matrix<double, 9, 9>;
 struct EllipsoidRow {
   double residual = 0.0;  ///< distance of the point (m)
   double weight = 0.0;    ///< Tukey's biweight; 0: the point is beyond the gate, or its normal disagrees
-  Vector9 derivatives;    ///< of the residual by the center / size and by size * A as (xx, yy, zz, xy, xz, yz)
+  Vector9 derivatives;    ///< of the residual by the center / size and by size * A as (xx, yy, zz, xy, xz, yz); not
+                          ///< set where the weight is 0
 };
 
 /// What the rows of points consist of. A `Real` is a number, or an Eigen array with one for each of several points:
