@@ -48,22 +48,24 @@ std::optional<ReachableView> GainPlanner::next(const Progress& progress, const J
   if (progress.cloud.empty()) return front_view(static_cast<int>(progress.views.size()), current, reach);
   update_candidates(current, reach);
   if (!last_ || current != asked_from_) rank_again(current);  // a view was refused, or the arm has moved
-  if (ranked_.empty()) {
+  if (!first_within_reach(current, reach)) {
+    ranked_.clear();
     const auto completeness = completeness_;
     try {
       if (const auto reason = rank(current, reach)) return stop(*reason, current);
+      if (!first_within_reach(current, reach)) {
+        ranked_.clear();
+        return stop(StopReason::no_reachable_view, current);
+      }
     } catch (...) {  // cancelled: do not keep half a ranking
       ranked_.clear();
       completeness_ = completeness;
       throw;
     }
   }
-  Scored& chosen = ranked_.front();
-  // From the present joints the view may be reached with others.
-  if (const auto view = reach(chosen.request, current)) rate(chosen, *view, current);
-  last_ = chosen.request;
+  last_ = ranked_.front().request;
   asked_from_ = current;
-  return chosen.view;
+  return ranked_.front().view;
 }
 
 void GainPlanner::refused() {
@@ -109,6 +111,16 @@ ViewRequest GainPlanner::request(const Eigen::Vector3d& direction) const {
   return {model_.center(), direction, parameters_.distance, parameters_.distance_min, parameters_.distance_max};
 }
 
+bool GainPlanner::first_within_reach(const Joints& current, const Reach& reach) {
+  for (auto s = ranked_.begin(); s != ranked_.end(); ++s)
+    if (const auto view = reach(s->request, current)) {
+      rate(*s, *view, current);
+      ranked_.erase(ranked_.begin(), s);
+      return true;
+    }
+  return false;
+}
+
 std::optional<StopReason> GainPlanner::rank(const Joints& current, const Reach& reach) {
   for (const Candidate& c : candidates_) consider(c.request, c.view, current);
   std::vector<char> can_be_seen(model_.areas().size(), 0);
@@ -122,9 +134,13 @@ std::optional<StopReason> GainPlanner::rank(const Joints& current, const Reach& 
   const auto shows = [](const Scored& s) { return s.view.gain > 0.0; };
   const bool any = std::any_of(ranked_.begin(), ranked_.end(), shows);
   const auto poor = [least = least_gain()](const Scored& s) { return s.view.gain < least; };
-  ranked_.erase(std::remove_if(ranked_.begin(), ranked_.end(), poor), ranked_.end());
+  const auto lost = [&](const Scored& s) { return s.lost && !poor(s); };
+  const bool any_lost = std::any_of(ranked_.begin(), ranked_.end(), lost);
+  const auto drop = [&](const Scored& s) { return s.lost || poor(s); };
+  ranked_.erase(std::remove_if(ranked_.begin(), ranked_.end(), drop), ranked_.end());
   sort_ranked();
-  if (ranked_.empty() && refused_ > 0) return StopReason::no_reachable_view;  // the refused ones were worth taking
+  // The refused ones were worth taking, and so were the lost ones.
+  if (ranked_.empty() && (refused_ > 0 || any_lost)) return StopReason::no_reachable_view;
   if (ranked_.empty()) return any ? StopReason::low_gain : StopReason::no_frontier;
   return std::nullopt;
 }
@@ -134,7 +150,10 @@ void GainPlanner::refine(const Joints& current, const Reach& reach) {
   for (std::size_t i = 0, n = std::min(kRefined, ranked_.size()); i < n; ++i) {
     throw_if_cancelled();
     const ViewRequest middle = ranked_[i].request;
-    if (const auto view = reach(middle, current)) rate(ranked_[i], *view, current);
+    if (const auto view = reach(middle, current))
+      rate(ranked_[i], *view, current);
+    else
+      ranked_[i].lost = true;
     const Eigen::Vector3d a = any_orthogonal<double>(middle.direction), b = middle.direction.cross(a);
     for (int k = 0; k < 6; ++k) {
       const double angle = kPi / 3.0 * k;

@@ -166,29 +166,87 @@ TEST_CASE("gain choice: the best are rated anew as the arm reaches them from its
   CHECK(game.ranking() == Ranking{8});  // without the one that was just taken
 }
 
-TEST_CASE("gain choice: the chosen view is the one the arm answered last, if it answered") {
+TEST_CASE("gain choice: the chosen view is the one the arm answered last") {
   Game game(12, {Row::view(0, 8, 1.0), Row::view(0, 6, 1.0)});
   game.planner = game.row.planner();
   int asked = 0;
-  bool lost = false;
-  const Reach counting = [&](const ViewRequest& r, const Joints& q) -> std::optional<ReachableView> {
-    if (lost) return std::nullopt;
+  const Reach counting = [&](const ViewRequest& r, const Joints& q) {
     auto view = game.script.reach()(r, q);
     if (view) view->move_time = ++asked;
     return view;
   };
-  auto view = game.planner->next(game.row.scan.progress(), at_time(0.0), counting);
+  const auto view = game.planner->next(game.row.scan.progress(), at_time(0.0), counting);
   REQUIRE(view);
   CHECK(asked == 5);  // 2 candidates, twice, and the best once more
   CHECK(view->move_time == 5.0);
   CHECK(view->gain == 8 * Row::kArea);
   CHECK(game.planner->candidates()[0].move_time == 5.0);
+}
+
+TEST_CASE("gain choice: a view that the arm can no longer take is not returned") {
+  // The planner asks for the three candidates, then for each again with its surroundings, at last for the best.
+  const auto game_of_three = [] { return Game(12, {Row::view(0, 8), Row::view(0, 6), Row::view(0, 4)}); };
+  const auto losing = [](Game& game, int first) {  // from the time it is asked for the n-th time the arm takes no 8
+    return [&game, first, asked = 0](const ViewRequest& r, const Joints& q) mutable {
+      auto view = game.script.reach()(r, q);
+      return ++asked >= first && game.script.which(view) == 0 ? std::nullopt : view;
+    };
+  };
+  for (const int first : {4, 25}) {
+    Game game = game_of_three();
+    game.planner = game.row.planner();
+    const Reach reach = losing(game, first);
+    for (int i = 0; i < 2; ++i)
+      CHECK(game.script.which(game.planner->next(game.row.scan.progress(), at_time(0.0), reach)) == 1);
+    CHECK(game.ranking() == Ranking{6, 4});
+    game.planner->refused();
+    CHECK(game.script.which(game.planner->next(game.row.scan.progress(), at_time(0.0), reach)) == 2);
+  }
+  Game game = game_of_three();
+  CHECK(game.next() == 0);
   game.planner->refused();
-  lost = true;
-  view = game.planner->next(game.row.scan.progress(), at_time(0.0), counting);
-  REQUIRE(view);
-  CHECK(view->move_time == 4.0);
-  CHECK(view->gain == 6 * Row::kArea);
+  game.script.views[1].reset();
+  CHECK(game.next() == 2);
+}
+
+TEST_CASE("gain choice: when the arm can take none of the views that were worth taking, that ends the scan") {
+  Game game(12, {Row::view(0, 8), Row::view(0, 6), Row::view(0, 1)});
+  game.row.parameters.min_gain = 3.0 * Row::kArea / 1e-6;
+  const auto expect_none = [&](double seconds) {
+    CHECK(game.next(seconds) == -1);
+    CHECK(game.planner->stop_reason() == StopReason::no_reachable_view);
+    CHECK(game.ranking().empty());
+  };
+  CHECK(game.next() == 0);
+  const auto views = game.script.views;
+  game.script.views.assign(3, std::nullopt);
+  for (int i = 0; i < 2; ++i) expect_none(0.0);
+  const std::size_t asked = game.script.asked.size();
+  expect_none(0.0);
+  CHECK(game.script.asked.size() == asked);
+  game.script.views = views;  // from other joints it is asked for them again
+  CHECK(game.next(1.0) == 0);
+  game.script.views[0].reset();
+  game.script.views[1].reset();
+  game.planner->observe(game.row.scan.progress());
+  expect_none(1.0);  // the poor one alone is no reason to tell that no view is worth taking
+}
+
+TEST_CASE("gain choice: views that were lost in a cancelled call are asked for again") {
+  Game game(12, {Row::view(0, 8), Row::view(0, 6), Row::view(0, 4)});
+  CHECK(game.next() == 0);
+  game.planner->refused();
+  const auto six = game.script.views[1];
+  game.script.views[1].reset();
+  CancelledAt cancelled;
+  const Reach reach = [&](const ViewRequest& r, const Joints& q) {
+    const auto view = game.script.reach()(r, q);
+    throw_if_cancelled();
+    return view;
+  };
+  REQUIRE(cancelled.next(*game.planner, game.row.scan.progress(), at_time(0.0), reach, 2));
+  game.script.views[1] = six;
+  CHECK(game.next() == 1);
 }
 
 TEST_CASE("gain choice: a refused view is not returned again until the next view was taken") {

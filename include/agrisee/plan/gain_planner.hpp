@@ -8,9 +8,10 @@
 /// time for dwelling and moving. Where joints are reported, a move counts the distance from the present joints (the
 /// root of the sum of squares) at pi rad/s, whatever `move_time` says; where they are not, it counts the `move_time`
 /// that the arm last answered for the view, which for most candidates is of an earlier call. The reach of the best
-/// candidates is computed again from the arm's present joints, and directions close to theirs are tried as well. The
-/// scan ends when the best view promises less than `min_gain` of the fruit surface known so far. Promises are scaled by
-/// ExpectedSurface::reliability, because views among leaves show less than they promise. World frame, metres, seconds.
+/// candidates is computed again from the arm's present joints: those that it can no longer take are dropped, and
+/// directions close to theirs are tried as well. The scan ends when the best view promises less than `min_gain` of the
+/// fruit surface known so far. Promises are scaled by ExpectedSurface::reliability, because views among leaves show
+/// less than they promise. World frame, metres, seconds.
 #pragma once
 
 #include <agrisee/plan/expected_surface.hpp>
@@ -52,6 +53,7 @@ class GainPlanner : public Planner {
     ReachableView view;
     std::vector<std::uint32_t> shown;  // unseen samples of the model that the view shows
     bool rated = false;                // `shown` is known for this view
+    bool lost = false;                 // the arm can no longer take it
     double score = 0.0;                // gain over time (m2/s)
   };
 
@@ -62,10 +64,13 @@ class GainPlanner : public Planner {
   /// Request for a view of the model's center along `direction`.
   ViewRequest request(const Eigen::Vector3d& direction) const;
 
+  /// Drop the first views of `ranked_`, up to the first that the arm can take from its present joints, and rate that
+  /// one anew; false, with nothing dropped, if it can take none.
+  bool first_within_reach(const Joints& current, const Reach& reach);
   /// Fill `ranked_` with the views worth taking, best first, and set `completeness_`; returns the reason when there is
   /// none.
   std::optional<StopReason> rank(const Joints& current, const Reach& reach);
-  /// Ask again for the best of `ranked_` from the present joints, and add directions close to theirs.
+  /// Ask again for the best of `ranked_` from the present joints, mark the lost ones, and add directions close to all.
   void refine(const Joints& current, const Reach& reach);
   /// Drop the refused views from `ranked_` and score the others from the present joints.
   void rank_again(const Joints& current);
