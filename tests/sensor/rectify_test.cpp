@@ -97,6 +97,50 @@ TEST_CASE("a box that reaches beyond what the lens shows ends at the border") {
   CHECK(box.width > 50.0);
 }
 
+TEST_CASE("of a box near the border what the lens shows of it is left") {
+  DepthFrame frame;
+  frame.intrinsics = {640, 480, 400.0, 400.0, 319.5, 239.5};
+  frame.depth.assign(frame.intrinsics.size(), 0.5f);
+  Detection d;
+  d.instance = 1;
+  d.box = PixelBox{0.0, 200.0, 60.0, 60.0};
+  frame.detections.push_back(d);
+  const auto box = [&](double k1) { return *rectified(frame, Distortion{{k1}}).detections.at(0).box; };
+  // Its right side, through the lens again, is where it was; the height grows with the distance from the middle.
+  double height = 60.0;
+  for (const double k1 : {-0.1, -0.2, -0.25, -0.28}) {
+    const PixelBox b = box(k1);
+    INFO("k1 = " << k1 << ": " << b.u << " " << b.v << " " << b.width << " " << b.height);
+    const double right = (b.u + b.width - 0.5 - 319.5) / 400.0;
+    CHECK(right * (1.0 + k1 * right * right) * 400.0 + 319.5 == Approx(59.5).margin(0.5));
+    CHECK(b.v + 0.5 * b.height == Approx(230.0).margin(5.0));
+    CHECK(b.height > height);
+    height = b.height;
+  }
+  CHECK(height < 110.0);
+}
+
+TEST_CASE("a box that leaves the image with its rectification is dropped") {
+  DepthFrame frame;
+  frame.intrinsics = {640, 480, 400.0, 400.0, 319.5, 239.5};
+  frame.depth.assign(frame.intrinsics.size(), 0.5f);
+  frame.instances.assign(frame.intrinsics.size(), 0);
+  for (int instance = 1; instance <= 4; ++instance) {
+    Detection d;
+    d.instance = instance;
+    frame.detections.push_back(d);
+  }
+  frame.detections[0].box = PixelBox{0.0, 200.0, 60.0, 60.0};  // ends 4 pixels beyond the border
+  frame.detections[1].box = PixelBox{0.0, 0.0, 9.0, 9.0};      // the lens shows nothing of it
+  frame.detections[2].box = PixelBox{0.0, 200.0, 60.0, 60.0};  // this one has a mask
+  frame.instances[frame.intrinsics.index(320, 240)] = 3;
+  const auto left = rectified(frame, Distortion{{-0.3}}).detections;  // the last one never had a box
+  REQUIRE(left.size() == 2);
+  CHECK(left[0].instance == 3);
+  CHECK_FALSE(left[0].box);
+  CHECK(left[1].instance == 4);
+}
+
 TEST_CASE("a distortion that cannot be is refused") {
   CHECK_THROWS_AS(distortion_from(std::vector<double>{0.1, 0.2, 0.3}), InputError);
   CHECK_THROWS_AS(distortion_from(std::vector<double>{0.1, 0.2, 0.3, NAN}), InputError);

@@ -11,6 +11,7 @@
 #include <cmath>
 #include <cstddef>
 #include <optional>
+#include <utility>
 #include <vector>
 
 namespace agrisee::sensor {
@@ -93,9 +94,46 @@ inline void check(const Distortion& lens, const Intrinsics& k) {
     }
 }
 
+/// The box through the rectified midpoints of a box's sides. Where the lens shows no midpoint, as near the border under
+/// barrel distortion, the nearest point of the side stands for it that the lens shows, and where it shows none of the
+/// side, the side ends at what it shows of the box, and at the border of the image. Empty if nothing of the box is left
+/// in the image.
+/// @param box as in the camera's image
+/// @param lens distortion of the camera
+/// @param k intrinsics of the camera
+inline std::optional<PixelBox> rectified(const PixelBox& box, const Distortion& lens, const Intrinsics& k) {
+  constexpr int kHalf = 8;  // lines and points are this fraction of half of a side apart
+  // In coordinates whose integers are the middles of pixels, in which pixel_of works.
+  const Eigen::Array2d half(0.5 * box.width, 0.5 * box.height);
+  const Eigen::Array2d middle = Eigen::Array2d(box.u, box.v) + half - 0.5;
+  const Eigen::Array2d first = Eigen::Array2d::Constant(-0.5), end = Eigen::Array2d(k.width, k.height) - 0.5;
+  // A side's coordinate along an axis: lines parallel to it are tried inwards, and points of each from its middle on.
+  const auto side = [&](int axis, double sign) -> std::optional<double> {
+    for (int line = kHalf; line >= -kHalf; --line)
+      for (int i = 0; i <= 2 * kHalf; ++i) {
+        const double along = (i % 2 ? -0.5 : 0.5) * (i + i % 2) / kHalf;
+        const Eigen::Array2d place =
+            axis == 0 ? Eigen::Array2d(sign * line / kHalf, along) : Eigen::Array2d(along, sign * line / kHalf);
+        const Eigen::Array2d uv = middle + place * half;
+        const auto p = lens.undistorted(k.ray(uv.x(), uv.y()).head<2>());
+        if (!p) continue;
+        const double out = k.project(p->homogeneous())[axis];
+        return line == kHalf ? out : std::clamp(out, first[axis], end[axis]);
+      }
+    return std::nullopt;
+  };
+  const auto left = side(0, -1.0), right = side(0, 1.0), top = side(1, -1.0), bottom = side(1, 1.0);
+  if (!left) return std::nullopt;  // the lens shows nothing of the box
+  const bool inside =
+      std::max(*left, first.x()) < std::min(*right, end.x()) && std::max(*top, first.y()) < std::min(*bottom, end.y());
+  if (!inside) return std::nullopt;
+  return PixelBox{*left + 0.5, *top + 0.5, *right - *left, *bottom - *top};
+}
+
 /// The frame that a pinhole camera with the same intrinsics would have taken. Each pixel takes the values of the
 /// nearest pixel of `frame`; depths are not interpolated, as that would bridge depth edges. Pixels outside the original
-/// image have no return. The box of a detection becomes the one through the rectified midpoints of its sides.
+/// image have no return. Boxes of detections are rectified, too; a detection of whose box and mask nothing is left is
+/// not listed.
 /// @param frame  as the camera took it, z along the optical axis; all channels have the same distortion
 /// @param lens   distortion of the camera
 /// @throws InputError for a frame that is not consistent, or a distortion that folds the image
@@ -120,20 +158,15 @@ inline DepthFrame rectified(const DepthFrame& frame, const Distortion& lens) {
       if (!frame.color.empty()) out.color[pixel] = frame.color[*source];
       if (!frame.instances.empty()) out.instances[pixel] = frame.instances[*source];
     }
-  // Where a place of the image goes; what the lens does not show lies beyond the border, where `otherwise` is.
-  const auto pinhole = [&](double u, double v, double otherwise) {
-    const auto p = lens.undistorted(k.ray(u, v).head<2>());
-    return p ? k.project(p->homogeneous()) : Eigen::Vector2d::Constant(otherwise).eval();
+  const auto is_lost = [&](Detection& d) {
+    if (!d.box) return false;
+    d.box = rectified(*d.box, lens, k);
+    return !d.box && std::find(out.instances.begin(), out.instances.end(), d.instance) == out.instances.end();
   };
-  for (Detection& d : out.detections) {
-    if (!d.box) continue;
-    // The sides in coordinates whose integers are the middles of pixels, in which pixel_of works.
-    const double left = d.box->u - 0.5, top = d.box->v - 0.5, right = left + d.box->width, bottom = top + d.box->height;
-    const double u = 0.5 * (left + right), v = 0.5 * (top + bottom);
-    const double new_left = pinhole(left, v, -0.5).x(), new_right = pinhole(right, v, k.width - 0.5).x();
-    const double new_top = pinhole(u, top, -0.5).y(), new_bottom = pinhole(u, bottom, k.height - 0.5).y();
-    d.box = PixelBox{new_left + 0.5, new_top + 0.5, new_right - new_left, new_bottom - new_top};
-  }
+  std::vector<Detection> kept;
+  for (Detection& d : out.detections)
+    if (!is_lost(d)) kept.push_back(std::move(d));
+  out.detections = std::move(kept);
   return out;
 }
 
