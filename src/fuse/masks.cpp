@@ -327,6 +327,9 @@ const std::vector<Proposal>& ViewMasks::proposals_of(std::uint16_t instance) con
 
 std::shared_ptr<const ViewMasks> read_masks(const DetectedView& view, const BodyParameters& bodies,
                                             const MaskParameters& parameters) {
+  bodies.check();
+  parameters.check();
+  check_input(view.frame != nullptr, "read_masks: a view has no frame");
   check_input(is_rigid(view.world_T_optical), "mask_evidence: the pose of a camera is not a rigid transform");
   return std::make_shared<const ViewMasks>(mask_image(view), bodies, parameters);
 }

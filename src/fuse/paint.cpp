@@ -25,6 +25,8 @@ std::optional<std::size_t> pixel_of(const sensor::DepthFrame& frame, const Eigen
 std::vector<Rgb> colors_of(const Cloud& cloud, const std::vector<DetectedView>& views) {
   constexpr double kSlant = 0.1;  // least weight of a view that sees a point at a slant
   const auto colored = [](const DetectedView& v) { return !v.frame->color.empty(); };
+  check_lengths(cloud);
+  for (const DetectedView& view : views) check_input(view.frame != nullptr, "colors_of: a view has no frame");
   if (std::none_of(views.begin(), views.end(), colored)) return {};
   std::vector<Eigen::Vector3d> sums(cloud.size(), Eigen::Vector3d::Zero());
   std::vector<double> weights(cloud.size(), 0.0);

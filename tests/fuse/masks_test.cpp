@@ -489,12 +489,15 @@ TEST_CASE("wrong parameters and poses that are not rigid are refused") {
   fuse::MaskParameters parameters;
   parameters.edge = 0.0;
   CHECK_THROWS_AS(fuse::mask_evidence({view}, apples(), parameters), ParameterError);
+  CHECK_THROWS_AS(fuse::read_masks(view, apples(), parameters), ParameterError);
   BodyParameters bodies = apples();
   bodies.radius_min = 0.0;
   CHECK_THROWS_AS(fuse::mask_evidence({view}, bodies), ParameterError);
+  CHECK_THROWS_AS(fuse::read_masks(view, bodies), ParameterError);
   fuse::DetectedView bent = view;
   bent.world_T_optical.linear() *= 1.1;
   CHECK_THROWS_AS(fuse::mask_evidence({bent}, apples()), InputError);
+  CHECK_THROWS_WITH(fuse::read_masks({}, apples()), Catch::Contains("has no frame"));
 }
 
 }  // namespace masks_test

@@ -92,3 +92,11 @@ TEST_CASE("views without colors are ignored, whatever else they lack") {
   CHECK(fuse::colors_of(one_point(1.0f, true), {}).empty());
   CHECK(fuse::colors_of({}, {view}).empty());
 }
+
+TEST_CASE("views without frame, and a cloud whose arrays differ in length, get no colors") {
+  const fuse::DetectedView view = flat(1.0f, {200, 100, 0});
+  CHECK_THROWS_WITH(fuse::colors_of(one_point(1.0f, true), {view, {}}), Catch::Contains("has no frame"));
+  Cloud cloud = one_point(1.0f, true);
+  cloud.points.push_back(cloud.points[0]);
+  CHECK_THROWS_AS(fuse::colors_of(cloud, {view}), InputError);
+}

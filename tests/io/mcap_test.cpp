@@ -58,6 +58,7 @@ TEST_CASE("a scan comes back from an MCAP file as it was") {
     CHECK(recording.frame(i).intrinsics.cx == 1.5);
     CHECK((recording.world_T_optical()[i].matrix() - view.world_T_optical.matrix()).cwiseAbs().maxCoeff() < 1e-15);
   }
+  CHECK_THROWS_AS(recording.frame(3), InputError);
 }
 
 TEST_CASE("an MCAP file with any byte missing or wrong is an error or a recording, never a crash") {

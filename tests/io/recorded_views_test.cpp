@@ -157,6 +157,7 @@ TEST_CASE("depth images that do not fit the camera are refused with the view") {
   std::filesystem::remove(folder / "d.npy");
   std::filesystem::create_directory(folder / "d.npy");
   refused("is a directory");
+  CHECK_THROWS_AS(io::read_frame(io::read_recorded_views(path), 1), InputError);
 }
 
 TEST_CASE("depths outside of the camera's range are no returns") {

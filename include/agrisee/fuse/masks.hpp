@@ -42,7 +42,7 @@ struct DetectedView {
 /// same time.
 /// @param view its frame and pose are used
 /// @param bodies expected radii
-/// @throws InputError as instances_of, and for a pose that is not rigid; ParameterError; Cancelled
+/// @throws InputError as instances_of, for a view without frame and a pose that is not rigid; ParameterError; Cancelled
 std::shared_ptr<const ViewMasks> read_masks(const DetectedView& view, const BodyParameters& bodies = {},
                                             const MaskParameters& parameters = {});
 
@@ -92,7 +92,7 @@ enum class MaskOrder {
 /// @param views those that no detector has looked at are ignored; masks that have not been read are read
 /// @param bodies expected radii
 /// @param order with `points_first`, a mask half of whose pixels lie on a body is explained by it and proposes nothing
-/// @throws InputError as instances_of, and for poses that are not rigid; ParameterError; Cancelled
+/// @throws InputError as instances_of, for views without frame and poses that are not rigid; ParameterError; Cancelled
 MaskEvidence mask_evidence(const std::vector<DetectedView>& views, const BodyParameters& bodies = {},
                            const MaskParameters& parameters = {}, MaskOrder order = MaskOrder::masks_first);
 

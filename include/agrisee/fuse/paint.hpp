@@ -16,6 +16,8 @@ namespace agrisee::fuse {
 /// @param cloud points (m, world), with normals or without
 /// @param views views without colors are ignored
 /// @return one color per point, black where no view sees it; empty if no view has colors
+/// @throws InputError for a view without frame, a frame whose channels differ in size, arrays of a cloud that differ in
+///   length; Cancelled
 std::vector<Rgb> colors_of(const Cloud& cloud, const std::vector<DetectedView>& views);
 
 }  // namespace agrisee::fuse

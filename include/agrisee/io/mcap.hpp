@@ -50,7 +50,8 @@ class McapRecording {
   const std::vector<Pose>& world_T_optical() const;
   /// Frames that were left out, and why.
   const std::vector<std::string>& warnings() const;
-  /// The depth image of a view. @throws FileError if it is damaged, or its depths cannot be in metres
+  /// The depth image of a view, counted from 0. @throws FileError if it is damaged, or its depths cannot be in metres;
+  /// InputError if there is no such view
   sensor::DepthFrame frame(std::size_t view) const;
 
  private:

@@ -44,7 +44,8 @@ RecordedViews read_recorded_views(const std::filesystem::path& path);
 /// @param recorded as read_recorded_views returns it
 /// @param view     number of the view, from 0
 /// @throws FileError, which names the view, for an image that cannot be read, of another size than the camera's, or
-///   whose depths have a median below 0.02 m or above 50 m, since their scale must be wrong
+///   whose depths have a median below 0.02 m or above 50 m, since their scale must be wrong; InputError if there is no
+///   such view
 sensor::DepthFrame read_frame(const RecordedViews& recorded, std::size_t view);
 
 /// The smallest box (m, world) that contains all points of a frame, for use as a scan volume if none is known.

@@ -221,6 +221,7 @@ const std::vector<Pose>& McapRecording::world_T_optical() const { return parts_-
 const std::vector<std::string>& McapRecording::warnings() const { return parts_->warnings; }
 
 sensor::DepthFrame McapRecording::frame(std::size_t view) const {
+  check_input(view < parts_->images.size(), "McapRecording::frame: there is no view with this number");
   const std::string bytes = mcap::read_message(parts_->path, parts_->images[view]);
   sensor::DepthFrame frame;
   frame.intrinsics = parts_->workcell.sensor.intrinsics;

@@ -118,6 +118,7 @@ RecordedViews read_recorded_views(const fs::path& path) {
 }
 
 sensor::DepthFrame read_frame(const RecordedViews& recorded, std::size_t number) {
+  check_input(number < recorded.views.size(), "read_frame: there is no view with this number");
   const RecordedView& view = recorded.views[number];
   const sensor::DepthCamera& camera = recorded.workcell.sensor;
   const sensor::Intrinsics& k = camera.intrinsics;
