@@ -346,8 +346,8 @@ TEST_CASE("a malformed image or camera is refused") {
   refuses([](I& i, C&) { i.width = 5; }, "CameraInfo says 4 x 3");
   refuses([](I& i, C& c) { i.width = c.width = 0; }, "0 x 3 pixels");
   refuses([](I& i, C& c) { i.height = c.height = 0xffffffffu; }, "pixels");
-  refuses([](I&, C& c) { c.k[0] = 0.0; }, "camera matrix");
-  refuses([](I&, C& c) { c.k[5] = std::nan(""); }, "camera matrix");
+  refuses([](I&, C& c) { c.k[0] = 0.0; }, "no focal length: 0 and 110 (k[0] and k[4])");
+  refuses([](I&, C& c) { c.k[5] = std::nan(""); }, "principal point");
   refuses([](I&, C& c) { c.d[4] = std::nan(""); }, "not finite");
   refuses([](I&, C& c) { c.d[0] = -1e6; }, "folds the image");
   refuses([](I&, C& c) { c.d.assign(3, 0.1); }, "4, 5 or 8 coefficients");
@@ -356,7 +356,7 @@ TEST_CASE("a malformed image or camera is refused") {
         c.d[4] = 1e-3;
         c.distortion_model = "equidistant";
       },
-      "rectify");
+      "the model 'equidistant'");
   refuses([](I&, C& c) { c.binning_x = 2; }, "binning");
   refuses([](I&, C& c) { c.roi.width = 2; }, "region of interest");
   refuses([](I&, C& c) { c.roi.x_offset = 1; }, "region of interest");

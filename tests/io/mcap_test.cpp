@@ -41,6 +41,18 @@ void write_three_views(const std::filesystem::path& path) {
       path, cell, [](std::size_t i) { return i < 3 ? std::optional(mcap_view(i)) : std::nullopt; }, result);
 }
 
+/// Write the changed bytes of an MCAP file without the checksum of its first chunk.
+void write_unchecked(const std::filesystem::path& path, std::string bytes) {
+  std::size_t chunk = 8;  // the first record; a head of 9 bytes holds opcode and length
+  while (bytes[chunk] != 6) {
+    std::uint64_t length = 0;
+    std::memcpy(&length, &bytes[chunk + 1], sizeof length);
+    chunk += 9 + length;
+  }
+  bytes.replace(chunk + 9 + 24, 4, 4, '\0');  // a checksum of 0: none
+  io::write_file(path, bytes);
+}
+
 }  // namespace
 
 TEST_CASE("a scan comes back from an MCAP file as it was") {
@@ -116,16 +128,37 @@ TEST_CASE("a camera_info without focal lengths is told of as such") {
   for (const double value : {k.fx, k.fy})
     for (std::size_t at; (at = bytes.find(test::bytes_of(value))) != std::string::npos;)
       bytes.replace(at, sizeof value, sizeof value, '\0');
-  std::size_t chunk = 8;  // the first record; a head of 9 bytes holds opcode and length
-  while (bytes[chunk] != 6) {
-    std::uint64_t length = 0;
-    std::memcpy(&length, &bytes[chunk + 1], sizeof length);
-    chunk += 9 + length;
-  }
-  bytes.replace(chunk + 9 + 24, 4, 4, '\0');  // a checksum of 0: none
-  io::write_file(path, bytes);
+  write_unchecked(path, bytes);
   test::require_file_error(path, "has no focal length: 0 and 0",
                            [](const std::filesystem::path& p) { io::McapRecording recording(p); });
+}
+
+TEST_CASE("a camera_info with binning or a region of interest is refused, as by the ROS nodes") {
+  const test::TempFolder folder;
+  const auto path = folder / "scan.mcap";
+  write_three_views(path);
+  const std::string bytes(io::read_bytes(path).view());
+  const sensor::Intrinsics k = mcap_view(0).frame.intrinsics;
+  std::string end_of_p;  // binning_x and binning_y follow it, then the region: its corner, height and width
+  for (const double value : {k.fy, k.cy, 0.0, 0.0, 0.0, 1.0, 0.0}) end_of_p += test::bytes_of(value);
+  const auto set = [&](std::size_t number, char value) {
+    std::string changed = bytes;
+    for (std::size_t at = 0; (at = changed.find(end_of_p, at)) != std::string::npos;)
+      changed[(at += end_of_p.size()) + 4 * number] = value;
+    REQUIRE(changed != bytes);
+    write_unchecked(path, changed);
+  };
+  const auto read = [](const std::filesystem::path& p) { io::McapRecording recording(p); };
+  set(0, 1);
+  CHECK_NOTHROW(read(path));
+  set(1, 2);
+  test::require_file_error(path, "the camera of /depth/image: CameraInfo: binning is not supported", read);
+  set(4, 3);
+  CHECK_NOTHROW(read(path));  // as high as the image
+  set(4, 2);
+  test::require_file_error(path, "a region of interest is not supported", read);
+  set(3, 1);
+  test::require_file_error(path, "a region of interest is not supported", read);
 }
 
 TEST_CASE("poses between transforms are interpolated along the chain of frames") {

@@ -8,6 +8,7 @@
 #pragma once
 
 #include <agrisee/core/cloud.hpp>
+#include <agrisee/sensor/camera_info.hpp>
 #include <agrisee/sensor/depth_encoding.hpp>
 #include <agrisee/sensor/depth_frame.hpp>
 #include <agrisee/sensor/rectify.hpp>
@@ -127,53 +128,43 @@ class PointCloud2View {
   bool gapless_ = true, swap_ = false, double_ = false;
 };
 
-/// Intrinsics of a `sensor_msgs/CameraInfo`: its K, or, of a `rectified` image, its P.
-/// @throws InputError for binning or a region of interest, and for a size or a matrix that no pinhole has
+/// The numbers of a `sensor_msgs/CameraInfo`.
 template <typename Info>
-sensor::Intrinsics intrinsics_of(const Info& info, bool rectified = false) {
-  const auto check = [](bool ok, const std::string& text) { detail::check_message(ok, "CameraInfo", text); };
-  constexpr std::uint32_t kMost = 16384;
-  check(info.width >= 1 && info.height >= 1 && info.width <= kMost && info.height <= kMost,
-        std::to_string(info.width) + " x " + std::to_string(info.height) + " pixels");
-  check(info.binning_x <= 1 && info.binning_y <= 1, "binning is not supported");
-  check(info.roi.x_offset == 0 && info.roi.y_offset == 0 && (info.roi.width == 0 || info.roi.width == info.width) &&
-            (info.roi.height == 0 || info.roi.height == info.height),
-        "a region of interest is not supported");
-  sensor::Intrinsics k;
-  k.width = static_cast<int>(info.width);
-  k.height = static_cast<int>(info.height);
-  const auto take = [&](const auto& camera, const auto& projection) {
-    k.fx = rectified ? projection[0] : camera[0];
-    k.cx = rectified ? projection[2] : camera[2];
-    k.fy = rectified ? projection[5] : camera[4];
-    k.cy = rectified ? projection[6] : camera[5];
+sensor::CameraInfo camera_info_of(const Info& info) {
+  sensor::CameraInfo out;
+  out.width = info.width;
+  out.height = info.height;
+  out.distortion_model = info.distortion_model;
+  const auto take = [&out](const auto& coefficients, const auto& camera, const auto& projection) {
+    out.d.assign(coefficients.begin(), coefficients.end());
+    std::copy_n(camera.begin(), out.k.size(), out.k.begin());
+    std::copy_n(projection.begin(), out.p.size(), out.p.begin());
   };
   if constexpr (detail::InRos1<Info>::value)
-    take(info.K, info.P);
+    take(info.D, info.K, info.P);
   else
-    take(info.k, info.p);
-  check(std::isfinite(k.fx) && std::isfinite(k.fy) && k.fx > 0.0 && k.fy > 0.0 && std::isfinite(k.cx) &&
-            std::isfinite(k.cy),
-        "unusable camera matrix");
-  return k;
+    take(info.d, info.k, info.p);
+  out.binning_x = info.binning_x;
+  out.binning_y = info.binning_y;
+  out.roi_x_offset = info.roi.x_offset;
+  out.roi_y_offset = info.roi.y_offset;
+  out.roi_width = info.roi.width;
+  out.roi_height = info.roi.height;
+  return out;
 }
 
-/// The distortion of a `sensor_msgs/CameraInfo` with the model `plumb_bob` or `rational_polynomial`; none if all
-/// coefficients are 0. @throws InputError for other models, such as those of fisheye lenses
+/// The intrinsics of the images of a `sensor_msgs/CameraInfo`, as sensor::intrinsics_of, which see.
+/// @throws InputError as sensor::intrinsics_of
+template <typename Info>
+sensor::Intrinsics intrinsics_of(const Info& info, bool rectified = false) {
+  return sensor::intrinsics_of(camera_info_of(info), rectified);
+}
+
+/// The distortion of the images of a `sensor_msgs/CameraInfo`, as sensor::distortion_of, which see.
+/// @throws InputError as sensor::distortion_of
 template <typename Info>
 sensor::Distortion distortion_of(const Info& info) {
-  const auto take = [&](const auto& coefficients) {
-    if (std::all_of(coefficients.begin(), coefficients.end(), [](double d) { return d == 0.0; }))
-      return sensor::Distortion();
-    const std::string model(info.distortion_model);
-    detail::check_message(model == "plumb_bob" || model == "rational_polynomial" || model.empty(), "CameraInfo",
-                          "the lens distorts by the model '" + model + "': rectify the depth image and say so");
-    return sensor::distortion_from(coefficients);
-  };
-  if constexpr (detail::InRos1<Info>::value)
-    return take(info.D);
-  else
-    return take(info.d);
+  return sensor::distortion_of(camera_info_of(info));
 }
 
 /// Images registered to a depth image and of its size, each where there is one.
@@ -267,7 +258,8 @@ sensor::DepthFrame depth_frame(const Image& image, const Info& info, bool rectif
                                const Channels<Image>& channels = {}) {
   const auto check = [](bool ok, const std::string& text) { detail::check_message(ok, "Image", text); };
   sensor::DepthFrame frame;
-  frame.intrinsics = intrinsics_of(info, rectified);
+  const sensor::CameraInfo camera = camera_info_of(info);
+  frame.intrinsics = sensor::intrinsics_of(camera, rectified);
   check(image.width == info.width && image.height == info.height,
         std::to_string(image.width) + " x " + std::to_string(image.height) + " pixels, but CameraInfo says " +
             std::to_string(info.width) + " x " + std::to_string(info.height));
@@ -280,7 +272,7 @@ sensor::DepthFrame depth_frame(const Image& image, const Info& info, bool rectif
   });
   if (channels.color) detail::add_color(frame, *channels.color);
   if (channels.labels) detail::add_labels(frame, *channels.labels, channels.score);
-  if (!rectified) return sensor::rectified(frame, distortion_of(info));
+  if (!rectified) return sensor::rectified(frame, sensor::distortion_of(camera));
   return frame;
 }
 

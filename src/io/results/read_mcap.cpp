@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <set>
+#include <utility>
 
 #include "io/formats/mcap.hpp"
 #include "io/formats/text.hpp"
@@ -99,33 +100,38 @@ std::vector<mcap::Message> depth_images(const fs::path& path, const mcap::Conten
   return by_topic[depth.front()];
 }
 
+/// The camera of images.
+struct Camera {
+  sensor::Intrinsics intrinsics;
+  sensor::Distortion distortion;  // none of rectified images
+};
+
 /// The camera of an image: that of the topic beside it, else any of its frame. @throws FileError if there is none
-ros::CameraInfo camera_of(const fs::path& path, const mcap::Contents& contents, const std::string& topic,
-                          const ros::Image& image) {
+Camera camera_of(const fs::path& path, const mcap::Contents& contents, const std::string& topic,
+                 const ros::Image& image) {
   const std::string beside = topic.substr(0, topic.rfind('/')) + "/camera_info";
   std::optional<ros::CameraInfo> found;
-  const bool rectified = topic.find("image_rect") != std::string::npos;  // as image_proc and camera drivers call it
   std::set<std::uint16_t> looked_at;
   for (const mcap::Message& message : messages_of(contents, ros::kCameraInfo)) {
     if (!looked_at.insert(message.channel).second) continue;
-    const ros::CameraInfo info = taken(
-        path, contents, message, [&](const std::string& bytes) { return ros::read_camera_info(bytes, rectified); });
+    ros::CameraInfo info = taken(path, contents, message, ros::read_camera_info);
     const bool is_beside = contents.channels.at(message.channel).topic == beside;
     if (!is_beside && (found || info.header.frame != image.header.frame)) continue;
-    found = info;
+    found = std::move(info);
     if (is_beside) break;
   }
   if (!found) fail(path, "has no sensor_msgs/msg/CameraInfo for " + topic + " (" + beside + ")");
-  const sensor::Intrinsics& k = found->intrinsics;
-  if (!(k.fx > 0.0 && k.fy > 0.0))
-    fail(path, "the camera of " + topic + " has no focal length: " + number_text(k.fx, 4) + " and " +
-                   number_text(k.fy, 4) +
-                   " in its CameraInfo (k[0] and k[4]; for rectified images p[0] and p[5]): is it calibrated?");
-  if (k.width != static_cast<int>(image.width) || k.height != static_cast<int>(image.height))
-    fail(path, "the camera of " + topic + " does not fit its images: " + std::to_string(k.width) + " x " +
-                   std::to_string(k.height) + " pixels against " + std::to_string(image.width) + " x " +
+  const sensor::CameraInfo& info = found->camera;
+  if (info.width != image.width || info.height != image.height)
+    fail(path, "the camera of " + topic + " does not fit its images: " + std::to_string(info.width) + " x " +
+                   std::to_string(info.height) + " pixels against " + std::to_string(image.width) + " x " +
                    std::to_string(image.height));
-  return *found;
+  const bool rectified = topic.find("image_rect") != std::string::npos;  // as image_proc and camera drivers call it
+  try {
+    return {sensor::intrinsics_of(info, rectified), rectified ? sensor::Distortion() : sensor::distortion_of(info)};
+  } catch (const InputError& e) {
+    fail(path, "the camera of " + topic + ": " + e.what());
+  }
 }
 
 std::string world_of(const fs::path& path, const ros::TransformTree& tree, const std::string& frame,
@@ -171,7 +177,7 @@ McapRecording::McapRecording(const fs::path& path, const McapChoice& choice) : p
     head.data = {};  // it refers to the bytes
     return head;
   });
-  const ros::CameraInfo camera = camera_of(path, contents, topic, image);
+  const Camera camera = camera_of(path, contents, topic, image);
   const ros::TransformTree tree = tree_of(path, contents);
   const std::string world = world_of(path, tree, image.header.frame, choice.world_frame);
   Workcell& cell = parts_->workcell;

@@ -102,33 +102,25 @@ std::vector<float> depths_of(const Image& image) {
   return out;
 }
 
-CameraInfo read_camera_info(std::string_view message, bool rectified) {
+CameraInfo read_camera_info(std::string_view message) {
+  constexpr std::uint32_t kMostCoefficients = 64;
   CdrReader in(message);
   CameraInfo out;
   out.header = take_header(in);
-  const auto height = in.take<std::uint32_t>(), width = in.take<std::uint32_t>();
-  constexpr std::uint32_t kLargest = 1 << 16;
-  check_input(height < kLargest && width < kLargest, "has a camera with too many pixels");
-  const std::string model = in.text();
+  sensor::CameraInfo& camera = out.camera;
+  camera.height = in.take<std::uint32_t>();
+  camera.width = in.take<std::uint32_t>();
+  camera.distortion_model = in.text();
   const auto count = in.take<std::uint32_t>();
-  check_input(count < 64, "has a camera with too many coefficients of distortion");
-  std::vector<double> d(count);
-  for (double& value : d) value = in.take<double>();
-  double k[9], r[9], p[12];
-  for (double& value : k) value = in.take<double>();
-  for (double& value : r) value = in.take<double>();
-  for (double& value : p) value = in.take<double>();
-  out.intrinsics.height = static_cast<int>(height);
-  out.intrinsics.width = static_cast<int>(width);
-  const bool projected = rectified && p[0] > 0.0;  // drivers without rectification may leave it empty
-  out.intrinsics.fx = projected ? p[0] : k[0];
-  out.intrinsics.cx = projected ? p[2] : k[2];
-  out.intrinsics.fy = projected ? p[5] : k[4];
-  out.intrinsics.cy = projected ? p[6] : k[5];
-  if (rectified || std::all_of(d.begin(), d.end(), [](double x) { return x == 0.0; })) return out;
-  if (!model.empty() && model != "plumb_bob" && model != "rational_polynomial")
-    throw InputError("says that the lens distorts by the model " + excerpt(model) + ": record rectified images");
-  out.distortion = sensor::distortion_from(d);
+  check_input(count < kMostCoefficients, "has a camera with too many coefficients of distortion");
+  camera.d.resize(count);
+  for (double& value : camera.d) value = in.take<double>();
+  for (double& value : camera.k) value = in.take<double>();
+  for (int i = 0; i < 9; ++i) in.take<double>();  // the rotation of a stereo pair's rectification
+  for (double& value : camera.p) value = in.take<double>();
+  for (std::uint32_t* value : {&camera.binning_x, &camera.binning_y, &camera.roi_x_offset, &camera.roi_y_offset,
+                               &camera.roi_height, &camera.roi_width})
+    *value = in.take<std::uint32_t>();
   return out;
 }
 

@@ -6,8 +6,8 @@
 #include <agrisee/core/pose.hpp>
 #include <agrisee/core/types.hpp>
 #include <agrisee/result.hpp>
+#include <agrisee/sensor/camera_info.hpp>
 #include <agrisee/sensor/depth_frame.hpp>
-#include <agrisee/sensor/rectify.hpp>
 
 #include <cstdint>
 #include <string>
@@ -37,11 +37,10 @@ struct Image {
   std::string_view data;  ///< valid as long as the message
 };
 
-/// A camera: the part of sensor_msgs/CameraInfo that is used.
+/// A camera.
 struct CameraInfo {
   Header header;
-  sensor::Intrinsics intrinsics;
-  sensor::Distortion distortion;  ///< of the images; none for rectified ones
+  sensor::CameraInfo camera;
 };
 
 /// One transform: frame_T_child at a time.
@@ -58,8 +57,7 @@ constexpr std::uint64_t kTimeSize = 12;
 Image read_image(std::string_view message);
 /// The time (ns) of a message that begins with a header; kTimeSize bytes are enough.
 std::uint64_t read_time(std::string_view message);
-/// @param rectified whether its images are: they have the intrinsics of its projection matrix, and no distortion
-CameraInfo read_camera_info(std::string_view message, bool rectified);
+CameraInfo read_camera_info(std::string_view message);
 std::vector<Transform> read_transforms(std::string_view message);
 
 /// The depths (m) of an image; no return is 0. @throws InputError for another encoding or size than its data
