@@ -65,6 +65,17 @@ TEST_CASE("mistakes are named with file, line and key") {
   CHECK_THROWS_AS(io::read_parameters("no_such_file.yaml"), FileError);
 }
 
+TEST_CASE("whole numbers are decimal, also with zeros before them") {
+  CHECK(io::parameters_from_yaml("max_views: 010", "job").max_views == 10);
+  CHECK(io::parameters_from_yaml("max_views: 08", "job").max_views == 8);
+  CHECK(io::parameters_from_yaml("gain: {candidates: +0100}", "job").gain.candidates == 100);
+  CHECK(io::parameters_from_yaml("mass: {density: 0980}", "job").mass.density == 980.0);
+  for (const char* text : {"0x10", "1e1", "3.0", "2147483648x", "''", "~"})
+    CHECK_THAT(error_of(std::string("max_views: ") + text + "\n"), test::says(".yaml:1: 'max_views'"));
+  CHECK_THAT(error_of("max_views: 1e1\n"), test::says(".yaml:1: 'max_views': '1e1' is not a whole number"));
+  CHECK_THAT(error_of("max_views: 4294967297\n"), test::says(".yaml:1: 'max_views': 4294967297 is too large"));
+}
+
 TEST_CASE("a key with dots is answered with how to write it") {
   CHECK_THAT(error_of("gain.min_gain: 0.003\n"),
              test::says(".yaml:1: unknown key 'gain.min_gain'; write gain: {min_gain: ...}"));

@@ -79,6 +79,23 @@ std::string hint(const std::string& name, const std::set<std::string>& known) {
   return nested.empty() ? did_you_mean(name, {known.begin(), known.end()}) : nested;
 }
 
+/// A value of a file. YAML would read whole numbers that begin with 0 as octal or hexadecimal ones.
+/// @throws ParameterError, or YAML::Exception, for a value of the wrong type
+template <typename T>
+T scalar_as(const YAML::Node& node) {
+  if constexpr (std::is_same_v<T, RobustKernel>) {
+    return robust_kernel(node.as<std::string>());
+  } else if constexpr (std::is_integral_v<T> && !std::is_same_v<T, bool>) {
+    const auto number = to_integer(node.Scalar());
+    if (!number) throw ParameterError(excerpt(node.Scalar()) + " is not a whole number");
+    const T value = static_cast<T>(*number);
+    if (value != *number) throw ParameterError(node.Scalar() + " is too large");
+    return value;
+  } else {
+    return node.as<T>();
+  }
+}
+
 /// Sets every field of a struct that a map names. Ranges are not tested here.
 struct YamlReader {
   const std::string& path;
@@ -96,10 +113,7 @@ struct YamlReader {
     } else {
       try {
         if (!child.IsScalar()) throw YAML::BadConversion(child.Mark());
-        if constexpr (std::is_same_v<T, RobustKernel>)
-          value = robust_kernel(child.as<std::string>());
-        else
-          value = child.as<T>();
+        value = scalar_as<T>(child);
       } catch (const YAML::Exception&) {
         throw FileError(place(path, child) + ": '" + key + "' has a value of the wrong type");
       } catch (const ParameterError& e) {
