@@ -375,4 +375,17 @@ TEST_CASE("see planner: a cancelled call asks for one proposal at most and leave
   check_taken(twins.next(fly), twins.proposal());
 }
 
+TEST_CASE("see planner: a reach that throws leaves the proposals as they were") {
+  Twins twins;
+  twins.observe(kSensor);
+  const auto expected = twins.proposal();
+  int asked = 0;
+  const Reach offline = [&asked](const ViewRequest&, const Joints&) -> std::optional<ReachableView> {
+    if (++asked > 41) throw std::runtime_error("offline");  // the first proposal, and 40 turned views
+    return std::nullopt;
+  };
+  CHECK_THROWS_AS(twins.next(offline), std::runtime_error);
+  check_taken(twins.next(fly), expected);
+}
+
 }  // namespace see_planner_test
