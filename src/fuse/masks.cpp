@@ -59,7 +59,8 @@ namespace {
 
 using Images = std::vector<std::shared_ptr<const ViewMasks>>;
 
-/// Join proposals of a mask to those of other views at the same place, and add the others.
+/// Join proposals of a mask to those of other views at the same place, and add the others. Of each view one mask joins:
+/// it has one outline of a body.
 /// @param known those of other views, and of the same one from `before` on
 /// @param number of the mask's image
 void join(std::vector<Proposal>& known, std::size_t before, std::vector<Proposal> more, std::size_t number) {
@@ -70,6 +71,8 @@ void join(std::vector<Proposal>& known, std::size_t before, std::vector<Proposal
     Proposal* nearest = nullptr;
     double least = 0.0;
     for (std::size_t i = 0; i < before; ++i) {
+      const auto of_this_view = [number](const OwnMask& m) { return m.image == number; };
+      if (std::any_of(known[i].masks.begin(), known[i].masks.end(), of_this_view)) continue;
       const Ellipsoid& other = known[i].fit.body;
       const double apart = (other.center - body.center).norm() / std::min(other.mean_radius(), body.mean_radius());
       if (apart < kApart && (!nearest || apart < least)) nearest = &known[i], least = apart;

@@ -172,6 +172,28 @@ TEST_CASE("masks of several views propose one body together") {
   CHECK(evidence.bodies[0].fit.center_covariance.trace() < alone.bodies[0].fit.center_covariance.trace());
 }
 
+TEST_CASE("of the masks of a view one joins the body of another view") {
+  Pose aside = Pose::Identity();
+  aside.translation() = Eigen::Vector3d(0.15, 0.0, 0.1);
+  const fuse::DetectedView view = view_of({kLeft}), other = view_of({kLeft}, aside);
+  sensor::DepthFrame torn = *other.frame;  // the detector saw two fruit
+  const int middle = static_cast<int>(torn.intrinsics.project(aside.inverse() * kLeft.center).x());
+  for (int v = 0; v < 300; ++v)
+    for (int u = middle; u < 400; ++u) {
+      std::uint16_t& instance = torn.instances[torn.intrinsics.index(u, v)];
+      if (instance == 1) instance = 2;
+    }
+  sensor::DepthFrame half = torn;
+  for (std::uint16_t& instance : half.instances)
+    if (instance == 2) instance = 0;
+  const auto with_half = fuse::mask_evidence({view, {half, aside}}, apples());
+  const auto with_both = fuse::mask_evidence({view, {torn, aside}}, apples());
+  REQUIRE(with_half.bodies.size() == 1);
+  REQUIRE(with_both.bodies.size() == 2);
+  CHECK(with_both.bodies[0].fit.body.center == with_half.bodies[0].fit.body.center);
+  CHECK(with_both.bodies[0].fit.inliers == with_half.bodies[0].fit.inliers);
+}
+
 TEST_CASE("without depths under a mask its score is all there is") {
   const auto evidence = fuse::mask_evidence({{rim_of(kLeft, 0.95), Pose::Identity()}}, apples());
   REQUIRE(evidence.bodies.size() == 1);
