@@ -7,6 +7,7 @@
 #include <cmath>
 #include <filesystem>
 #include <set>
+#include <string_view>
 #include <unordered_map>
 
 #include "season/schema.hpp"
@@ -15,17 +16,41 @@
 namespace agrisee::season {
 namespace {
 
-/// Whether a row comes before another: "2" before "10", numbers before words.
+constexpr const char* kDigits = "0123456789";
+
+/// The number at the beginning of a text, as its length without zeros before it and its digits, which is removed.
+std::pair<std::size_t, std::string_view> take_number(std::string_view& text) {
+  const std::size_t end = std::min(text.find_first_not_of(kDigits), text.size());
+  const std::size_t zeros = std::min(text.find_first_not_of('0'), end);
+  const std::string_view digits = text.substr(zeros, end - zeros);
+  text.remove_prefix(end);
+  return {digits.size(), digits};
+}
+
+bool begins_with_digit(std::string_view text) { return !text.empty() && text[0] >= '0' && text[0] <= '9'; }
+
+/// Whether a row comes before another: numbers before words.
 bool row_before(const std::string& a, const std::string& b) {
-  const auto key = [](const std::string& text) {
-    const std::size_t digits = std::min(text.find_first_not_of("0123456789"), text.size());
-    const std::size_t zeros = std::min(text.find_first_not_of('0'), digits);
-    return std::tuple(digits == 0, digits - zeros, text.substr(zeros));
-  };
-  return std::pair(key(a), a) < std::pair(key(b), b);
+  const bool digit = begins_with_digit(a);
+  return digit == begins_with_digit(b) ? InOrder()(a, b) : digit;
 }
 
 }  // namespace
+
+bool InOrder::operator()(const std::string& a, const std::string& b) const {
+  std::string_view left = a, right = b;
+  while (!left.empty() && !right.empty()) {
+    if (begins_with_digit(left) && begins_with_digit(right)) {
+      const auto one = take_number(left), other = take_number(right);
+      if (one != other) return one < other;
+    } else {
+      if (left[0] != right[0]) return static_cast<unsigned char>(left[0]) < static_cast<unsigned char>(right[0]);
+      left.remove_prefix(1);
+      right.remove_prefix(1);
+    }
+  }
+  return left.empty() != right.empty() ? left.empty() : a < b;
+}
 
 Tally& Tally::operator+=(const Tally& other) {
   scans += other.scans;
@@ -70,7 +95,7 @@ std::vector<std::string> Overview::rows() const {
 }
 
 std::vector<std::string> Overview::dates() const {
-  std::set<std::string> out;
+  std::set<std::string, InOrder> out;
   for (const auto& [row, dates] : cells)
     for (const auto& [date, tally] : dates) out.insert(date);
   return {out.begin(), out.end()};
@@ -86,7 +111,7 @@ std::string Overview::last_date(const std::string& row) const {
 
 std::string Overview::last_date() const {
   std::string out;
-  for (const auto& [row, dates] : cells) out = std::max(out, last_date(row));
+  for (const auto& [row, dates] : cells) out = std::max(out, last_date(row), InOrder());
   return out;
 }
 

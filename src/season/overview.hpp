@@ -37,13 +37,18 @@ struct Tally {
   std::optional<double> ripe_share() const;
 };
 
+/// The order of texts in which runs of digits are numbers: "week9" before "week10".
+struct InOrder {
+  bool operator()(const std::string& a, const std::string& b) const;
+};
+
 /// Everything that the page of a season shows.
 struct Overview {
-  std::map<std::string, std::map<std::string, Tally>> cells;  ///< by row, then by date; "" where not known
-  std::vector<std::string> versions;                          ///< of AgriSEE, of all scans
-  std::size_t parameter_sets = 0;                             ///< number of different parameters
+  std::map<std::string, std::map<std::string, Tally, InOrder>> cells;  ///< by row, then by date; "" where not known
+  std::vector<std::string> versions;                                   ///< of AgriSEE, of all scans
+  std::size_t parameter_sets = 0;                                      ///< number of different parameters
 
-  /// The rows, numbers in their order; the dates, in theirs.
+  /// The rows, numbers first; the dates.
   std::vector<std::string> rows() const, dates() const;
   /// The last date with a result of a row; "" if there is none.
   std::string last_date(const std::string& row) const;

@@ -402,6 +402,17 @@ def places():
     connection = sqlite3.connect("t.sqlite")
     assert ("7", "2026-06") in connection.execute('SELECT "row", date FROM scans').fetchall()
     connection.close()
+    # Numbers in dates, and in rows, are in their order.
+    for week, row in (("week9", "b10"), ("week10", "b9"), ("week10", "7")):
+        ball(f"in/{week}/{row}/g.ply")
+    run("process", "in/week*/*/g.ply", "-o", "weeks", "--viewpoint", "0,0,0", *FEW_FILES)
+    run("merge", "weeks", "--db", "w.sqlite", "--date", "/(week[0-9]+)/", "--row", "/([b0-9]+)/g")
+    assert "in 2 scans on week10, the last of 2 dates" in run("season", "w.sqlite", "-o", "w.html")
+    with open("w.html", encoding="utf-8") as file:
+        page = file.read()
+    for words in (["week9", "week10"], ["7", "b9", "b10"]):
+        places = [re.search(f">{word}</t[hd]>", page).start() for word in words]
+        assert places == sorted(places), (words, places)
 
 
 @case
