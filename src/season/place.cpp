@@ -21,7 +21,7 @@ std::regex::flag_type syntax() {
 
 /// The rules for rows and dates where nothing else is asked for.
 const PathPattern& usual_row() {
-  static const PathPattern pattern("(?:^|[^a-z])row[ _-]?([0-9]+[a-z]?)");
+  static const PathPattern pattern("(?:^|[^a-z])row[ _-]?([0-9]+(?:[a-z](?![a-z]))?)");
   return pattern;
 }
 const PathPattern& usual_date() {

@@ -35,7 +35,7 @@ class PathPattern {
 /// Reads row and date from the path of a scan's input: the groups of the last match, joined by "-". Without a match it
 /// is empty. Zeros before a row do not count.
 struct PlaceRules {
-  std::optional<PathPattern> row;   ///< none: "row_07" -> "7"
+  std::optional<PathPattern> row;   ///< none: "row_07" -> "7", "row12b" -> "12b", "row12plant3" -> "12"
   std::optional<PathPattern> date;  ///< none: "20260603" -> "2026-06-03", if there is such a day
 
   /// The place that a path tells.
