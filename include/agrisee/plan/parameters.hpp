@@ -45,7 +45,8 @@ struct GainPlannerParameters {
   int candidates = 4000;  ///< number of views that are compared, in directions all over the sphere; about a tenth of
                           ///< them can be reached
   double spread = 0.6;    ///< how far from the middle of the bodies the views aim, as a share of the way to the border
-  double distance = kViewDistance;  ///< distance of the first view from its target (m)
+  double distance = kViewDistance;  ///< distance of the first view from its target (m); with `fixed` and `random`
+                                    ///< of all views
   double distance_min = 0.27;       ///< shortest distance of a view from its target (m)
   double distance_max = 0.55;       ///< longest distance of a view from its target (m)
   double dwell = 20.0;  ///< what a view costs besides the move (s): the default asks for few views; with a slow arm the
