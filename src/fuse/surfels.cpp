@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <agrisee/fuse/surfels.hpp>
 
+#include <cmath>
+
 namespace agrisee::fuse {
 
 SurfelMap::SurfelMap(const SurfelParameters& parameters) : parameters_(parameters) {
@@ -61,7 +63,6 @@ bool SurfelMap::add(const Eigen::Vector3f& p, const Eigen::Vector3f& n, float si
     s.position += s.normal * (s.normal.dot(p - s.position) * share);
     s.normal = (s.normal * (1.0f - share) + n * share).normalized();
     s.weight += weight;
-    ++s.samples;
     if (s.last_view != view) ++s.seen_by;
     s.last_view = view;
     return false;
@@ -71,7 +72,7 @@ bool SurfelMap::add(const Eigen::Vector3f& p, const Eigen::Vector3f& n, float si
   s.normal = n;
   s.weight = weight;
   s.view = s.last_view = view;
-  s.samples = s.seen_by = 1;
+  s.seen_by = 1;
   const auto id = static_cast<Index>(surfels_.size());
   surfels_.push_back(s);
   next_.push_back(table_.exchange(CellTable::cell(p, inverse_cell_), id));

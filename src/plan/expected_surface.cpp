@@ -333,9 +333,9 @@ std::vector<std::uint32_t> ExpectedSurface::shown(const Pose& world_T_optical) c
   return out;
 }
 
-double ExpectedSurface::gain(const Pose& world_T_optical) const {
+double ExpectedSurface::gain(const std::vector<std::uint32_t>& shown) const {
   double area = 0.0;
-  for_each_shown(world_T_optical, [&](std::size_t i) { area += double(areas_[i]); });
+  for (const std::uint32_t i : shown) area += double(areas_[i]);
   return area;
 }
 

@@ -193,8 +193,7 @@ void GainPlanner::rate(Scored& scored, const ReachableView& view, const Joints& 
   if (!rated) scored.shown = model_.shown(view.world_T_optical);
   scored.rated = true;
   scored.view = view;
-  scored.view.gain = 0.0;
-  for (std::uint32_t i : scored.shown) scored.view.gain += double(model_.areas()[i]);
+  scored.view.gain = model_.gain(scored.shown);
   scored.score = scored.view.gain / (parameters_.dwell + time_to_move(view, current));
 }
 

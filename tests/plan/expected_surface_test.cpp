@@ -80,7 +80,7 @@ TEST_CASE("expected surface: of a fruit, a view shows what faces it below the la
   REQUIRE(model.areas().size() == 200);
   const Pose above = look_at(kFruit, kFruit + Vector3d(0, 0, 0.385));
   CHECK(model.shown(above) == first_indices(66));
-  CHECK(model.gain(above) == Approx(66 * kSurface / 200));
+  CHECK(gain_of(model, above) == Approx(66 * kSurface / 200));
   const Pose below = look_at(kFruit, kFruit - Vector3d(0, 0, 0.385));
   const auto lowest = model.shown(below);
   CHECK(lowest.size() == 66);
@@ -93,11 +93,11 @@ TEST_CASE("expected surface: of a fruit, a view shows what faces it below the la
 
 TEST_CASE("expected surface: from afar, from aside or from inside nothing is shown") {
   const ExpectedSurface model = one_fruit();
-  CHECK(model.gain(look_at(kFruit, kFruit + Vector3d(0, 0, 9.9))) > 0.0);
-  CHECK(model.gain(look_at(kFruit, kFruit + Vector3d(0, 0, 10.1))) == 0.0);
-  CHECK(model.gain(look_along(kFruit + Vector3d(0, 0, 0.385), {0, 1, 0})) == 0.0);
-  CHECK(model.gain(look_along(kFruit + Vector3d(0, 0, 0.385), {0, 0, 1})) == 0.0);
-  CHECK(model.gain(look_along(kFruit, {0, 0, 1})) == 0.0);  // all faces away
+  CHECK(gain_of(model, look_at(kFruit, kFruit + Vector3d(0, 0, 9.9))) > 0.0);
+  CHECK(gain_of(model, look_at(kFruit, kFruit + Vector3d(0, 0, 10.1))) == 0.0);
+  CHECK(gain_of(model, look_along(kFruit + Vector3d(0, 0, 0.385), {0, 1, 0})) == 0.0);
+  CHECK(gain_of(model, look_along(kFruit + Vector3d(0, 0, 0.385), {0, 0, 1})) == 0.0);
+  CHECK(gain_of(model, look_along(kFruit, {0, 0, 1})) == 0.0);  // all faces away
 }
 
 TEST_CASE("expected surface: half of a sphere is covered, which brings no gain, the other half is expected") {
@@ -120,9 +120,9 @@ TEST_CASE("expected surface: half of a sphere is covered, which brings no gain, 
   CHECK(model.areas().size() == 2000 - covered);
   CHECK(model.covered_area() == Approx(share * kSurface).epsilon(1e-4));
   CHECK(model.area() == Approx(kSurface).epsilon(1e-4));
-  CHECK(model.gain(look_at(kFruit, kFruit - Vector3d(0, 0.385, 0))) == 0.0);
+  CHECK(gain_of(model, look_at(kFruit, kFruit - Vector3d(0, 0.385, 0))) == 0.0);
   // From behind, a cap of 69.96 degrees.
-  CHECK(model.gain(look_at(kFruit, kFruit + Vector3d(0, 0.385, 0))) == Approx(0.3286 * kSurface).epsilon(0.015));
+  CHECK(gain_of(model, look_at(kFruit, kFruit + Vector3d(0, 0.385, 0))) == Approx(0.3286 * kSurface).epsilon(0.015));
 
   std::vector<char> seen(model.areas().size(), 0);
   Completeness none = model.completeness(seen);
@@ -275,7 +275,7 @@ TEST_CASE("expected surface: what random views show of two fruits and the space 
       if (expected >= 0 && is_shown != (expected == 1)) FAIL_CHECK("view " << view << ", sample " << i);
       if (is_shown) ++seen, gain += double(model.areas()[i]);
     }
-    CHECK(model.gain(pose) == Approx(gain));
+    CHECK(gain_of(model, pose) == Approx(gain));
   }
   CHECK(close < 200);
   CHECK(seen > 5000);
@@ -287,7 +287,7 @@ TEST_CASE("expected surface: points of no fruit hide what is behind them, points
   for (int i = 0; i < 31 * 31; ++i) scan.add_point({-0.045 + 0.003 * (i % 31), 0.4, 0.155 + 0.003 * (i / 31)});
   const ExpectedSurface model = model_of(scan, bare(), camera(32.0));
   REQUIRE(model.bodies().size() == 1);
-  CHECK(model.gain(look_at(kFruit, {0, 0.1, 0.2})) == 0.0);
+  CHECK(gain_of(model, look_at(kFruit, {0, 0.1, 0.2})) == 0.0);
   CHECK(model.shown(look_at(kFruit, {0, 0.9, 0.2})).size() > 60);
   CHECK(model.shown(look_at(kFruit, kFruit + Vector3d(0, 0, 0.385))) == first_indices(66));
 }
@@ -323,13 +323,13 @@ TEST_CASE("expected surface: a frame that was not taken, or is empty, lowers the
   Scan scan;
   add_fruit(scan, kFruit);
   const Pose above = look_at(kFruit, kFruit + Vector3d(0, 0, 0.385));
-  const double before = model_of(scan).gain(above);
+  const double before = gain_of(model_of(scan), above);
   sensor::SurfaceImage discarded;
   discarded.world_T_optical = above;
   const bool empty = GENERATE(false, true);
   scan.images = {empty ? flat_image(above, 0.0, 0.0) : discarded};
   ExpectedSurface model = model_of(scan);
-  CHECK(model.gain(above) == Approx((empty ? 1.0 - 0.25 * 0.65 : 0.35) * before));
+  CHECK(gain_of(model, above) == Approx((empty ? 1.0 - 0.25 * 0.65 : 0.35) * before));
   CHECK(model.completeness(std::vector<char>(200, 1)).observable == Approx(1.0));
   // One that shows something else there does.
   scan.images.push_back(flat_image(above, 0.1));
@@ -402,6 +402,6 @@ TEST_CASE("a body that masks alone propose is expected, so that a view of it is 
     REQUIRE(with.bodies().size() == 2);
     CHECK(with.bodies()[1].by_mask);
     const Pose view = look_at(hidden, hidden + Vector3d(0.05, -0.3, 0.0));
-    CHECK(with.gain(view) > without.gain(view) + 0.2 * kSurface);
+    CHECK(gain_of(with, view) > gain_of(without, view) + 0.2 * kSurface);
   }
 }

@@ -144,9 +144,9 @@ TEST_CASE("gain planner: a half-seen fruit is looked at from behind, by the view
   const auto view = planner->next(scan.progress(), Joints::Zero(), flight.reach());
   REQUIRE(view);
   CHECK(view->world_T_optical.linear().col(2).y() < -0.9);
-  CHECK(view->gain == planner->model().gain(view->world_T_optical));
+  CHECK(view->gain == gain_of(planner->model(), view->world_T_optical));
   double most = 0.0;
-  for (const ViewRequest& r : flight.asked) most = std::max(most, planner->model().gain(fly_to(r).world_T_optical));
+  for (const ViewRequest& r : flight.asked) most = std::max(most, gain_of(planner->model(), fly_to(r).world_T_optical));
   CHECK(view->gain == most);
   CHECK(view->gain > 0.3 * planner->model().area());
   CHECK((planner->model().center() - kFruit).norm() < 1e-3);
@@ -156,7 +156,7 @@ TEST_CASE("gain planner: a half-seen fruit is looked at from behind, by the view
   REQUIRE(candidates.size() > 100);
   CHECK(candidates[0].gain == most);
   for (std::size_t i = 0; i < candidates.size(); ++i) {
-    CHECK(candidates[i].gain == planner->model().gain(candidates[i].world_T_optical));
+    CHECK(candidates[i].gain == gain_of(planner->model(), candidates[i].world_T_optical));
     CHECK(candidates[i].gain >= p.min_gain * planner->model().area());
     if (i > 0) CHECK(candidates[i].gain <= candidates[i - 1].gain);
   }

@@ -98,6 +98,11 @@ inline sensor::SurfaceImage flat_image(const Pose& world_T_optical, double depth
   return image;
 }
 
+/// The fruit surface (m2) that a view is expected to show.
+inline double gain_of(const ExpectedSurface& model, const Pose& world_T_optical) {
+  return model.gain(model.shown(world_T_optical));
+}
+
 /// A box around a point (m) of half this edge length.
 inline Aabb box(const Vector3d& center, double half) {
   return {center - Vector3d::Constant(half), center + Vector3d::Constant(half)};

@@ -21,7 +21,7 @@ TEST_CASE("expected surface: how far it can be relied on follows from what views
     add_fruit(scan, kFruit, shown, 0.002);
     View behind;
     behind.world_T_optical = look_at(kFruit, {0, 0.885, 0.2});
-    REQUIRE(model.gain(behind.world_T_optical) > 0.2 * kSurface);
+    REQUIRE(gain_of(model, behind.world_T_optical) > 0.2 * kSurface);
     behind.points_in = points;
     behind.discarded = discarded;
     scan.views.push_back(behind);
@@ -54,7 +54,7 @@ TEST_CASE("expected surface: older views count less for how far it can be relied
       View behind;
       behind.world_T_optical = look_at(fruit[i], fruit[i] + Vector3d(0.0, 0.385, 0.0));
       behind.points_in = 1000;
-      CHECK(model.gain(behind.world_T_optical) == Approx(0.3286 * kSurface).epsilon(0.05));
+      CHECK(gain_of(model, behind.world_T_optical) == Approx(0.3286 * kSurface).epsilon(0.05));
       if (i == 0 ? first : second)
         add_fruit(
             scan, fruit[i], [](const Vector3d& d) { return d.y() >= 0.0; }, 0.002);

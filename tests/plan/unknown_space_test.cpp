@@ -45,7 +45,7 @@ bool shown_at(double x, double y, double z, const sensor::DepthCamera& sensor = 
   const ExpectedSurface model = model_of(scan_of({kFar}), box(Vector3d::Zero(), kVoxel / 2), parameters(), sensor);
   REQUIRE(model.areas() == std::vector<float>{float(kArea)});
   const Pose pose = sees_origin_at(x, y, z);
-  const double gain = model.gain(pose);
+  const double gain = gain_of(model, pose);
   CHECK(gain == (model.shown(pose).empty() ? 0.0 : kArea));
   return gain > 0.0;
 }
@@ -210,7 +210,7 @@ TEST_CASE("unknown space: sight lines make known what they went through and wher
   CHECK(left() == 64);                                 // from behind, two layers more
   scan.images.push_back(flat_image(front, 0.0, 1.0));  // no returns: free space
   CHECK(left() == 0);
-  CHECK(model.gain(front) == 0.0);
+  CHECK(gain_of(model, front) == 0.0);
 }
 
 TEST_CASE("unknown space: voxels of a large volume are enlarged until there are at most two million") {
@@ -241,7 +241,7 @@ TEST_CASE("unknown space: the point to look at is the middle of the cloud, witho
   ExpectedSurface model(camera(), volume, parameters());
   CHECK(model.area() == 0.0);
   CHECK(model.covered_area() == 0.0);
-  CHECK(model.gain(Pose::Identity()) == 0.0);
+  CHECK(gain_of(model, Pose::Identity()) == 0.0);
   model.update(Scan().progress(), {}, {});
   CHECK(model.center() == volume.center());
   CHECK(model.extent().min == volume.min);

@@ -15,7 +15,6 @@
 #include <agrisee/fuse/parameters.hpp>
 #include <agrisee/neighbors/hash_grid.hpp>
 
-#include <cmath>
 #include <vector>
 
 namespace agrisee::fuse {
@@ -24,14 +23,11 @@ namespace agrisee::fuse {
 struct Surfel {
   Eigen::Vector3f position;  ///< m, world
   Eigen::Vector3f normal;    ///< unit, towards the sensors that saw it
-  float weight = 0.0f;       ///< sum of 1 / sigma^2 of its samples (1/m2)
-  int view = -1;             ///< the view that created it
-  int samples = 0;           ///< number of samples
-  int seen_by = 0;           ///< number of views with a sample
-  int last_view = -1;        ///< the last view with a sample
-
-  /// Standard deviation of the position along the normal (m), if the errors of all samples are independent.
-  float sigma() const { return 1.0f / std::sqrt(weight); }
+  float weight =
+      0.0f;         ///< sum of 1 / sigma^2 of its samples (1/m2): the inverse variance of its position along the normal
+  int view = -1;    ///< the view that created it
+  int seen_by = 0;  ///< number of views with a sample
+  int last_view = -1;  ///< the last view with a sample
 };
 
 /// The growing set of surfels.

@@ -44,8 +44,8 @@ class ExpectedSurface {
   std::vector<std::uint32_t> shown(const Pose& world_T_optical) const;
   /// Fruit surface (m2) that each sample stands for.
   const std::vector<float>& areas() const { return areas_; }
-  /// Unseen fruit surface (m2) that a view is expected to show.
-  double gain(const Pose& world_T_optical) const;
+  /// The fruit surface (m2) of some samples: the gain of the view that shows them.
+  double gain(const std::vector<std::uint32_t>& shown) const;
 
   /// Share (0..1) of the surface expected of the last views that they did show; older views count less.
   double reliability() const;
