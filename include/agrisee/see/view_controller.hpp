@@ -28,8 +28,9 @@ enum class ControllerAction : std::uint8_t {
 /// The view's position after one adjustment (SEE++).
 ///
 /// With the frontier's direction q and boundary b, the offset o from the centroid of the observation to the frontier,
-/// and the view's position v relative to the frontier: v moves by (s + 1) o_q along q and is turned about b by
-/// atan(s o_q d / (d^2 + (s + 1) o_q^2)); then the same along b and about q with o_b.
+/// and the view's position v relative to the frontier: v moves by (s + 1) o_q along q and is turned about q by
+/// atan(s o_q d / (d^2 + (s + 1) o_q^2)); then the same along and about b with o_b. The turns take nothing from the
+/// moves, which grow with s. As in the authors' program, which turns about the world's origin, where its objects are.
 /// @param f the frontier
 /// @param position of the view (m, world)
 /// @param offset from the centroid of the whole observation to the frontier (m, world)
@@ -39,13 +40,12 @@ enum class ControllerAction : std::uint8_t {
 inline Eigen::Vector3d adjusted_position(const Frontier& f, const Eigen::Vector3d& position,
                                          const Eigen::Vector3d& offset, double scale, double view_distance) {
   const double s = scale, d = view_distance;
-  const auto step = [&](const Eigen::Vector3d& v, const Eigen::Vector3d& along, const Eigen::Vector3d& about) {
-    const double o = offset.dot(along);
+  const auto step = [&](const Eigen::Vector3d& v, const Eigen::Vector3d& axis) {
+    const double o = offset.dot(axis);
     const double angle = std::atan(s * o * d / (d * d + (s + 1.0) * o * o));
-    return Eigen::Vector3d(Eigen::AngleAxisd(angle, about) * (v + (s + 1.0) * o * along));
+    return Eigen::Vector3d(Eigen::AngleAxisd(angle, axis) * (v + (s + 1.0) * o * axis));
   };
-  const Eigen::Vector3d once = step(position - f.point, f.direction, f.boundary);
-  return f.point + step(once, f.boundary, f.direction);
+  return f.point + step(step(position - f.point, f.direction), f.boundary);
 }
 
 /// Decide what becomes of a frontier that its view did not cover. While |o| shrinks, the view is adjusted, and s
