@@ -26,10 +26,17 @@ namespace {
 struct ProcessOptions : CommonOptions {
   std::vector<std::string> clouds;
   std::string cloud, views, shard;
-  std::vector<double> viewpoint;
+  std::vector<double> viewpoint, range;
   bool turn_normals = false;
   DepthImageOptions image;
   io::McapChoice mcap;
+
+  RecordingChoice choice() const {
+    RecordingChoice out;
+    out.mcap = mcap;
+    if (!range.empty()) out.range = Eigen::Vector2d(range[0], range[1]);
+    return out;
+  }
 };
 
 /// What is known about where the points of a cloud were seen from. @throws FileError if views are missing
@@ -116,10 +123,14 @@ void check_input_options(const ProcessOptions& options) {
   const bool image = !options.image.depth.empty();
   if (!image && options.cloud.empty()) throw UsageError("an input is needed: a cloud, views.yaml, or --depth");
   if (image && !options.cloud.empty()) throw UsageError("give either an input or --depth, not both");
-  const bool of_mcap = !options.mcap.topic.empty() || !options.mcap.world_frame.empty();
+  const bool of_mcap = !options.mcap.topic.empty() || !options.mcap.world_frame.empty() || !options.range.empty();
   if (of_mcap && (image || !is_mcap(options.cloud)))
     throw UsageError((image ? options.image.depth : options.cloud) +
-                     ": is no MCAP file, so leave out --topic and --world-frame");
+                     ": is no MCAP file, so leave out --topic, --world-frame and --range");
+  if (!options.range.empty() && !(options.range[0] >= 0.0 && options.range[0] < options.range[1]))
+    throw UsageError("--range: expected 0 <= minimum < maximum");
+  if (!options.range.empty() && options.range[0] > 50.0)
+    throw UsageError("--range: begins at " + metres(options.range[0]) + ": is it in millimetres?");
   if (!image) return;
   if (!(options.views.empty() && options.viewpoint.empty()))
     throw UsageError("--depth: the image was seen from its own origin, so leave out --views and --viewpoint");
@@ -155,6 +166,7 @@ std::string key_of(const ProcessOptions& options, const std::string& input) {
             std::to_string(options.seed) + (options.turn_normals ? " turned" : "") + "\n" + options.mcap.topic + "\n" +
             options.mcap.world_frame + "\n");
   for (const double x : options.viewpoint) print.add(&x, sizeof x);
+  for (const double x : options.range) print.add(&x, sizeof x);
   if (!options.views.empty()) add_file(print, options.views);
   if (recording)
     add_recording(print, recording_file(input));
@@ -173,7 +185,7 @@ void run_process(const ProcessOptions& options) {
     throw FileError(options.cloud + ": states where its views were seen from, so leave out --views and --viewpoint");
   const Processed done = !options.image.depth.empty() ? process_depth_image(options.image, parameters, options.threads)
                          : recording
-                             ? process_recording(recording_file(options.cloud), options, parameters, options.mcap)
+                             ? process_recording(recording_file(options.cloud), options, parameters, options.choice())
                              : process_cloud(options, parameters);
   FolderLock lock;  // a list has its own
   if (!options.prepared) {
@@ -214,6 +226,12 @@ void add_process(CLI::App& app, Run& run) {
                       "topic of the depth images in an MCAP file (default: the only one)");
   command->add_option("--world-frame", options->mcap.world_frame,
                       "frame of the result, for an MCAP file (default: world, base_link, or the root of tf)");
+  command
+      ->add_option("--range", options->range,
+                   "least and largest distance min,max along the rays (m) in an MCAP file; what is nearer or farther "
+                   "is no return (default: all counts)")
+      ->delimiter(',')
+      ->expected(2);
   add_shard_option(*command, options->shard);
   command->footer(
       "Normals in the file are kept; those that face away from their sensor are turned. Missing normals are\n"

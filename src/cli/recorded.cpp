@@ -34,9 +34,14 @@ class NoPlanner final : public plan::Planner {
   StopReason stop_reason() const override { return StopReason::not_stopped; }
 };
 
+/// Farther from its sensor a point tells nothing of the scan volume (m): no depth camera measures fruit from there, but
+/// single wrong pixels reach 65 m in images of whole millimetres.
+constexpr double kFarthest = 10.0;
+
 /// What a first pass over the images finds.
 struct Survey {
-  Aabb seen;                              ///< all points of the views that were looked at
+  Aabb seen;                              ///< all points within kFarthest of the views that were looked at
+  std::size_t farther = 0;                ///< number of points beyond
   std::vector<fuse::ViewSample> samples;  ///< some of their points
   std::size_t changed = 0;                ///< views that show something else than the first
 };
@@ -58,11 +63,32 @@ ViewSource source_of_yaml(const std::string& path) {
   return out;
 }
 
+/// Distance of what a pixel shows along its ray (m).
+double distance_at(const sensor::DepthFrame& frame, int u, int v) {
+  return double(frame.at(u, v)) * frame.intrinsics.ray(u, v).norm();
+}
+
+/// A frame without what is nearer or farther along the rays than a range (m).
+sensor::DepthFrame in_range(sensor::DepthFrame frame, const Eigen::Vector2d& range) {
+  for (int v = 0; v < frame.intrinsics.height; ++v)
+    for (int u = 0; u < frame.intrinsics.width; ++u) {
+      const double distance = distance_at(frame, u, v);
+      if (!(distance >= range[0] && distance <= range[1])) frame.depth[frame.intrinsics.index(u, v)] = 0.0f;
+    }
+  return frame;
+}
+
 /// The views of an MCAP file.
-ViewSource source_of_mcap(const std::string& path, const io::McapChoice& choice) {
-  const auto recorded = std::make_shared<io::McapRecording>(path, choice);
+ViewSource source_of_mcap(const std::string& path, const RecordingChoice& choice) {
+  const auto recorded = std::make_shared<io::McapRecording>(path, choice.mcap);
   ViewSource out{recorded->workcell(), recorded->world_T_optical(), {}, recorded->warnings()};
-  out.frame = [recorded](std::size_t view) { return recorded->frame(view); };
+  if (!choice.range) {
+    out.frame = [recorded](std::size_t view) { return recorded->frame(view); };
+    return out;
+  }
+  out.workcell.sensor.range_min = choice.range->x();
+  out.workcell.sensor.range_max = choice.range->y();
+  out.frame = [recorded, range = *choice.range](std::size_t view) { return in_range(recorded->frame(view), range); };
   return out;
 }
 
@@ -81,6 +107,21 @@ bool differ(const sensor::DepthFrame& a, const sensor::DepthFrame& b) {
   return static_cast<double>(off) > kShare * static_cast<double>(shown);
 }
 
+/// Extend what is seen by what a frame shows within kFarthest. @return whether it shows anything
+bool extend_by(const sensor::DepthFrame& frame, const Pose& world_T_optical, Survey& out) {
+  bool any = false;
+  for (int v = 0; v < frame.intrinsics.height; ++v)
+    for (int u = 0; u < frame.intrinsics.width; ++u) {
+      if (!sensor::DepthFrame::valid(frame.at(u, v))) continue;
+      any = true;
+      if (distance_at(frame, u, v) > kFarthest)
+        ++out.farther;
+      else
+        out.seen.extend(world_T_optical * frame.point(u, v).cast<double>());
+    }
+  return any;
+}
+
 /// Look at all views; where the scan volume is known, at some are enough.
 Survey survey(const ViewSource& source) {
   constexpr std::size_t kEnough = 16;
@@ -91,21 +132,40 @@ Survey survey(const ViewSource& source) {
     sensor::DepthFrame frame = source.frame(i);
     if (!first.depth.empty()) out.changed += frame.depth.size() == first.depth.size() && differ(first, frame);
     out.samples.push_back(fuse::sample_of(frame, source.poses[i]));
-    const Aabb seen = io::extent_of(frame, source.poses[i]);
-    if (seen.empty()) continue;
-    out.seen.extend(seen.min);
-    out.seen.extend(seen.max);
-    if (first.depth.empty()) first = std::move(frame);
+    const bool shows_something = extend_by(frame, source.poses[i], out);
+    if (shows_something && first.depth.empty()) first = std::move(frame);
   }
   return out;
 }
 
-/// Everything that the views show, and a millimetre around it. @throws FileError if they show nothing
-Aabb all_that_is_seen(const std::string& path, Aabb seen) {
-  if (seen.empty()) throw FileError(path + ": no depth image has a single return in the camera's range");
+/// What shortens the range of a recording.
+std::string remedy_of_range(const std::string& path) {
+  return is_mcap(path) ? "shorten the range (--range)" : "state a scan_volume, or shorten camera.range";
+}
+
+/// Everything that the views show within kFarthest, and a millimetre around it.
+/// @throws FileError if they show nothing there, or things too far apart
+Aabb all_that_is_seen(const std::string& path, const Survey& first) {
+  if (first.seen.empty())
+    throw FileError(path + ": no depth image has a single return " +
+                    (first.farther > 0 ? "within " + metres(kFarthest) + " of the camera: are the depths in metres?"
+                                       : "in the camera's range"));
+  Aabb seen = first.seen;
   seen.min.array() -= 1e-3;
   seen.max.array() += 1e-3;
+  constexpr double kLargest = 50.0;  // m; a Pipeline takes no larger scan volume
+  const double size = seen.size().maxCoeff();
+  if (size > kLargest)
+    throw FileError(path + ": what its views show is " + metres(size) +
+                    " long: are the positions of the poses in metres? If they are, " + remedy_of_range(path));
   return seen;
+}
+
+/// A warning that points were left out of the scan volume.
+std::string doubt_of_far_points(const std::string& path, std::size_t farther) {
+  return std::to_string(farther) + (farther == 1 ? " pixel lies" : " pixels lie") + " more than " + metres(kFarthest) +
+         " from the camera and " + (farther == 1 ? "does" : "do") + " not count for the scan volume, as none is " +
+         "stated: " + (is_mcap(path) ? "shorten the range (--range) to be rid of them" : remedy_of_range(path));
 }
 
 /// @throws FileError if the poses are all alike, but not the images
@@ -163,20 +223,27 @@ void check_contradictions(const std::string& path, const std::vector<View>& view
 }  // namespace
 
 Processed process_recording(const std::string& path, const CommonOptions& options, const Parameters& parameters,
-                            const io::McapChoice& choice) {
+                            const RecordingChoice& choice) {
   const ViewSource source = is_mcap(path) ? source_of_mcap(path, choice) : source_of_yaml(path);
   Processed out;
   out.workcell = source.workcell;
   const Survey first = survey(source);
   check_poses_differ(path, source, first);
   const std::optional<std::string> doubt = doubt_of_poses(path, first, source.workcell.scan_volume);
-  if (out.workcell.scan_volume.empty()) out.workcell.scan_volume = all_that_is_seen(path, first.seen);
+  const bool volume_is_stated = !out.workcell.scan_volume.empty();
+  if (!volume_is_stated) out.workcell.scan_volume = all_that_is_seen(path, first);
   PipelineOptions pipeline_options;
   pipeline_options.planner = std::make_unique<NoPlanner>();
   pipeline_options.reach = [](const plan::ViewRequest&, const Joints&) { return std::nullopt; };  // there is no arm
   pipeline_options.seed = options.seed;
   pipeline_options.threads = threads_of(options.threads);
-  Pipeline pipeline(out.workcell, parameters, std::move(pipeline_options));
+  Pipeline pipeline = [&] {
+    try {
+      return Pipeline(out.workcell, parameters, std::move(pipeline_options));
+    } catch (const InputError& error) {
+      throw InputError(path + ": " + error.what());
+    }
+  }();
   for (std::size_t i = 0; i < source.poses.size(); ++i) {
     sensor::DepthFrame frame = source.frame(i);
     out.history.depth.push_back(io::depth_picture(frame));
@@ -193,6 +260,7 @@ Processed process_recording(const std::string& path, const CommonOptions& option
   const std::vector<std::string> notes = shortened(source.warnings);
   out.result.warnings.insert(out.result.warnings.begin(), notes.begin(), notes.end());
   if (doubt) out.result.warnings.push_back(*doubt);
+  if (!volume_is_stated && first.farther > 0) out.result.warnings.push_back(doubt_of_far_points(path, first.farther));
   return out;
 }
 

@@ -6,6 +6,9 @@
 #include <agrisee/result.hpp>
 #include <agrisee/workcell.hpp>
 
+#include <Eigen/Core>
+
+#include <optional>
 #include <string>
 
 #include "commands.hpp"
@@ -19,10 +22,17 @@ struct Processed {
   io::ScanHistory history;
 };
 
-/// Fuse, register and segment the views of a recording. Where it states no scan volume, all that the views show counts.
-/// @param path views.yaml, or an MCAP file  @param choice what to take from an MCAP file
+/// What to take from an MCAP file.
+struct RecordingChoice {
+  io::McapChoice mcap;                   ///< which images, and which frame is the world
+  std::optional<Eigen::Vector2d> range;  ///< least and largest distance along the rays (m); none: all that returned
+};
+
+/// Fuse, register and segment the views of a recording. Where it states no scan volume, all that the views show within
+/// 10 m counts.
+/// @param path views.yaml, or an MCAP file  @param choice for an MCAP file
 /// @throws FileError
 Processed process_recording(const std::string& path, const CommonOptions& options, const Parameters& parameters,
-                            const io::McapChoice& choice = {});
+                            const RecordingChoice& choice = {});
 
 }  // namespace agrisee::cli

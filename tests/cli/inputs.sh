@@ -54,6 +54,33 @@ open("png/open.yaml", "w").write(re.sub(r"scan_volume: .*\n", "", text))
 PY
     expect 0 '' process png/open.yaml -o c
     grep -q '^4 fruit' out.txt || fail "without a scan volume: $(head -1 out.txt)"
+    # Single pixels far away do not make the scan volume large; if there is nothing else, or poses are far apart, that is told.
+    python3 - <<'PY'
+import re, shutil, struct
+text = re.sub(r"scan_volume: .*\n", "", open("exact/views.yaml").read())
+whole = open("exact/depth/0002.npy", "rb").read()
+image = whole[:-8] + struct.pack("<2f", 65.5, 40)
+open("exact/depth/stray.npy", "wb").write(image)
+text = text.replace("0002.npy", "stray.npy")
+open("exact/stray.yaml", "w").write(text)
+head = len(whole) - 4 * 512 * 384
+open("exact/depth/far.npy", "wb").write(whole[:head] + struct.pack("<f", 30) * (512 * 384))
+open("exact/far.yaml", "w").write(re.sub(r"\d\d\d\d.npy|stray.npy", "far.npy", text))
+pose = iter([80, -80])
+open("exact/apart.yaml", "w").write(re.sub(r"(pose: \[\[[^,]*,[^,]*,[^,]*, )[^\]]*", lambda m: m.group(1) + str(next(pose, 0)), text))
+PY
+    expect 0 '' process png/open.yaml -o no_stray --no-picture --no-report && ! grep -q 'pixel' out.txt || fail "no stray: $(cat out.txt)"
+    expect 0 '' process exact/stray.yaml -o stray --no-picture --no-report
+    grep -q '^4 fruit' out.txt && grep -q '^Note: 2 pixels lie more than 10 m from the camera .*scan_volume' out.txt || fail "stray pixels: $(cat out.txt)"
+    expect 2 'far.yaml: no depth image has a single return within 10 m of the camera: are the depths in metres' process exact/far.yaml -o d
+    expect 2 'apart.yaml: what its views show is 16[0-9] m long: are the positions of the poses in metres' process exact/apart.yaml -o d
+    # Of an MCAP file the range can be shortened.
+    expect 0 '' scan t -o filmed --noise l515 --seed 5 --max-views 2 --mcap filmed.mcap --no-picture --no-report
+    for range in 0.1,9:wide 0.05,0.1:short; do
+      expect 0 '' process filmed.mcap -o ${range#*:} --range ${range%:*} --no-picture --no-report
+    done
+    expect 0 '' process filmed.mcap -o all --no-picture --no-report && cmp all/fruits.json wide/fruits.json || fail "a wide range"
+    [ "$(grep -c '"id"' all/fruits.json)" -gt 0 ] && [ "$(grep -c '"id"' short/fruits.json)" = 0 ] || fail "a short range"
     # A wrong scale, size, pose or file is told of, with the place, and nothing is written.
     sed 's/depth_scale: .*/depth_scale: 1/' png/views.yaml >png/scale.yaml
     expect 2 'scale.yaml:[0-9]+: views\[0\].depth: .*median depth.*depth_scale' process png/scale.yaml -o d
@@ -258,10 +285,13 @@ PY
       expect 1 "--groups excludes ${replaced% *}|${replaced% *} excludes --groups" experiment -o e --groups default/gain/none $replaced
     done
     expect 1 '--unfinished excludes --db|--db excludes --unfinished' merge d --unfinished --db d.sqlite
-    for option in '--topic /x' '--world-frame y'; do
+    for option in '--topic /x' '--world-frame y' '--range 0.2,2'; do
       for input in c.ply v/views.yaml v '--depth d.png --intrinsics 1,1,1,1'; do
-        expect 1 'is no MCAP file, so leave out --topic and --world-frame' process $input -o b $option
+        expect 1 'is no MCAP file, so leave out --topic, --world-frame and --range' process $input -o b $option
       done
+    done
+    for range in 2,1:'expected 0 <= minimum' 250,2000:'begins at 250 m: is it in millimetres'; do
+      expect 1 "--range: ${range#*:}" process x.mcap -o b --range "${range%%:*}"
     done
     expect 1 '--kinds: any is there twice' faults --report f.md --scenes 7_1 --kinds any,wrong_pose,any
     expect 1 '--rates: 0.1 is there twice' faults --report f.md --scenes 7_1 --rates 0.1,0,0.1
