@@ -15,6 +15,9 @@
 namespace agrisee::fuse {
 namespace {
 
+/// A view with as many points near bodies tells as much of them as the comparisons need.
+constexpr std::size_t kEnoughOnBodies = 250;
+
 /// Move an image with all it shows.
 void move_image(sensor::SurfaceImage& image, const Pose& to_T_from) {
   const Eigen::Isometry3f motion = to_T_from.cast<float>();
@@ -23,6 +26,31 @@ void move_image(sensor::SurfaceImage& image, const Pose& to_T_from) {
     image.normals[c] = motion.linear() * image.normals[c];
   }
   image.world_T_optical = to_T_from * image.world_T_optical;
+}
+
+/// What may belong to bodies: a ball around each (m), wide enough for fuse::body_errors and fuse::check_calibration.
+std::vector<Sphere> surroundings_of(const std::vector<Ellipsoid>& bodies) {
+  std::vector<Sphere> out;
+  for (const Ellipsoid& body : bodies)
+    out.push_back({body.center, semi_axes(body).first.maxCoeff() + 0.5 * body.mean_radius()});
+  return out;
+}
+
+/// The numbers of the points that lie inside of balls.
+std::vector<std::size_t> inside_of(const std::vector<Eigen::Vector3f>& points, const std::vector<Sphere>& balls) {
+  Aabb around;
+  for (const Sphere& ball : balls) {
+    around.extend(ball.center.array() - ball.radius);
+    around.extend(ball.center.array() + ball.radius);
+  }
+  std::vector<std::size_t> inside;
+  for (std::size_t c = 0; c < points.size(); ++c) {
+    const Eigen::Vector3d p = points[c].cast<double>();
+    if (!around.contains(p)) continue;
+    const auto holds = [&](const Sphere& ball) { return (p - ball.center).squaredNorm() <= ball.radius * ball.radius; };
+    if (std::any_of(balls.begin(), balls.end(), holds)) inside.push_back(c);
+  }
+  return inside;
 }
 
 /// An image where it was before it was registered to a map.
@@ -70,7 +98,7 @@ Change FusedViews::take(Observation seen, const Pose& world_T_optical) {
   Change change;
   change.points_in = seen.surface.points_in;
   change.observed = seen.surface.points;
-  if (parameters_.register_views || !seen.consistent) seen_.emplace(id, as_reported(seen.surface, world_T_optical));
+  seen_.emplace(id, as_reported(seen.surface, world_T_optical));
   if (seen.consistent) {
     add(std::move(seen.surface), id, change.added);
     count_refuting();
@@ -121,18 +149,51 @@ Eigen::Vector3d FusedViews::shift_to_reported(const Eigen::Vector3d& center) con
 
 std::vector<BodyErrors> FusedViews::body_errors(const std::vector<Ellipsoid>& bodies,
                                                 const FitParameters& parameters) const {
-  return fuse::body_errors(bodies, registered_views(), parameters);
+  std::vector<sensor::SurfaceImage> parts;
+  return fuse::body_errors(bodies, registered_views(bodies, parts), parameters);
 }
 
 CalibrationCheck FusedViews::check_calibration(const std::vector<Ellipsoid>& bodies) const {
-  return fuse::check_calibration(registered_views(), bodies);
+  std::vector<sensor::SurfaceImage> parts;
+  return fuse::check_calibration(registered_views(bodies, parts), bodies);
 }
 
-/// The views of the map that show something.
-std::vector<RegisteredView> FusedViews::registered_views() const {
+/// What a view of the map shows near bodies, registered: some points, evenly picked.
+sensor::SurfaceImage FusedViews::near_bodies(std::size_t view, std::vector<Sphere> balls) const {
+  const sensor::SurfaceImage& whole = seen_.at(view);
+  const Pose& registered = images_[view].world_T_optical;
+  const Pose reported_T_registered = views_[view].reported * registered.inverse(Eigen::Isometry);
+  for (Sphere& ball : balls) ball.center = reported_T_registered * ball.center;
+  sensor::SurfaceImage out;
+  out.noise = whole.noise;
+  out.world_T_optical = views_[view].reported;
+  const std::vector<std::size_t> inside = inside_of(whole.points, balls);
+  const std::size_t step = std::max<std::size_t>(1, inside.size() / kEnoughOnBodies);
+  for (std::size_t i = 0; i < inside.size(); i += step) {
+    out.points.push_back(whole.points[inside[i]]);
+    out.normals.push_back(whole.normals[inside[i]]);
+  }
+  move_image(out, reported_T_registered.inverse(Eigen::Isometry));
+  out.world_T_optical = registered;
+  return out;
+}
+
+/// The views of the map that show something, with points on bodies: those that are kept to compare views with, or
+/// others of the whole image where these hardly touch the bodies, because the view shows much else.
+/// @param parts receives what is taken of whole images
+std::vector<RegisteredView> FusedViews::registered_views(const std::vector<Ellipsoid>& bodies,
+                                                         std::vector<sensor::SurfaceImage>& parts) const {
+  const std::vector<Sphere> balls = surroundings_of(bodies);
+  parts.assign(images_.size(), {});
   std::vector<RegisteredView> views;
-  for (std::size_t v = 0; v < images_.size(); ++v)
-    if (views_[v].in_map()) views.push_back({&images_[v], views_[v].reported, v});
+  for (std::size_t v = 0; v < images_.size(); ++v) {
+    if (!views_[v].in_map()) continue;
+    throw_if_cancelled();
+    const bool all_kept = images_[v].points.size() == seen_.at(v).points.size();
+    const bool enough = all_kept || inside_of(images_[v].points, balls).size() >= kEnoughOnBodies;
+    if (!enough) parts[v] = near_bodies(v, balls);
+    views.push_back({enough ? &images_[v] : &parts[v], views_[v].reported, v});
+  }
   return views;
 }
 

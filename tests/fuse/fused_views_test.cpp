@@ -122,6 +122,48 @@ TEST_CASE("views of up to 2500 points are registered by all of their points") {
   CHECK(distance(seen.surface.world_T_optical, place(1)) < 0.0005);
 }
 
+TEST_CASE("views are compared on bodies as well where they show much else") {
+  std::vector<Sphere> with_wall = kThreeFruit;
+  with_wall.push_back({{0.0, 2.85, 0.2}, 2.0});
+  const auto around = [](double margin) {
+    return Aabb{{-0.1 - margin, 0.45 - margin, 0.1 - margin}, {0.1 + margin, 0.7 + margin, 0.3 + margin}};
+  };
+  const bool registered = GENERATE(true, false);
+  FusionParameters parameters;
+  parameters.register_views = registered;
+  FusedViews tight(around(0.0), parameters, 1), wide(around(2.0), parameters, 1);
+  const auto bodies = [] {
+    std::vector<Ellipsoid> all;
+    for (const Sphere& s : kThreeFruit) all.emplace_back(s);
+    return all;
+  }();
+  const std::vector<Vector3d> errors{{0, 0, 0}, {0.001, 0, 0}, {0, -0.001, 0}, {0, 0, 0.001}, {0, 0.001, 0.001}};
+  for (int i = 0; i < 5; ++i) {
+    const sensor::DepthFrame frame =
+        test::render(with_wall, sensor::intrinsics_from_fov(320, 240, deg(100), deg(80)), place(i), 0.0005);
+    const Pose reported = off_by(place(i), errors[static_cast<std::size_t>(i)]);
+    for (FusedViews* map : {&tight, &wide}) map->take(map->look(frame, reported), reported);
+  }
+  REQUIRE(wide.cloud().size() > 20 * tight.cloud().size());
+  const double apart = tight.check_calibration(bodies).apart;
+  CHECK(apart > 0.0002);
+  CHECK(wide.check_calibration(bodies).apart == Approx(apart).epsilon(0.5));
+  const auto expected = tight.body_errors(bodies, {}), found = wide.body_errors(bodies, {});
+  for (std::size_t b = 0; b < bodies.size(); ++b) {
+    REQUIRE(expected[b].volume > 0.0);
+    CAPTURE(registered, b);
+    // A wall is registered, too, and takes the views elsewhere.
+    const double most = registered ? 3.0 : 2.0;
+    const double volumes = found[b].volume / expected[b].volume;
+    const double centers = std::sqrt(found[b].center.trace() / expected[b].center.trace());
+    CAPTURE(volumes, centers);
+    CHECK((volumes > 0.5 && volumes < most));
+    CHECK((centers > 0.5 && centers < most));
+  }
+  CHECK(wide.body_errors({}, {}).empty());
+  CHECK(wide.check_calibration({}).apart == 0.0);
+}
+
 TEST_CASE("the number of threads does not change the map") {
   FusedViews one(kVolume, fine(), 1), three(kVolume, fine(), 3);
   for (FusedViews* map : {&one, &three}) {

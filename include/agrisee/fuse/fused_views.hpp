@@ -57,7 +57,9 @@ class FusedViews : public Views {
 
   std::size_t begin(const Pose& world_T_optical, std::size_t points_in, bool discarded);
   bool agree(const Evidence& evidence) const;
-  std::vector<RegisteredView> registered_views() const;
+  sensor::SurfaceImage near_bodies(std::size_t view, std::vector<Sphere> balls) const;
+  std::vector<RegisteredView> registered_views(const std::vector<Ellipsoid>& bodies,
+                                               std::vector<sensor::SurfaceImage>& parts) const;
   bool contradicted(const sensor::SurfaceImage& image) const;
   std::vector<std::size_t> views_that_agree(const sensor::SurfaceImage& image) const;
   std::size_t views_in_map() const;
@@ -76,8 +78,8 @@ class FusedViews : public Views {
   std::vector<Taken> views_;
   std::vector<Returned> measured_;                    // one a view: what it measures of what later ones show
   std::vector<sensor::SurfaceImage> images_;          // what each view saw; of discarded ones only the pose
-  std::map<std::size_t, sensor::SurfaceImage> seen_;  // all of it, by number, at the reported poses; of skipped views,
-                                                      // and of all that are not registered, nothing
+  std::map<std::size_t, sensor::SurfaceImage> seen_;  // all of it, by number, at the reported poses; of skipped views
+                                                      // nothing
 };
 
 }  // namespace agrisee::fuse
