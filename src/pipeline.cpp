@@ -299,19 +299,28 @@ void Pipeline::tell_body_errors(ScanResult& out) const {
 }
 
 /// Warn if the views show the fruit in other places, with the change of the calibration or the motion of the plant that
-/// would make them agree. If the plant moved, so may any fruit have, and bodies between both places are too small.
+/// would make them agree. What the change makes of a fruit counts as an error of it. If the plant moved, so may any
+/// fruit have, and bodies between both places are too small.
 void Pipeline::doubt_calibration(ScanResult& out) const {
   std::vector<Ellipsoid> bodies;
   for (const Fruit& f : out.fruits)
     if (f.body) bodies.push_back(ellipsoid_of(*f.body));
   const fuse::CalibrationCheck check = map_->check_calibration(bodies);
   if (auto doubt = doubt_of(check)) out.warnings.push_back(std::move(*doubt));
+  std::size_t number = 0;
   for (Fruit& f : out.fruits) {
-    if (!f.body || check.motion.isZero()) continue;
+    if (!f.body) continue;
+    Body& body = *f.body;
+    const std::size_t b = number++;
+    if (!check.misplaced.empty()) {
+      body.center_covariance += check.misplaced[b].shift;
+      set_volume_error(body, std::hypot(body.volume_error, body.volume * check.misplaced[b].volume), parameters_.mass);
+    }
+    if (check.motion.isZero()) continue;
     constexpr double kSmaller = 0.75;  // of a body's relative volume, per motion in radii: its radius by a quarter
-    const double smaller = kSmaller * f.body->volume * check.motion.norm() / f.body->radii.mean();
-    f.body->center_covariance += check.motion * check.motion.transpose();
-    set_volume_error(*f.body, std::hypot(f.body->volume_error, smaller), parameters_.mass);
+    const double smaller = kSmaller * body.volume * check.motion.norm() / body.radii.mean();
+    body.center_covariance += check.motion * check.motion.transpose();
+    set_volume_error(body, std::hypot(body.volume_error, smaller), parameters_.mass);
   }
 }
 

@@ -11,126 +11,91 @@
 #include <limits>
 #include <optional>
 
+#include "calibration_change.hpp"
+
 namespace agrisee::fuse {
 namespace {
+
+using detail::CalibrationChange;
+using detail::FruitSample;
+using detail::placed;
+using detail::PlacedSample;
 
 constexpr double kDoubt = 0.0015;  // m; views of a calibrated camera on a plant at rest are not as far apart
 constexpr double kBetter = 0.5;    // share of the distance that may be left after a change
 
-/// A change that may make the views agree: of the calibration, or of where later views are.
-struct Change {
-  static constexpr Eigen::Index kUnknowns = 11;
-  using Vector = Eigen::Matrix<double, kUnknowns, 1>;
-  /// Depth scale - 1, 1 / focal scale - 1, shift (m) and turn (rad) of the camera, motion of the plant (m, world).
-  Vector unknowns = Vector::Zero();
-  bool along_rays = false;  ///< depths are distances along the rays
-  /// The plant moved before this sample.
-  std::size_t moved_before = std::numeric_limits<std::size_t>::max();
-
-  double depth() const { return unknowns[0]; }
-  double spread() const { return unknowns[1]; }
-  Eigen::Vector3d shift() const { return unknowns.segment<3>(2); }
-  Eigen::Vector3d turn() const { return unknowns.segment<3>(5); }
-  Eigen::Vector3d motion() const { return unknowns.tail<3>(); }
-  Eigen::Matrix3d rotation() const {
-    return Eigen::AngleAxisd(turn().norm(), turn().stableNormalized()).toRotationMatrix();
-  }
-};
-
-/// What a view shows of the fruit, in its optical frame.
-struct Sample {
-  std::size_t view = 0;  ///< its number
-  Pose world_T_optical = Pose::Identity();
-  std::vector<Eigen::Vector3d> points, normals;
-};
-
-/// Points of a view after a change: in the changed optical frame, and in the world.
-struct Placed {
-  Eigen::Matrix3d rotation;  ///< of the optical frame in the world
-  std::vector<Eigen::Vector3d> points, normals;
-  PointCloud<float> in_world;  ///< with normals
-  bool moved = false;          ///< whether the plant had moved by then
-};
-
 /// Two points of different views on the same surface, as a row of the least squares.
 struct Match {
-  std::size_t first = 0, second = 0;  ///< numbers of their samples
-  double residual = 0.0;              ///< their distance along the normal (m)
-  Change::Vector derivatives;         ///< of the residual by the unknowns
+  std::size_t first = 0, second = 0;      ///< numbers of their samples
+  double residual = 0.0;                  ///< their distance along the normal (m)
+  CalibrationChange::Vector derivatives;  ///< of the residual by the unknowns
 };
 
-bool on_fruit(const std::vector<Ellipsoid>& bodies, const Eigen::Vector3d& p, const Eigen::Vector3d& normal) {
+/// The number of the body that a point lies on; none if there is no body near, or it faces elsewhere.
+std::optional<std::size_t> body_at(const std::vector<Ellipsoid>& bodies, const Eigen::Vector3d& p,
+                                   const Eigen::Vector3d& normal) {
   constexpr double kNear = 0.5;      // of the radius
   constexpr double kFarthest = 4.0;  // of the radius; no ellipsoid is so long
   constexpr double kFacing = 0.5;
-  return std::any_of(bodies.begin(), bodies.end(), [&](const Ellipsoid& body) {
+  std::optional<std::size_t> nearest;
+  double least = std::numeric_limits<double>::infinity();
+  for (std::size_t b = 0; b < bodies.size(); ++b) {
+    const Ellipsoid& body = bodies[b];
     const Eigen::Vector3d d = p - body.center;
     const double size = body.mean_radius();
-    if (d.squaredNorm() > kFarthest * kFarthest * size * size) return false;
-    return std::abs(body.distance(p)) < kNear * size && normal.dot(d) > kFacing * d.norm();
-  });
+    if (d.squaredNorm() > kFarthest * kFarthest * size * size) continue;
+    const double distance = std::abs(body.distance(p));
+    if (!(distance < std::min(least, kNear * size)) || !(normal.dot(d) > kFacing * d.norm())) continue;
+    nearest = b;
+    least = distance;
+  }
+  return nearest;
 }
 
 /// What the views show of the fruit. Of many views or points some, evenly picked.
-std::vector<Sample> samples_of(const std::vector<RegisteredView>& views, const std::vector<Ellipsoid>& bodies) {
+std::vector<FruitSample> samples_of(const std::vector<RegisteredView>& views, const std::vector<Ellipsoid>& bodies) {
   constexpr std::size_t kViews = 12, kPoints = 250, kFew = 20;
-  std::vector<Sample> all;
+  std::vector<FruitSample> all;
   for (const RegisteredView& view : views) {
     const Pose registered_T_world = view.image->world_T_optical.inverse(Eigen::Isometry);
-    std::vector<std::size_t> seen;
-    for (std::size_t i = 0; i < view.image->points.size(); ++i)
-      if (on_fruit(bodies, view.image->points[i].cast<double>(), view.image->normals[i].cast<double>()))
-        seen.push_back(i);
+    std::vector<std::size_t> seen, on;
+    for (std::size_t i = 0; i < view.image->points.size(); ++i) {
+      const auto body = body_at(bodies, view.image->points[i].cast<double>(), view.image->normals[i].cast<double>());
+      if (!body) continue;
+      seen.push_back(i);
+      on.push_back(*body);
+    }
     if (seen.size() < kFew) continue;
-    Sample sample;
+    FruitSample sample;
     sample.view = view.number;
     sample.world_T_optical = view.reported;
     const std::size_t used = std::min(kPoints, seen.size());
     for (std::size_t k = 0; k < used; ++k) {
       const std::size_t i = seen[k * seen.size() / used];
+      sample.bodies.push_back(on[k * seen.size() / used]);
       sample.points.push_back(registered_T_world * view.image->points[i].cast<double>());
       sample.normals.push_back(registered_T_world.linear() * view.image->normals[i].cast<double>());
     }
     all.push_back(std::move(sample));
   }
   if (all.size() <= kViews) return all;
-  std::vector<Sample> some;
+  std::vector<FruitSample> some;
   for (std::size_t k = 0; k < kViews; ++k) some.push_back(std::move(all[k * all.size() / kViews]));
   return some;
 }
 
-Placed placed(const Sample& sample, const Change& change, bool moved) {
-  Placed out;
-  out.moved = moved;
-  const Eigen::Matrix3d turned = change.rotation();
-  out.rotation = sample.world_T_optical.linear();
-  for (std::size_t i = 0; i < sample.points.size(); ++i) {
-    Eigen::Vector3d p = sample.points[i];
-    if (change.along_rays) p *= p.z() / p.norm();
-    p *= 1.0 + change.depth();
-    p.head<2>() *= 1.0 + change.spread();
-    out.points.push_back(turned * p + change.shift());
-    out.normals.push_back(turned * sample.normals[i]);
-    Eigen::Vector3d in_world = sample.world_T_optical * out.points.back();
-    if (moved) in_world -= change.motion();
-    out.in_world.points.push_back(in_world.cast<float>());
-    out.in_world.normals.push_back((out.rotation * out.normals.back()).cast<float>());
-  }
-  return out;
-}
-
 /// Derivatives of a point's place along a normal (world) by the unknowns.
-Change::Vector derivatives(const Placed& view, std::size_t i, const Eigen::Vector3d& normal) {
+CalibrationChange::Vector derivatives(const PlacedSample& view, std::size_t i, const Eigen::Vector3d& normal) {
   const Eigen::Vector3d& p = view.points[i];
   const Eigen::Vector3d n = view.rotation.transpose() * normal;
   const Eigen::Vector3d back = view.moved ? Eigen::Vector3d(-normal) : Eigen::Vector3d::Zero();
-  return (Change::Vector() << n.dot(p), n.head<2>().dot(p.head<2>()), n, p.cross(n), back).finished();
+  return (CalibrationChange::Vector() << n.dot(p), n.head<2>().dot(p.head<2>()), n, p.cross(n), back).finished();
 }
 
-std::vector<Match> matches(const std::vector<Sample>& samples, const Change& change) {
+std::vector<Match> matches(const std::vector<FruitSample>& samples, const CalibrationChange& change) {
   constexpr std::size_t kEvery = 3;  // of the points of a view
   constexpr float kReach = 0.02f, kAlike = 0.8f;
-  std::vector<Placed> views;
+  std::vector<PlacedSample> views;
   std::vector<KdTree<float>> trees;
   for (std::size_t v = 0; v < samples.size(); ++v) {
     throw_if_cancelled();
@@ -140,7 +105,7 @@ std::vector<Match> matches(const std::vector<Sample>& samples, const Change& cha
   std::vector<Match> out;
   Neighbors<float> found;
   for (std::size_t v = 0; v < views.size(); ++v) {
-    const Placed& a = views[v];
+    const PlacedSample& a = views[v];
     for (std::size_t i = 0; i < a.points.size(); i += kEvery)
       for (std::size_t b = 0; b < views.size(); ++b) {
         if (b == v) continue;
@@ -174,7 +139,8 @@ std::vector<double> distances_across(const std::vector<Match>& matches, std::siz
 
 /// The change of some unknowns that makes the views agree best.
 /// @param first,count the unknowns
-void improve(const std::vector<Sample>& samples, Eigen::Index first, Eigen::Index count, Change& change) {
+void improve(const std::vector<FruitSample>& samples, Eigen::Index first, Eigen::Index count,
+             CalibrationChange& change) {
   constexpr int kSteps = 10;
   constexpr double kConverged = 1e-5;
   constexpr double kLeastGate = 0.002, kGate = 4.5;  // m; in median distances
@@ -210,7 +176,7 @@ std::string shift_in_words(const Eigen::Vector3d& shift) {
   return text;
 }
 
-std::string in_words(const Change& change, const std::vector<Sample>& samples) {
+std::string in_words(const CalibrationChange& change, const std::vector<FruitSample>& samples) {
   if (const double motion = change.motion().norm(); motion > 0.0)
     return "the plant had moved by " + number_text(1e3 * motion, 2) + " mm between views " +
            std::to_string(samples[change.moved_before - 1].view) + " and " +
@@ -232,7 +198,7 @@ std::string in_words(const Change& change, const std::vector<Sample>& samples) {
 
 /// A motion of the plant between two views.
 struct Motion {
-  Change change;
+  CalibrationChange change;
   double apart = 0.0, left = 0.0;  ///< median distance of what views before and after show, without and with it (m)
   double left_of_all = 0.0;        ///< with it, that of what any two views show (m)
 };
@@ -240,11 +206,11 @@ struct Motion {
 /// The motion of the plant between two views that explains why those before and after it disagree, if they do. It is
 /// sought where the views before and after disagree most, by their distance and by the root of the number of matches:
 /// the distance alone is often largest where a single view is left on one side.
-std::optional<Motion> motion_of(const std::vector<Sample>& samples, const std::vector<Match>& reported) {
+std::optional<Motion> motion_of(const std::vector<FruitSample>& samples, const std::vector<Match>& reported) {
   constexpr std::size_t kFew = 60;     // matches that tell nothing
   constexpr double kLeast = 0.003;     // m; of the motion
   constexpr double kLeastShare = 5.0;  // of the motion, in distances that are left
-  Change change;
+  CalibrationChange change;
   double apart = 0.0, most = 0.0;
   for (std::size_t v = 1; v < samples.size(); ++v) {
     std::vector<double> some = distances_across(reported, v);
@@ -268,12 +234,12 @@ std::optional<Motion> motion_of(const std::vector<Sample>& samples, const std::v
 /// A change of the calibration, and the median distance that it leaves of what two views show, and of what views before
 /// and after the motion do (m).
 struct Tried {
-  Change change;
+  CalibrationChange change;
   double left, left_across;
 };
 
 /// The best changes of the calibration, those of fewer unknowns first.
-std::vector<Tried> tried(const std::vector<Sample>& samples, std::size_t reported,
+std::vector<Tried> tried(const std::vector<FruitSample>& samples, std::size_t reported,
                          const std::optional<Motion>& motion) {
   struct Unknowns {
     bool along_rays;
@@ -281,7 +247,7 @@ std::vector<Tried> tried(const std::vector<Sample>& samples, std::size_t reporte
   };
   std::vector<Tried> all;
   for (const Unknowns& u : {Unknowns{true, 0, 0}, {false, 0, 1}, {false, 1, 1}, {false, 2, 3}, {false, 2, 6}}) {
-    Change change;
+    CalibrationChange change;
     change.along_rays = u.along_rays;
     improve(samples, u.first, u.count, change);
     const std::vector<Match> after = matches(samples, change);
@@ -298,14 +264,14 @@ std::vector<Tried> tried(const std::vector<Sample>& samples, std::size_t reporte
 
 CalibrationCheck check_calibration(const std::vector<RegisteredView>& views, const std::vector<Ellipsoid>& bodies) {
   constexpr std::size_t kFew = 200;  // matches that tell nothing
-  const std::vector<Sample> samples = samples_of(views, bodies);
+  const std::vector<FruitSample> samples = samples_of(views, bodies);
   const std::vector<Match> reported = matches(samples, {});
   CalibrationCheck out;
   if (reported.size() < kFew) return out;
   out.apart = out.mended = median_distance(reported);
   std::optional<Motion> motion = motion_of(samples, reported);
   const auto of_motion = [&]() -> CalibrationCheck {
-    return {motion->apart, motion->left, in_words(motion->change, samples), motion->change.motion()};
+    return {motion->apart, motion->left, in_words(motion->change, samples), motion->change.motion(), {}};
   };
   if (out.apart < kDoubt) return motion ? of_motion() : out;
 
@@ -320,13 +286,16 @@ CalibrationCheck check_calibration(const std::vector<RegisteredView>& views, con
   }
   if (motion) out.mended = std::min(out.mended, motion->left_of_all);
   bool shift_told = false;
+  std::vector<CalibrationChange> likely;
   for (const Tried& t : all) {
     if (t.left > kBetter * out.apart || !as_good(t.left, out.mended)) continue;
     const bool shifted = !t.change.shift().isZero();
     if (shifted && shift_told) continue;  // its turn explains nothing more
     shift_told |= shifted;
     out.mistake += (out.mistake.empty() ? "" : ", or if ") + in_words(t.change, samples);
+    likely.push_back(t.change);
   }
+  if (!likely.empty()) out.misplaced = detail::misplaced(samples, likely, bodies, views);
   if (!motion) return out;
   if (out.mistake.empty()) return of_motion();
   out.mistake += ", or if " + in_words(motion->change, samples);

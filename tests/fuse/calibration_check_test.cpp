@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <agrisee/cloud/volume.hpp>
 #include <agrisee/fuse/calibration_check.hpp>
 
 #include <cmath>
@@ -26,6 +27,23 @@ std::vector<Ellipsoid> found_bodies(double larger = 0.0) {
 struct MistakenScan {
   std::vector<sensor::SurfaceImage> images;
   std::vector<Pose> reported;
+
+  /// The bodies that are fitted to all points.
+  std::vector<Ellipsoid> fitted() const {
+    Cloud cloud;
+    for (const sensor::SurfaceImage& image : images) {
+      cloud.points.insert(cloud.points.end(), image.points.begin(), image.points.end());
+      cloud.normals.insert(cloud.normals.end(), image.normals.begin(), image.normals.end());
+    }
+    std::vector<Ellipsoid> all;
+    for (const Sphere& s : kThreeBalls) {
+      Indices near;
+      for (std::size_t i = 0; i < cloud.size(); ++i)
+        if ((cloud.points[i].cast<double>() - s.center).norm() < 2.0 * s.radius) near.push_back(static_cast<Index>(i));
+      all.push_back(fit_ellipsoid(cloud, near, Ellipsoid(s))->body);
+    }
+    return all;
+  }
 
   CalibrationCheck check(const std::vector<Ellipsoid>& on = found_bodies()) const {
     std::vector<RegisteredView> views;
@@ -128,6 +146,43 @@ TEST_CASE("a hand-eye transform that is left out is found, with its size") {
   const CalibrationCheck check = scan_with(no_mistake, without_hand_eye(turned)).check();
   CHECK_THAT(check.mistake, test::says("turned by 1.4 degrees about (0.7"));
   CHECK(check.mended < 0.3 * check.apart);
+}
+
+TEST_CASE("a wrong calibration tells how far it puts bodies off") {
+  const auto unchanged = [](const Pose& p, std::size_t) { return p; };
+  Pose aside = Pose::Identity();
+  aside.translation() = Eigen::Vector3d(-0.008, 0.0, 0.005);
+  Pose turned = Pose::Identity();
+  turned.rotate(Eigen::AngleAxisd(deg(2.0), Eigen::Vector3d(1.0, 1.0, 0.0).normalized()));
+  const std::vector<MistakenScan> scans{
+      scan_with([](const Eigen::Vector3d& p) { return Eigen::Vector3d(0.97 * p); }, unchanged, 0.0005),
+      scan_with([](const Eigen::Vector3d& p) { return Eigen::Vector3d(1.04 * p); }, unchanged, 0.001),
+      scan_with([](const Eigen::Vector3d& p) { return Eigen::Vector3d(1.15 * p.x(), 1.15 * p.y(), p.z()); }, unchanged),
+      scan_with(no_mistake, without_hand_eye(aside)), scan_with(no_mistake, without_hand_eye(turned))};
+  for (std::size_t k = 0; k < scans.size(); ++k) {
+    const std::vector<Ellipsoid> bodies = scans[k].fitted();
+    const CalibrationCheck check = scans[k].check(bodies);
+    CAPTURE(k, check.mistake);
+    REQUIRE(check.misplaced.size() == bodies.size());
+    for (std::size_t b = 0; b < bodies.size(); ++b) {
+      const double off = (bodies[b].center - kThreeBalls[b].center).norm();
+      const double growth = volume(Ellipsoid(kThreeBalls[b])) / volume(bodies[b]) - 1.0;
+      CHECK(std::sqrt(check.misplaced[b].shift.trace()) == Approx(off).epsilon(0.4).margin(0.002));
+      CHECK(check.misplaced[b].volume == Approx(std::abs(growth)).epsilon(0.4).margin(0.2));
+    }
+  }
+  // A body that hardly any view shows is as far off as the others.
+  std::vector<Ellipsoid> bodies = scans[0].fitted();
+  bodies.emplace_back(Sphere{{1.0, 0.5, 0.2}, 0.03});
+  const std::vector<Misplacement> all = scans[0].check(bodies).misplaced;
+  REQUIRE(all.size() == 4);
+  CHECK(all[3].volume == Approx((all[0].volume + all[1].volume + all[2].volume) / 3.0));
+  CHECK(all[3].shift.isApprox((all[0].shift + all[1].shift + all[2].shift) / 3.0));
+  CHECK(scan_with(no_mistake).check().misplaced.empty());
+  CHECK(scan_with(no_mistake, [](const Pose& p,
+                                 std::size_t v) { return v < 4 ? p : Pose(Eigen::Translation3d(0.008, 0.0, 0.0) * p); })
+            .check()
+            .misplaced.empty());
 }
 
 TEST_CASE("a plant that moves once is told from a camera that is not calibrated, with the views between") {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Views whose pose or frame is wrong are not believed.
+#include <agrisee/cloud/volume.hpp>
 #include <agrisee/pipeline.hpp>
 
 #include <algorithm>
@@ -188,6 +189,37 @@ TEST_CASE("a wrong scale of the depths, and a hand-eye transform that is left ou
   const std::string aside =
       warnings_after(8, [](sensor::DepthFrame&, Pose& pose) { pose.translate(Eigen::Vector3d(0.008, 0.0, 0.0)); });
   CHECK_THAT(aside, test::says("if the camera were 8 mm further left in its own frame"));
+}
+
+TEST_CASE("a wrong scale of the depths counts as an error of the fruit") {
+  const auto scanned = [](float scale) {
+    Pipeline pipeline(cell());
+    for (int v = 0; v < 8; ++v) {
+      sensor::DepthFrame frame = frame_at(pose_around(v, 8), v);
+      for (float& z : frame.depth) z *= scale;
+      pipeline.observe(std::move(frame), pose_around(v, 8));
+    }
+    return pipeline.result();
+  };
+  for (const auto& [scale, told] : {std::pair{1.0f, false}, {1.04f, true}}) {
+    const ScanResult result = scanned(scale);
+    CHECK(result.warnings.empty() != told);
+    REQUIRE(!result.fruits.empty());
+    for (const Fruit& f : result.fruits) {
+      REQUIRE(f.body);
+      double off = 1.0, size = 0.0;
+      for (const Sphere& s : test::kThreeFruit) {
+        const double distance = (f.body->center - s.center).norm();
+        if (distance < off) off = distance, size = volume(Ellipsoid(s));
+      }
+      const double stated = std::sqrt(f.body->center_covariance.trace());
+      CHECK(off < 3.0 * stated);
+      CHECK(std::abs(f.body->volume - size) < 3.0 * f.body->volume_error);
+      CHECK(f.body->mass_error >= f.body->mass * f.body->volume_error / f.body->volume);
+      CHECK((stated > 0.005) == told);
+      CHECK((f.body->volume_error > 0.2 * f.body->volume) == told);
+    }
+  }
 }
 
 TEST_CASE("a plant that moved during the scan is told, and counts as an error of its fruit") {

@@ -7,9 +7,11 @@
 /// the flange, then this is the mistake. Points of different views that are near each other and face the same way are
 /// taken for the same surface, and the change is the least-squares solution for their distances along the normals, as
 /// in point-to-plane ICP (Chen & Medioni, Image and Vision Computing 1992), with matches found again after every step.
-/// If they do so only after all views from one on are shifted alike, the plant has moved, or the arm has slipped.
-/// Only fruit count: cameras that look into leaves measure them too deep, from every side. World frame, metres. Cost:
-/// some 10 ms; if the views disagree, some 0.2 s. Defined in `agrisee::agrisee`.
+/// What it makes of a body is told by the ball whose surface is nearest to its points after the change: by how far its
+/// center is from the body's, and by the ratio of its volume to that of the ball which is nearest to the body's surface
+/// in the same directions. If they do so only after all views from one on are shifted alike, the plant has moved, or
+/// the arm has slipped. Only fruit count: cameras that look into leaves measure them too deep, from every side. World
+/// frame, metres. Cost: some 10 ms; if the views disagree, some 0.2 s. Defined in `agrisee::agrisee`.
 #pragma once
 
 #include <agrisee/fuse/body_errors.hpp>
@@ -18,6 +20,13 @@
 #include <vector>
 
 namespace agrisee::fuse {
+
+/// How far a body is off if the calibration is as wrong as it seems. If several changes are as good, one is as likely
+/// as another.
+struct Misplacement {
+  Eigen::Matrix3d shift = Eigen::Matrix3d::Zero();  ///< mean of shift * shift', its center's (m2)
+  double volume = 0.0;                              ///< root mean square of the change of its volume, relative to it
+};
 
 /// How well the views of a scan agree on the fruit with the calibration as it is, and with another.
 struct CalibrationCheck {
@@ -30,6 +39,8 @@ struct CalibrationCheck {
   std::string mistake;
   /// How far the plant moved between two views (m), if that is among the mistakes; else zero.
   Eigen::Vector3d motion = Eigen::Vector3d::Zero();
+  /// What the changes of the calibration among the mistakes do to each body; empty if there is none among them.
+  std::vector<Misplacement> misplaced;
 };
 
 /// Test whether a wrong scale of the depths, distances along the rays in place of depths z, wrong focal lengths, a
