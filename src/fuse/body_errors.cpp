@@ -45,6 +45,12 @@ struct Pull {
   void finish() { residual /= weights; }
 };
 
+/// Where a view has a body, across its sight lines, by its points there.
+struct Aside {
+  double squares = 0.0;   ///< of the distance from where the others have it, less what its patches explain (m2)
+  double measured = 0.0;  ///< number of axes on which that is known
+};
+
 /// What a view's points say of a body.
 struct Share {
   Matrix9 normal_matrix = Matrix9::Zero();           // of the weighted derivatives
@@ -52,8 +58,38 @@ struct Share {
   // From where the reported pose puts the points (m); less the mean of the body's views after center_shifts.
   Eigen::Vector3d shift = Eigen::Vector3d::Zero();
   Pull all;                   // as registered
+  Aside aside;                // as registered
   std::vector<Pull> patches;  // of the points in one direction from the body's center
 };
+
+/// How far the patches of a view have a body aside: the shift for which their residuals are best explained, by weighted
+/// least squares, across the sight lines. Its square is larger than the true one by what else is in the residuals.
+Aside aside_of(const Share& share, double size) {
+  constexpr std::size_t kFew = 8;
+  constexpr double kSteep = 0.05;  // least share of the normals' squares along an axis that tells of a shift
+  if (share.patches.size() < kFew) return {};
+  Eigen::Matrix3d information = Eigen::Matrix3d::Zero(), squares = Eigen::Matrix3d::Zero();
+  Eigen::Vector3d rhs = Eigen::Vector3d::Zero();
+  for (const Pull& patch : share.patches) {
+    const double weight = patch.weights / share.all.weights;
+    const Eigen::Vector3d by_shift = patch.sum.head<3>() / (size * patch.weights);
+    information += weight * by_shift * by_shift.transpose();
+    squares += weight * weight * by_shift * by_shift.transpose();
+    rhs += weight * patch.residual * by_shift;
+  }
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(information);
+  if (!(solver.eigenvalues()[0] > kSteep)) return {};
+  const Eigen::Matrix3d inverse = information.inverse();
+  const Eigen::Vector3d shift = inverse * rhs, ahead = share.normal.normalized();
+  double left = 0.0;
+  for (const Pull& patch : share.patches)
+    left += patch.weights / share.all.weights *
+            std::pow(patch.residual - shift.dot(patch.sum.head<3>()) / (size * patch.weights), 2);
+  const auto count = static_cast<double>(share.patches.size());
+  const Eigen::Matrix3d covariance = left * count / (count - 3.0) * inverse * squares * inverse;
+  return {shift.squaredNorm() - std::pow(shift.dot(ahead), 2) - covariance.trace() + ahead.dot(covariance * ahead),
+          2.0};
+}
 
 std::optional<Share> share_of(const Ellipsoid& body, const RegisteredView& view, const FitParameters& parameters) {
   const sensor::SurfaceImage& image = *view.image;
@@ -87,6 +123,7 @@ std::optional<Share> share_of(const Ellipsoid& body, const RegisteredView& view,
     patch.finish();
     out.patches.push_back(patch);
   }
+  out.aside = aside_of(out, size);
   return out;
 }
 
@@ -124,6 +161,16 @@ double pose_variance(const std::vector<std::vector<Share>>& shares) {
          });
 }
 
+/// Variance, along an axis across the sight lines, of where the views have a body (m2).
+double aside_variance(const std::vector<std::vector<Share>>& shares) {
+  double squares = 0.0, measured = 0.0;
+  for (const auto& of_body : shares) {
+    const auto views = static_cast<double>(of_body.size());
+    for (const Share& s : of_body) squares += s.aside.squares, measured += s.aside.measured * (views - 1.0) / views;
+  }
+  return measured > 0.0 ? std::max(0.0, squares / measured) : 0.0;
+}
+
 /// Variance of the mean residuals of the patches about those of their views (m2).
 double patch_variance(const std::vector<std::vector<Share>>& shares) {
   double squares = 0.0, count = 0.0;
@@ -154,6 +201,7 @@ struct Variances {
   double of_poses = 0.0;    ///< of the reported poses along an axis
   double of_patches = 0.0;  ///< of the mean residuals of patches about those of their views
   double of_shifts = 0.0;   ///< of the shifts of registration along an axis
+  double aside = 0.0;       ///< of where the registered views have a body, across their sight lines, along an axis
   double flattened = 0.0;   ///< of a surfel by smoothing, the same in all views
 };
 
@@ -171,6 +219,12 @@ BodyErrors errors_of(const Ellipsoid& body, const std::vector<Share>& shares, co
   const double of_views =
       kUnseen * variances.of_views + kLeftOfPoses / static_cast<double>(shares.size()) * variances.of_poses;
   for (const Share& s : shares) scatter += of_views * certainty * certainty * s.all.sum * s.all.sum.transpose();
+  for (const Share& s : shares) {
+    const Eigen::Vector3d ahead = s.normal.normalized();
+    const Eigen::Matrix<double, 9, 3> by_shift = s.normal_matrix.leftCols<3>() / size;
+    scatter += variances.aside * certainty * certainty *
+               (by_shift * by_shift.transpose() - by_shift * ahead * (by_shift * ahead).transpose());
+  }
   for (const Share& s : shares)
     for (const Pull& patch : s.patches)
       scatter += variances.of_patches * certainty * certainty * patch.sum * patch.sum.transpose();
@@ -201,8 +255,12 @@ std::vector<BodyErrors> body_errors(const std::vector<Ellipsoid>& bodies, const 
   std::vector<BodyErrors> out(bodies.size());
   if (measured.empty()) return out;
   const double of_poses = pose_variance(measured);
-  const Variances variances{std::max(0.0, shared_variance(measured) - of_poses), of_poses, patch_variance(measured),
-                            shift_variance(measured), flattened_variance(views)};
+  const Variances variances{std::max(0.0, shared_variance(measured) - of_poses),
+                            of_poses,
+                            patch_variance(measured),
+                            shift_variance(measured),
+                            aside_variance(measured),
+                            flattened_variance(views)};
   for (std::size_t b = 0; b < bodies.size(); ++b)
     if (!shares[b].empty()) out[b] = errors_of(bodies[b], shares[b], variances, parameters);
   return out;

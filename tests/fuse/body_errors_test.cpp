@@ -155,6 +155,38 @@ TEST_CASE("centers are as far off as errors say that only neighboring points sha
   CHECK(variances / squares < 3.0);
 }
 
+TEST_CASE("centers are as far off as poses that are wrong in all directions, and were not put right") {
+  for (const double error : {0.0, 0.0005, 0.001}) {
+    double squares = 0.0, variances = 0.0, of_volumes = 0.0, volumes = 0.0;
+    constexpr int kScans = 80;
+    for (int k = 0; k < kScans; ++k) {
+      Scan scan = scan_of_ball(6, 0.0, 0.0002, static_cast<unsigned>(k));
+      std::mt19937 random(static_cast<unsigned>(k));
+      std::normal_distribution<double> normal(0.0, error > 0.0 ? error : 1e-9);
+      std::size_t next = 0;
+      for (sensor::SurfaceImage& image : scan.images) {
+        const Eigen::Vector3f off(float(normal(random)), float(normal(random)), float(normal(random)));
+        for (Eigen::Vector3f& p : image.points) scan.cloud.points[next++] = p += off;
+      }
+      const EllipsoidFit fit = fit_of(scan, static_cast<int>(scan.cloud.size()));
+      const BodyErrors errors = body_errors({fit.body}, scan.views, {})[0];
+      squares += (fit.body.center - kCenter).squaredNorm() / kScans;
+      variances += errors.center.trace() / kScans;
+      volumes += std::pow(volume(fit.body) / volume(Ellipsoid(Sphere{kCenter, kRadius})) - 1.0, 2) / kScans;
+      of_volumes += errors.volume * errors.volume / kScans;
+    }
+    INFO(error << ": errors of " << 1e3 * std::sqrt(squares) << " mm, predicted " << 1e3 * std::sqrt(variances)
+               << " mm; " << std::sqrt(volumes) << ", predicted " << std::sqrt(of_volumes));
+    if (error > 0.0) {
+      CHECK(variances / squares > 0.8);
+      CHECK(variances / squares < 3.0);
+      CHECK(of_volumes / volumes > 0.8);
+    } else {
+      CHECK(std::sqrt(variances) < 0.00012);  // views that agree leave hardly any error
+    }
+  }
+}
+
 TEST_CASE("more views with errors of their own make a center more certain; more points of the same views do not") {
   const double few = errors_of(scan_of_ball(6, 0.0006, 0.0001, 1)).trace();
   const double many = errors_of(scan_of_ball(24, 0.0006, 0.0001, 1)).trace();

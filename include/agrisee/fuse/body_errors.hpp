@@ -10,11 +10,13 @@
 /// errors (Liang & Zeger, Biometrika 1986). An error that is the same in all views causes no disagreement; half of the
 /// variance of an L515's correlated noise is of this kind, so the variance is doubled. Errors that only points near
 /// each other share are propagated in the same way, patch by patch of 15 degrees; their variance is that of the mean
-/// residuals of the patches about that of their view. Two terms are added: the scatter of the registration's shifts,
-/// divided by the number of views (to centers), and what is the same in all views: uneven skin, and steep surfaces that
-/// smoothing flattens, more so the more noise there is. Volumes change most if the whole surface is flattened at once,
-/// which is added as well. A body that only one or two views show takes over the variances of the others. Metres,
-/// world.
+/// residuals of the patches about that of their view. Where the pose of a view was wrong across its sight lines and
+/// registration did not put it right, the patches of the view are off as by one shift of the body: the mean square of
+/// that shift, less what the patches' other errors explain of it, is propagated as well. Two terms are added: the
+/// scatter of the registration's shifts, divided by the number of views (to centers), and what is the same in all
+/// views: uneven skin, and steep surfaces that smoothing flattens, more so the more noise there is. Volumes change most
+/// if the whole surface is flattened at once, which is added as well. A body that only one or two views show takes over
+/// the variances of the others. Metres, world.
 #pragma once
 
 #include <agrisee/cloud/fit.hpp>
