@@ -261,6 +261,7 @@ void FusedViews::start_again(const std::vector<std::size_t>& views, Change& chan
   measured_.clear();
   for (std::size_t v = 0; v < views_.size(); ++v) {
     views_[v].discarded |= views_[v].points_in > 0;
+    if (!images_[v].depth.empty()) seen_.at(v).depth = std::move(images_[v].depth);
     images_[v] = {};
     images_[v].world_T_optical = views_[v].reported;
   }
@@ -289,8 +290,9 @@ void FusedViews::add(sensor::SurfaceImage image, std::size_t id, std::vector<Eig
   }
   image.points = std::move(points);
   image.normals = std::move(normals);
-  image.sigma = {};
+  image.sigma = std::vector<float>();  // = {} would keep the memory
   images_[id] = std::move(image);
+  seen_.at(id).depth = std::vector<float>();  // images_ has them
 }
 
 /// Count the views that looked through each surfel. A surfel that has hardly moved since it was counted is only

@@ -78,8 +78,8 @@ class FusedViews : public Views {
   std::vector<Taken> views_;
   std::vector<Returned> measured_;                    // one a view: what it measures of what later ones show
   std::vector<sensor::SurfaceImage> images_;          // what each view saw; of discarded ones only the pose
-  std::map<std::size_t, sensor::SurfaceImage> seen_;  // all of it, by number, at the reported poses; of skipped views
-                                                      // nothing
+  std::map<std::size_t, sensor::SurfaceImage> seen_;  // all of it, by number, at the reported poses; the depths of
+                                                      // views in the map are in images_; of skipped views nothing
 };
 
 }  // namespace agrisee::fuse
