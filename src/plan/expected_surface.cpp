@@ -269,13 +269,18 @@ void ExpectedSurface::sample_bodies(const Progress& progress, const fuse::FreeSp
 }
 
 void ExpectedSurface::sample_unknown_space(const Aabb& cloud) {
+  constexpr std::size_t kEvery = 8;  // far from fruit one voxel stands for so many
   const double area = parameters_.unknown_weight * known_.edge() * known_.edge();
+  std::size_t far = 0;
   known_.for_each_unknown([&](const Eigen::Vector3d& p) {
     double nearest = std::numeric_limits<double>::infinity();
     for (const FoundBody& b : bodies_)
       if (believed(b)) nearest = std::min(nearest, (p - b.fit.body.center).norm() - b.fit.body.mean_radius());
     if (bodies_.empty() && cloud.distance(p) < parameters_.neighborhood) nearest = 0.0;
-    if (nearest >= 0.0 && nearest <= parameters_.neighborhood) add_sample(p, Eigen::Vector3d::Zero(), area, -1);
+    if (nearest >= 0.0 && nearest <= parameters_.neighborhood)
+      add_sample(p, Eigen::Vector3d::Zero(), area, -1);
+    else if (nearest > 0.0 && parameters_.elsewhere > 0.0 && far++ % kEvery == 0)
+      add_sample(p, Eigen::Vector3d::Zero(), double(kEvery) * parameters_.elsewhere * area, -1);
   });
 }
 

@@ -18,6 +18,7 @@ inline ExpectedSurfaceParameters bare(int samples = 200) {
   p.samples = samples;
   p.cover_radius = 1e-6;
   p.neighborhood = 0.0;
+  p.elsewhere = 0.0;
   return p;
 }
 

@@ -3,6 +3,7 @@
 // Coordinates are sums of powers of two, so that borders are met exactly.
 #include <agrisee/plan/expected_surface.hpp>
 
+#include <algorithm>
 #include <numeric>
 
 #include "plan/plan_cases.hpp"
@@ -20,6 +21,7 @@ ExpectedSurfaceParameters parameters() {
   ExpectedSurfaceParameters p;
   p.voxel = kVoxel;
   p.neighborhood = 100.0;
+  p.elsewhere = 0.0;
   p.unknown_weight = 4.0;
   return p;
 }
@@ -153,6 +155,11 @@ TEST_CASE("unknown space: without fruit, voxels nearer to the cloud than the nei
   CHECK(model.areas() == std::vector<float>(93, float(kArea)));
   model = model_of(scan_of({middle, middle - Vector3d(kVoxel, 0, 0)}), volume, p);
   CHECK(model.areas().size() == 93 + 25);  // the layer through the middle (y^2 + z^2 < 9) counts twice
+  p.elsewhere = 0.25;                      // of the 419 others one in eight counts for all of them
+  const std::vector<float> areas = model_of(scan_of({middle}), volume, p).areas();
+  CHECK(std::count(areas.begin(), areas.end(), float(kArea)) == 93);
+  CHECK(std::count(areas.begin(), areas.end(), float(8 * 0.25 * kArea)) == 53);
+  CHECK(areas.size() == 93 + 53);
   p.neighborhood = 100.0;
   CHECK(model_of(scan_of({middle}), volume, p).areas().size() == 512);
   CHECK(model.bodies().empty());

@@ -683,6 +683,7 @@ class GainExpectedParameters:
     cover_radius: float
     voxel: float
     neighborhood: float
+    elsewhere: float
     unknown_weight: float
     least_confidence: float
     missed_factor: float
