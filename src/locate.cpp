@@ -197,6 +197,12 @@ bool is_part(const Cloud& cloud, const Grid<float>& grid, const Labels& labels, 
          surface_beyond(cloud, grid, labels, label, ellipsoid_of(body)) > kPart;
 }
 
+/// Whether a body is large and several views have seen too little of it: then it is a leaf that bulges, not a fruit.
+bool hardly_seen(const Body& body, const BodyParameters& bodies, double least_seen) {
+  constexpr double kLarge = 0.5;  // of the largest expected radius
+  return body.completeness < least_seen && body.radii.mean() > kLarge * bodies.radius_max;
+}
+
 /// The radius of a fruit (m), roughly where no body was fitted.
 double radius_of(const Fruit& fruit) { return fruit.body ? fruit.body->radii.mean() : fruit.sigma.norm(); }
 
@@ -288,7 +294,7 @@ Eigen::Vector3d cluster_origin(const Aabb& volume, const Eigen::Vector3d& robot)
 }
 
 std::vector<Fruit> locate(const Cloud& cloud, const Split& split, const Eigen::Vector3d& cluster_origin,
-                          const Parameters& parameters, Labels& labels, const IsFree& is_free) {
+                          const Parameters& parameters, Labels& labels, const IsFree& is_free, double least_seen) {
   auto members = indices_by_label(split.labels);
   members.resize(split.found.size());
   Labels with_joined = split.labels;
@@ -301,8 +307,9 @@ std::vector<Fruit> locate(const Cloud& cloud, const Split& split, const Eigen::V
     if (members[f].empty()) continue;
     Fruit fruit = fruit_of(cloud, with_joined, members[f], split.found[f], surfaces[f] ? &*surfaces[f] : nullptr,
                            cluster_origin, parameters);
-    if (grid && fruit.body && !split.found[f].by_mask &&
-        is_part(cloud, *grid, with_joined, static_cast<int>(f) + 1, *fruit.body))
+    if (fruit.body && !split.found[f].by_mask &&
+        (hardly_seen(*fruit.body, parameters.split.bodies, least_seen) ||
+         (grid && is_part(cloud, *grid, with_joined, static_cast<int>(f) + 1, *fruit.body))))
       continue;
     fruits.push_back(std::move(fruit));
     source.push_back(f);

@@ -53,6 +53,12 @@ bool has_one_viewpoint(const CloudOrigin& origin) { return origin.viewpoint && o
 /// Whether all points are known to be seen from one place.
 bool is_one_view(const CloudOrigin& origin) { return has_one_viewpoint(origin) || origin.sensors.size() == 1; }
 
+/// Whether views from several sides show each fruit. A cloud of which nothing is known counts as merged from many.
+bool is_several_views(const CloudOrigin& origin) {
+  constexpr std::size_t kSeveral = 3;
+  return origin.sensors.empty() ? !origin.viewpoint : origin.sensors.size() >= kSeveral;
+}
+
 /// Evidence of free space from the points of a cloud; empty where no body asks for it, or no sensor's place is known.
 /// @param noise standard deviation (m) of the points about their own surface
 SeenThrough free_space_of(const Cloud& cloud, const Parameters& parameters, const CloudOrigin& origin, double noise) {
@@ -291,8 +297,11 @@ ScanResult process(Cloud&& cloud, const Parameters& parameters, const CloudOrigi
     result.warnings.push_back("color_prior.enabled is true, but no view has a color image, so it changes nothing");
 
   // Locate: centroids, pose frames, fitted bodies.
+  constexpr double kLeastSeen = 0.2;  // of 1167 fruit in scans of several views the least was 0.36
+  const double least_seen = is_several_views(origin) ? kLeastSeen : 0.0;
   timed(t.locate, [&] {
-    result.fruits = locate(result.cloud, found, result.cluster_origin, fitted, result.labels, origin.is_free);
+    result.fruits =
+        locate(result.cloud, found, result.cluster_origin, fitted, result.labels, origin.is_free, least_seen);
   });
   if (parameters.split.fit_bodies &&
       result.bodies.taken > result.fruits.size()) {  // the rest are parts of larger things

@@ -362,6 +362,17 @@ TEST_CASE("fruit of different sizes in a cloud of merged views are measured each
   }
 }
 
+TEST_CASE("of a large fruit several views see more than a little") {
+  Cloud cloud;
+  constexpr double kRadius = 0.045;
+  const Eigen::Vector3d center(0.0, 0.5, 0.2);
+  test::add_sphere(cloud, {center, kRadius}, 0.002, [](const Eigen::Vector3d& d) { return d.y() < -0.7; });
+  CHECK(process(cloud).fruits.empty());
+  CloudOrigin origin;
+  origin.viewpoint = center - Eigen::Vector3d(0.0, 0.4, 0.0);
+  CHECK(process(cloud, {}, origin).fruits.size() == 1);
+}
+
 TEST_CASE("a cloud's own noise widens its neighborhoods") {
   for (const double sigma : {0.0, 0.001, 0.002}) {
     const Cloud cloud = seen(sigma);
