@@ -126,6 +126,10 @@ void print(const std::vector<study::RipenessMetrics>& fruits) {
 }
 
 void print(const study::Metrics& m) {
+  if (m.n_real == 0) {
+    std::cout << "Fruit: none in the scene, " << m.n_det << " found\n";
+    return;
+  }
   std::ostringstream out;
   out << std::fixed << std::setprecision(1);
   const auto percent = [&](double x) -> std::ostream& { return out << 100.0 * x << " %"; };

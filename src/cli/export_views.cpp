@@ -95,7 +95,7 @@ class ScanFrames {
   /// @param scene where the scene is now; empty: where it was
   ScanFrames(const fs::path& folder, const std::string& scene)
       : folder_(folder), task_(io::read_scan_task(folder / "scan.json")) {
-    const std::string path = scene.empty() ? task_.scene : scene;
+    const std::string path = scene.empty() ? task_.scene : scene_file(scene);
     if (scene.empty() && !fs::exists(path))
       throw FileError(path + ": no such file; name the scene of the scan with --scene");
     scene_ = io::read_scene(path);
@@ -183,7 +183,7 @@ void add_export_views(CLI::App& app, Run& run) {
   auto options = std::make_shared<ExportOptions>();
   command->add_option("result", options->result, "result folder of a scan")->required();
   command->add_option("-o,--output", options->output, "folder for views.yaml and the images")->required();
-  command->add_option("--scene", options->scene, "scene of the scan, if its file was moved");
+  command->add_option("--scene", options->scene, "scene of the scan (file or folder), if it was moved");
   command->add_flag("--npy", options->npy, "write depth as NPY with floats (exact), not as PNG in steps of 0.1 mm");
   command->add_flag("--force", options->force, "overwrite recorded views and images");
   command->footer(
