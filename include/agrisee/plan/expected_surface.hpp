@@ -101,8 +101,8 @@ class ExpectedSurface {
   void collect_samples(const Progress& progress, const fuse::FreeSpaceParameters& free_space);
   /// Add samples of each fruit's unseen surface; counts the covered surface.
   void sample_bodies(const Progress& progress, const fuse::FreeSpaceParameters& free_space);
-  /// Add a sample for each unknown voxel near the fruit, or near the cloud when no fruit has been found, and for some of
-  /// the others.
+  /// Add a sample for each unknown voxel near the fruit, or near the cloud when no fruit has been found, and for some
+  /// of the others.
   void sample_unknown_space(const Aabb& cloud);
   void add_sample(const Eigen::Vector3d& point, const Eigen::Vector3d& normal, double area, int body);
   /// Whether a point (m) lies inside another fruit than `own`.
