@@ -15,8 +15,8 @@ struct ExpectedSurfaceParameters {
   int samples = 320;               ///< number of samples of a body's surface
   double cover_radius = 0.005;     ///< a sample is covered if a point is at most this far from it (m)
   double voxel = 0.015;            ///< edge of the voxels of unknown space (m)
-  double neighborhood = 0.06;      ///< unknown space counts in full if it is at most this far from a fruit's surface (m)
-  double elsewhere = 0.3;          ///< unknown space that is farther from all fruit counts by this factor
+  double neighborhood = 0.06;  ///< unknown space counts in full if it is at most this far from a fruit's surface (m)
+  double elsewhere = 0.3;      ///< unknown space that is farther from all fruit counts by this factor
   /// Fruit surface expected behind the face of an unknown voxel, as a share of the face. Merged raw points prove no
   /// space empty: with them all voxels stay unknown, and only the view budget ends a scan, unless this is 0.
   double unknown_weight = 0.03;
