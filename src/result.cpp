@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <agrisee/core/error.hpp>
 #include <agrisee/core/median.hpp>
+#include <agrisee/geometry/aabb.hpp>
 #include <agrisee/result.hpp>
 
 #include <algorithm>
@@ -15,6 +16,14 @@ std::string listed(const std::vector<std::string>& parts) {
   for (std::size_t i = 0; i < parts.size(); ++i)
     out += (i == 0 ? "" : i + 1 < parts.size() ? ", " : " and ") + parts[i];
   return out;
+}
+
+/// A question about the unit of a ready cloud that is larger than a plant; empty for others.
+std::string doubt_of_unit(const ScanResult& result) {
+  constexpr double kPlant = 3.0;  // m
+  if (!result.views.empty()) return "";
+  const double across = bounding_box(result.raw.points).size().norm();
+  return across > kPlant ? ". The cloud is " + metres(across) + " across: are its coordinates in metres?" : "";
 }
 
 /// That no view saw anything inside the scan volume, and why, as far as depths and distances tell.
@@ -89,7 +98,7 @@ std::string why_no_fruit(const ScanResult& result) {
   if (result.cloud.empty()) return "cleaning left none of " + std::to_string(result.raw.size()) + " points";
   const BodyCounts& n = result.bodies;
   if (n.taken == 0 && n.rejected() == 0)
-    return "no round surface was found in " + std::to_string(result.cloud.size()) + " points";
+    return "no round surface was found in " + std::to_string(result.cloud.size()) + " points" + doubt_of_unit(result);
   std::vector<std::string> parts;
   const auto add = [&](std::size_t count, const char* what) {
     if (count > 0) parts.push_back(std::to_string(count) + " " + what);
@@ -103,7 +112,7 @@ std::string why_no_fruit(const ScanResult& result) {
   add(n.doubtful, "too unlike a fruit, as scraps of leaves are (see min_confidence)");
   add(n.overlapping, "inside another");
   add(n.not_fitted, "that no ellipsoid fits");
-  return "none of the surfaces that might be fruit is one: " + listed(parts);
+  return "none of the surfaces that might be fruit is one: " + listed(parts) + doubt_of_unit(result);
 }
 
 }  // namespace agrisee

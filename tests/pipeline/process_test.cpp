@@ -251,6 +251,10 @@ TEST_CASE("a result without fruit says why") {
   REQUIRE(flat.fruits.empty());
   CHECK(flat.bodies.too_flat >= 1);
   CHECK(why_no_fruit(flat).find("too flat") != std::string::npos);
+  CHECK(why_no_fruit(flat).find("are its coordinates in metres?") == std::string::npos);
+  for (auto& p : stem.points) p *= 39.37f;
+  CHECK(why_no_fruit(process(stem)).find("The cloud is 6.17 m across: are its coordinates in metres?") !=
+        std::string::npos);
 }
 
 TEST_CASE("where no view saw the scan volume, the depths and distances say why") {
