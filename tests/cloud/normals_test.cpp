@@ -204,7 +204,9 @@ TEST_CASE("normals without views turn outwards on fruit between leaves") {
     const double radius = rng.uniform(0.01, 0.03);
     cases::Points<double> points;
     std::vector<Eigen::Vector3d> truth;
-    const auto noise = [&] { return 0.0007 * Eigen::Vector3d(rng.normal(), rng.normal(), rng.normal()); };
+    const auto noise = [&]() -> Eigen::Vector3d {
+      return 0.0007 * Eigen::Vector3d(rng.normal(), rng.normal(), rng.normal());
+    };
     for (int i = 0; i < 1200; ++i) {
       const Eigen::Vector3d n = Eigen::Vector3d(rng.normal(), rng.normal(), rng.normal()).normalized();
       if (std::abs(n.z()) > 0.8) continue;  // the leaves hide it
