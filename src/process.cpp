@@ -264,6 +264,7 @@ ScanResult process(Cloud&& cloud, const Parameters& parameters, const CloudOrigi
         [&] { result.cloud = select(result.raw, remove_statistical_outliers(result.raw, parameters.sor, threads)); });
 
   // Split: region growing, DBSCAN on the residual, bodies that compete for the points.
+  const bool sides_guessed = result.cloud.normals.empty() && !origin.viewpoint && origin.sensors.empty();
   const CloudNoise noise = timed(t.normals, [&] { return provide_normals(result.cloud, parameters, origin, threads); });
   timed(t.filter, [&] {
     check_side(result.cloud, parameters, origin, result.warnings);
@@ -275,6 +276,10 @@ ScanResult process(Cloud&& cloud, const Parameters& parameters, const CloudOrigi
   // views are merged, they differ by the errors of the views.
   const double alike = is_one_view(origin) ? 5.0 : 1.0;
   bodies.fit.sensor_noise = std::max(bodies.fit.sensor_noise, alike * noise.points);
+  // Hollow leaves were turned outwards, too. On simulated plants 415 of 416 fruit have more, in real trees few leaves
+  // do.
+  constexpr double kSure = 0.8;
+  if (sides_guessed) bodies.min_confidence = std::max(bodies.min_confidence, kSure);
   const bool unknown = !(noise.points > 0.0) && has_one_viewpoint(origin);  // its normals came with the cloud
   bodies.point_noise = std::max(bodies.point_noise, unknown ? point_noise(result.cloud, parameters) : noise.points);
   bodies.normal_noise = std::max(bodies.normal_noise, 1.2 * noise.normals);

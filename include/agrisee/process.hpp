@@ -66,7 +66,8 @@ void check_units(const Cloud& cloud, const Parameters& parameters = {});
 /// Points that are not finite are dropped, and so are several at the origin, or any at a sensor, where cameras put
 /// pixels without return; the result then has a warning. The cloud's own normals are kept; with `origin.check_normals`,
 /// those that face away from their sensor are turned. Missing normals are estimated and turned towards the sensors or
-/// the viewpoint; without either, so that they face outwards where the surface bulges, and neighbors agree elsewhere.
+/// the viewpoint; without either, so that they face outwards where the surface bulges, and neighbors agree elsewhere;
+/// then bodies need a confidence of 0.8, as hollow leaves bulge as well.
 /// If normals had to be estimated, bodies are fitted with the local noise of the cloud
 /// (`split.bodies.fit.sensor_noise`), for a single view with five times that, because its errors are correlated beyond
 /// the neighborhood in which they can be told from the surface. Any number of points is accepted; too few to form a

@@ -366,6 +366,26 @@ TEST_CASE("fruit of different sizes in a cloud of merged views are measured each
   }
 }
 
+TEST_CASE("where the side of the normals is a guess, only sure bodies are fruit") {
+  std::size_t unsure = 0;
+  for (std::uint64_t seed = 0; seed < 20; ++seed) {  // scraps of some 9 mm
+    Rng rng(seed);
+    Cloud cloud, bare;
+    for (int i = 0; i < 90; ++i) {
+      const Eigen::Vector3d n = rng.direction(), noise(rng.normal(), rng.normal(), rng.normal());
+      const Eigen::Vector3d tilt(rng.normal(), rng.normal(), rng.normal());
+      if (n.y() > 0.0) continue;
+      cloud.points.push_back((Eigen::Vector3d(0.0, 0.5, 0.2) + 0.009 * n + 0.0006 * noise).cast<float>());
+      cloud.normals.push_back((n + 0.25 * tilt).normalized().cast<float>());
+    }
+    bare.points = cloud.points;
+    const ScanResult known = process(cloud), guessed = process(bare);
+    for (const Fruit& f : guessed.fruits) CHECK(f.body->confidence >= 0.8);
+    for (const Fruit& f : known.fruits) unsure += f.body->confidence < 0.8;
+  }
+  CHECK(unsure > 0);  // so 0.8 matters
+}
+
 TEST_CASE("of a large fruit several views see more than a little") {
   Cloud cloud;
   constexpr double kRadius = 0.045;
