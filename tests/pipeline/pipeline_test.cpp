@@ -19,7 +19,7 @@ namespace {
 Workcell cell() {
   Workcell w = test::three_fruit_cell();
   w.keep_out.push_back({"platform", Box{{0, -0.1, -0.06}, {0.7, 0.7, 0.1}}});
-  w.keep_out.push_back({"plant", Box{{0, 0.85, 0.3}, {1.2, 0.5, 1.6}}});
+  w.keep_out.push_back({"plant", Box{{0, 0.87, 0.3}, {1.2, 0.5, 1.6}}});
   w.keep_out.push_back({"cluster", Cylinder{{0.015, 0.545, 0.21}, 0.30, 0.9}});
   return w;
 }

@@ -116,7 +116,8 @@ TEST_CASE("process: scaled by a power of two with its parameters, nothing but th
   const Cloud cloud = truss();
   for (const bool known : {true, false}) {  // with a viewpoint, and with normals that have to agree with one another
     const ScanResult straight = process(cloud, {}, known ? from(kEye) : CloudOrigin{});
-    REQUIRE(straight.fruits.size() == 4);
+    // A cloud without viewpoint counts as merged from many views, which would have seen more of the fourth.
+    REQUIRE(straight.fruits.size() == (known ? 4 : 3));
     for (const double by : {0x1p-5, 2.0, 0x1p4}) {
       INFO("by " << by << ", viewpoint " << known);
       Cloud larger = cloud;

@@ -19,14 +19,18 @@ namespace agrisee::sensor {
 
 /// The numbers of a CameraInfo, named as in ROS 2.
 struct CameraInfo {
-  std::uint32_t width = 0, height = 0;               ///< of the image (pixels)
-  std::string distortion_model;                      ///< that of `d`
-  std::vector<double> d;                             ///< coefficients of the distortion
-  std::array<double, 9> k{};                         ///< camera matrix of the images as taken, row by row
-  std::array<double, 12> p{};                        ///< projection matrix of rectified images, row by row
-  std::uint32_t binning_x = 0, binning_y = 0;        ///< 0 and 1: none
-  std::uint32_t roi_x_offset = 0, roi_y_offset = 0;  ///< corner of the region of interest (pixels)
-  std::uint32_t roi_width = 0, roi_height = 0;       ///< its size; 0: that of the image
+  std::uint32_t width = 0;         ///< columns of the image (pixels)
+  std::uint32_t height = 0;        ///< rows of the image (pixels)
+  std::string distortion_model;    ///< that of `d`
+  std::vector<double> d;           ///< coefficients of the distortion
+  std::array<double, 9> k{};       ///< camera matrix of the images as taken, row by row
+  std::array<double, 12> p{};      ///< projection matrix of rectified images, row by row
+  std::uint32_t binning_x = 0;     ///< columns that one pixel joins; 0 and 1: none
+  std::uint32_t binning_y = 0;     ///< rows that one pixel joins; 0 and 1: none
+  std::uint32_t roi_x_offset = 0;  ///< left border of the region of interest (pixels)
+  std::uint32_t roi_y_offset = 0;  ///< upper border of the region of interest (pixels)
+  std::uint32_t roi_width = 0;     ///< its width (pixels); 0: that of the image
+  std::uint32_t roi_height = 0;    ///< its height (pixels); 0: that of the image
 };
 
 namespace detail {
