@@ -6,6 +6,7 @@
 #include <agrisee/io/depth_picture.hpp>
 #include <agrisee/io/recorded_views.hpp>
 #include <agrisee/pipeline.hpp>
+#include <agrisee/sensor/in_range.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -63,21 +64,6 @@ ViewSource source_of_yaml(const std::string& path) {
   return out;
 }
 
-/// Distance of what a pixel shows along its ray (m).
-double distance_at(const sensor::DepthFrame& frame, int u, int v) {
-  return double(frame.at(u, v)) * frame.intrinsics.ray(u, v).norm();
-}
-
-/// A frame without what is nearer or farther along the rays than a range (m).
-sensor::DepthFrame in_range(sensor::DepthFrame frame, const Eigen::Vector2d& range) {
-  for (int v = 0; v < frame.intrinsics.height; ++v)
-    for (int u = 0; u < frame.intrinsics.width; ++u) {
-      const double distance = distance_at(frame, u, v);
-      if (!(distance >= range[0] && distance <= range[1])) frame.depth[frame.intrinsics.index(u, v)] = 0.0f;
-    }
-  return frame;
-}
-
 /// The views of an MCAP file.
 ViewSource source_of_mcap(const std::string& path, const RecordingChoice& choice) {
   const auto recorded = std::make_shared<io::McapRecording>(path, choice.mcap);
@@ -88,7 +74,9 @@ ViewSource source_of_mcap(const std::string& path, const RecordingChoice& choice
   }
   out.workcell.sensor.range_min = choice.range->x();
   out.workcell.sensor.range_max = choice.range->y();
-  out.frame = [recorded, range = *choice.range](std::size_t view) { return in_range(recorded->frame(view), range); };
+  out.frame = [recorded, range = *choice.range](std::size_t view) {
+    return sensor::in_range(recorded->frame(view), range[0], range[1]);
+  };
   return out;
 }
 
@@ -107,19 +95,17 @@ bool differ(const sensor::DepthFrame& a, const sensor::DepthFrame& b) {
   return static_cast<double>(off) > kShare * static_cast<double>(shown);
 }
 
-/// Extend what is seen by what a frame shows within kFarthest. @return whether it shows anything
-bool extend_by(const sensor::DepthFrame& frame, const Pose& world_T_optical, Survey& out) {
-  bool any = false;
-  for (int v = 0; v < frame.intrinsics.height; ++v)
-    for (int u = 0; u < frame.intrinsics.width; ++u) {
-      if (!sensor::DepthFrame::valid(frame.at(u, v))) continue;
-      any = true;
-      if (distance_at(frame, u, v) > kFarthest)
-        ++out.farther;
-      else
-        out.seen.extend(world_T_optical * frame.point(u, v).cast<double>());
-    }
-  return any;
+/// Number of pixels of a frame that returned.
+std::size_t returns(const sensor::DepthFrame& frame) {
+  return static_cast<std::size_t>(std::count_if(frame.depth.begin(), frame.depth.end(), sensor::DepthFrame::valid));
+}
+
+/// Extend what is seen by what a frame shows within kFarthest.
+void extend_by(const sensor::DepthFrame& frame, const Pose& world_T_optical, Survey& out) {
+  const sensor::DepthFrame near = sensor::in_range({frame.intrinsics, frame.depth}, 0.0, kFarthest);
+  out.farther += returns(frame) - returns(near);
+  const Aabb seen = io::extent_of(near, world_T_optical);
+  if (!seen.empty()) out.seen.extend(seen.min), out.seen.extend(seen.max);
 }
 
 /// Look at all views; where the scan volume is known, at some are enough.
@@ -132,8 +118,8 @@ Survey survey(const ViewSource& source) {
     sensor::DepthFrame frame = source.frame(i);
     if (!first.depth.empty()) out.changed += frame.depth.size() == first.depth.size() && differ(first, frame);
     out.samples.push_back(fuse::sample_of(frame, source.poses[i]));
-    const bool shows_something = extend_by(frame, source.poses[i], out);
-    if (shows_something && first.depth.empty()) first = std::move(frame);
+    extend_by(frame, source.poses[i], out);
+    if (first.depth.empty() && returns(frame) > 0) first = std::move(frame);
   }
   return out;
 }

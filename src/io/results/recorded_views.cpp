@@ -2,6 +2,7 @@
 #include <agrisee/io/depth_image.hpp>
 #include <agrisee/io/files.hpp>
 #include <agrisee/io/recorded_views.hpp>
+#include <agrisee/sensor/in_range.hpp>
 
 #include <cmath>
 
@@ -82,17 +83,6 @@ void check_scale(const std::string& place, const sensor::DepthFrame& frame, doub
                   format(scale) + " (metres per unit; for an image in millimetres 0.001)");
 }
 
-/// A rectified frame without the depths of points whose distances along the rays the camera does not measure.
-sensor::DepthFrame in_range(sensor::DepthFrame frame, const sensor::DepthCamera& camera) {
-  for (int v = 0; v < frame.intrinsics.height; ++v)
-    for (int u = 0; u < frame.intrinsics.width; ++u) {
-      float& z = frame.depth[frame.intrinsics.index(u, v)];
-      const double distance = double(z) * frame.intrinsics.ray(u, v).norm();
-      if (!(distance >= camera.range_min && distance <= camera.range_max)) z = 0.0f;
-    }
-  return frame;
-}
-
 std::string rows_of(const Pose& pose) {
   check_input(is_rigid(pose), "write_recorded_views: a pose is not rigid");
   std::string out;
@@ -134,7 +124,7 @@ sensor::DepthFrame read_frame(const RecordedViews& recorded, std::size_t number)
     const auto whole = [&](const fs::path& path) { return path.empty() ? path : recorded.folder / path; };
     const ChannelFiles& files = view.channels;
     add_channels(frame, {whole(files.color), whole(files.masks), whole(files.boxes)});
-    return in_range(sensor::rectified(frame, recorded.distortion), camera);
+    return sensor::in_range(sensor::rectified(frame, recorded.distortion), camera.range_min, camera.range_max);
   } catch (const FileError& e) {
     throw FileError(view.place + ": " + e.what());
   }
