@@ -3,18 +3,19 @@
 
 #include <cmath>
 #include <optional>
+#include <utility>
 
 namespace agrisee::fuse::detail {
 namespace {
 
-/// What all views show of a body after a change.
-std::vector<Eigen::Vector3d> points_of(const std::vector<FruitSample>& samples, const CalibrationChange& change,
-                                       std::size_t body) {
-  std::vector<Eigen::Vector3d> out;
+/// What all views show of each body after a change.
+std::vector<std::vector<Eigen::Vector3d>> points_of_bodies(const std::vector<FruitSample>& samples,
+                                                           const CalibrationChange& change, std::size_t bodies) {
+  std::vector<std::vector<Eigen::Vector3d>> out(bodies);
   for (std::size_t v = 0; v < samples.size(); ++v) {
     const PlacedSample view = placed(samples[v], change, v >= change.moved_before);
     for (std::size_t i = 0; i < view.points.size(); ++i)
-      if (samples[v].bodies[i] == body) out.push_back(view.in_world.points[i].cast<double>());
+      out[samples[v].bodies[i]].push_back(view.in_world.points[i].cast<double>());
   }
   return out;
 }
@@ -59,16 +60,16 @@ Ellipsoid where_reported(Ellipsoid body, const std::vector<RegisteredView>& view
 }
 
 /// What changes of the calibration, as likely one as another, make of a body; none if too little of it was compared.
-std::optional<Misplacement> misplaced(const std::vector<FruitSample>& samples,
-                                      const std::vector<CalibrationChange>& changes, const Ellipsoid& body,
-                                      std::size_t number) {
-  const std::vector<Eigen::Vector3d> seen = points_of(samples, {}, number);
+/// @param seen what the views show of it
+/// @param changed what they show after each change
+std::optional<Misplacement> misplaced(const Ellipsoid& body, const std::vector<Eigen::Vector3d>& seen,
+                                      const std::vector<std::vector<Eigen::Vector3d>>& changed) {
   const std::optional<Sphere> as_found = ball_of(on_surface(seen, body));
   if (!as_found) return std::nullopt;
   Misplacement out;
   double told = 0.0, growth = 0.0;
-  for (const CalibrationChange& change : changes) {
-    const std::optional<Sphere> after = ball_of(points_of(samples, change, number));
+  for (const std::vector<Eigen::Vector3d>& points : changed) {
+    const std::optional<Sphere> after = ball_of(points);
     if (!after) continue;
     const Eigen::Vector3d shift = after->center - body.center;
     out.shift += shift * shift.transpose();
@@ -106,11 +107,17 @@ PlacedSample placed(const FruitSample& sample, const CalibrationChange& change, 
 std::vector<Misplacement> misplaced(const std::vector<FruitSample>& samples,
                                     const std::vector<CalibrationChange>& changes, const std::vector<Ellipsoid>& bodies,
                                     const std::vector<RegisteredView>& views) {
+  const auto seen = points_of_bodies(samples, {}, bodies.size());
+  std::vector<std::vector<std::vector<Eigen::Vector3d>>> changed(bodies.size());  // of each body, after each change
+  for (const CalibrationChange& change : changes) {
+    auto points = points_of_bodies(samples, change, bodies.size());
+    for (std::size_t b = 0; b < bodies.size(); ++b) changed[b].push_back(std::move(points[b]));
+  }
   std::vector<std::optional<Misplacement>> each;
   Misplacement mean;
   double told = 0.0;
   for (std::size_t b = 0; b < bodies.size(); ++b) {
-    each.push_back(misplaced(samples, changes, where_reported(bodies[b], views), b));
+    each.push_back(misplaced(where_reported(bodies[b], views), seen[b], changed[b]));
     if (!each.back()) continue;
     mean.shift += each.back()->shift;
     mean.volume += each.back()->volume;
