@@ -50,13 +50,16 @@ constexpr double kSightMargin = 0.12;
 /// Whether one viewpoint is given for all points.
 bool has_one_viewpoint(const CloudOrigin& origin) { return origin.viewpoint && origin.sensors.empty(); }
 
+/// Whether nothing is known of where the points were seen from.
+bool is_unknown(const CloudOrigin& origin) { return !origin.viewpoint && origin.sensors.empty(); }
+
 /// Whether all points are known to be seen from one place.
 bool is_one_view(const CloudOrigin& origin) { return has_one_viewpoint(origin) || origin.sensors.size() == 1; }
 
 /// Whether views from several sides show each fruit. A cloud of which nothing is known counts as merged from many.
 bool is_several_views(const CloudOrigin& origin) {
   constexpr std::size_t kSeveral = 3;
-  return origin.sensors.empty() ? !origin.viewpoint : origin.sensors.size() >= kSeveral;
+  return is_unknown(origin) || origin.sensors.size() >= kSeveral;
 }
 
 /// Evidence of free space from the points of a cloud; empty where no body asks for it, or no sensor's place is known.
@@ -264,7 +267,7 @@ ScanResult process(Cloud&& cloud, const Parameters& parameters, const CloudOrigi
         [&] { result.cloud = select(result.raw, remove_statistical_outliers(result.raw, parameters.sor, threads)); });
 
   // Split: region growing, DBSCAN on the residual, bodies that compete for the points.
-  const bool sides_guessed = result.cloud.normals.empty() && !origin.viewpoint && origin.sensors.empty();
+  const bool sides_guessed = result.cloud.normals.empty() && is_unknown(origin);
   const CloudNoise noise = timed(t.normals, [&] { return provide_normals(result.cloud, parameters, origin, threads); });
   timed(t.filter, [&] {
     check_side(result.cloud, parameters, origin, result.warnings);
@@ -276,8 +279,7 @@ ScanResult process(Cloud&& cloud, const Parameters& parameters, const CloudOrigi
   // views are merged, they differ by the errors of the views.
   const double alike = is_one_view(origin) ? 5.0 : 1.0;
   bodies.fit.sensor_noise = std::max(bodies.fit.sensor_noise, alike * noise.points);
-  // Hollow leaves were turned outwards, too. On simulated plants 415 of 416 fruit have more, in real trees few leaves
-  // do.
+  // Hollow leaves were turned outwards, too. Of 416 fruit on simulated plants 415 have more, of leaves on trees few.
   constexpr double kSure = 0.8;
   if (sides_guessed) bodies.min_confidence = std::max(bodies.min_confidence, kSure);
   const bool unknown = !(noise.points > 0.0) && has_one_viewpoint(origin);  // its normals came with the cloud
@@ -308,8 +310,8 @@ ScanResult process(Cloud&& cloud, const Parameters& parameters, const CloudOrigi
     result.fruits =
         locate(result.cloud, found, result.cluster_origin, fitted, result.labels, origin.is_free, least_seen);
   });
-  if (parameters.split.fit_bodies &&
-      result.bodies.taken > result.fruits.size()) {  // the rest are parts of larger things
+  // What `locate` gave up counts as a part of something larger.
+  if (parameters.split.fit_bodies && result.bodies.taken > result.fruits.size()) {
     result.bodies.too_flat += result.bodies.taken - result.fruits.size();
     result.bodies.taken = result.fruits.size();
   }
