@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <agrisee/cloud/volume.hpp>
 #include <agrisee/core/cancellation.hpp>
 #include <agrisee/core/rigid_pose.hpp>
 #include <agrisee/core/stopwatch.hpp>
@@ -22,6 +21,7 @@
 
 #include "input_checks.hpp"
 #include "scan_doubts.hpp"
+#include "stated_errors.hpp"
 
 namespace agrisee {
 namespace {
@@ -32,12 +32,6 @@ std::unique_ptr<fuse::Views> make_map(const Workcell& workcell, const Parameters
     return std::make_unique<fuse::FusedViews>(workcell.scan_volume, parameters.fusion(), threads);
   const auto filter = parameters.filter_each_view ? std::optional(parameters.sor) : std::nullopt;
   return std::make_unique<fuse::MergedViews>(workcell.scan_volume, parameters.see.min_separation(), filter, threads);
-}
-
-/// Set the standard error of a body's volume (m3), and that of its mass, which follows.
-void set_volume_error(Body& body, double error, const MassParameters& parameters) {
-  body.volume_error = error;
-  body.mass_error = mass_of({body.volume, error}, parameters).error;
 }
 
 /// Whether any pixel of a frame returned.
@@ -166,8 +160,8 @@ ScanResult Pipeline::result() const {
   out.raw = raw();
   const double located = out.seconds.locate;
   timed(out.seconds.locate, [&] {
-    tell_body_errors(out);
-    doubt_calibration(out);
+    state_errors(*map_, parameters_, out.fruits);
+    if (auto doubt = doubt_calibration(*map_, parameters_, out.fruits)) out.warnings.push_back(std::move(*doubt));
   });
   out.completeness = completeness();
   center_on_reported_poses(out);
@@ -278,50 +272,6 @@ void Pipeline::read_masks() {
     if (view.frame->detected) view.masks = fuse::read_masks(view, bodies, parameters_.masks);
   }
   masks_ = fuse::mask_evidence(detected_views(), bodies, parameters_.masks, fuse::MaskOrder::points_first);
-}
-
-/// Tell from how far the views disagree how far centers, volumes and masses of the bodies may be off.
-void Pipeline::tell_body_errors(ScanResult& out) const {
-  std::vector<Body*> bodies;
-  std::vector<Ellipsoid> ellipsoids;
-  for (Fruit& f : out.fruits) {
-    if (!f.body || f.found_by == "mask") continue;  // that of a mask's body is of its outlines
-    bodies.push_back(&*f.body);
-    ellipsoids.push_back(ellipsoid_of(*f.body));
-  }
-  const std::vector<fuse::BodyErrors> errors = map_->body_errors(ellipsoids, parameters_.split.bodies.fit);
-  for (std::size_t i = 0; i < bodies.size(); ++i) {
-    if (errors[i].center.isZero()) continue;
-    Body& body = *bodies[i];
-    body.center_covariance = body.center_covariance_by_shape + errors[i].center;
-    set_volume_error(body, std::hypot(body.volume_error_by_shape, body.volume * errors[i].volume), parameters_.mass);
-  }
-}
-
-/// Warn if the views show the fruit in other places, with the change of the calibration or the motion of the plant that
-/// would make them agree. What the change makes of a fruit counts as an error of it. If the plant moved, so may any
-/// fruit have, and bodies between both places are too small.
-void Pipeline::doubt_calibration(ScanResult& out) const {
-  std::vector<Ellipsoid> bodies;
-  for (const Fruit& f : out.fruits)
-    if (f.body) bodies.push_back(ellipsoid_of(*f.body));
-  const fuse::CalibrationCheck check = map_->check_calibration(bodies);
-  if (auto doubt = doubt_of(check)) out.warnings.push_back(std::move(*doubt));
-  std::size_t number = 0;
-  for (Fruit& f : out.fruits) {
-    if (!f.body) continue;
-    Body& body = *f.body;
-    const std::size_t b = number++;
-    if (!check.misplaced.empty()) {
-      body.center_covariance += check.misplaced[b].shift;
-      set_volume_error(body, std::hypot(body.volume_error, body.volume * check.misplaced[b].volume), parameters_.mass);
-    }
-    if (check.motion.isZero()) continue;
-    constexpr double kSmaller = 0.75;  // of a body's relative volume, per motion in radii: its radius by a quarter
-    const double smaller = kSmaller * body.volume * check.motion.norm() / body.radii.mean();
-    body.center_covariance += check.motion * check.motion.transpose();
-    set_volume_error(body, std::hypot(body.volume_error, smaller), parameters_.mass);
-  }
 }
 
 /// Move the result to where all views together, by their reported poses, put it. What compares bodies with the images

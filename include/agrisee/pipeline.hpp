@@ -144,8 +144,6 @@ class Pipeline {
   void remember(std::shared_ptr<const sensor::DepthFrame> frame, const Pose& world_T_optical);
   bool repeats_last_frame(const sensor::DepthFrame& frame) const;
   plan::Progress progress(const fuse::Change& change) const;
-  void tell_body_errors(ScanResult& out) const;
-  void doubt_calibration(ScanResult& out) const;
   std::vector<fuse::DetectedView> detected_views() const;
   void read_masks();
   void center_on_reported_poses(ScanResult& out) const;
