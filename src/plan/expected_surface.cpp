@@ -14,6 +14,7 @@
 #include <optional>
 
 #include "cloud/searches.hpp"
+#include "plan/body_surface.hpp"
 #include "plan/obstacle_image.hpp"
 
 namespace agrisee::plan {
@@ -66,52 +67,10 @@ bool shows_anything(const Progress& progress) {
          (progress.images.empty() || !progress.images.back().depth.empty());
 }
 
-/// Where a body's surface can be between a point on it (m) and its center (m): at that point, or deeper if sight lines
-/// pass through there. Nothing if they pass through all of the outer half of the way.
-/// @param normal of the surface there, outward
-std::optional<Eigen::Vector3d> carved(const Eigen::Vector3d& surface, const Eigen::Vector3d& normal,
-                                      const Eigen::Vector3d& center, const std::vector<sensor::SurfaceImage>& images,
-                                      const fuse::FreeSpaceParameters& free_space) {
-  constexpr double kLeast = 0.5, kStep = 0.07;  // shares of the way from the center
-  const auto looked_through = [&](const sensor::SurfaceImage& image, const Eigen::Vector3d& p) {
-    if (fuse::sight(image, p, free_space) != Sight::through) return false;
-    // Surface that faces the sensor may mirror its light: a sight line without return proves nothing there.
-    return image.depth[static_cast<std::size_t>(image.cell(p))] > 0.0f ||
-           normal.dot(image.world_T_optical.translation() - p) < 0.0;
-  };
-  for (double share = 1.0; share > kLeast; share -= kStep) {
-    const Eigen::Vector3d p = center + share * (surface - center);
-    if (std::none_of(images.begin(), images.end(), [&](const auto& image) { return looked_through(image, p); }))
-      return p;
-  }
-  return std::nullopt;
-}
-
 /// @throws ParameterError for a field out of its range
 const ExpectedSurfaceParameters& checked(const ExpectedSurfaceParameters& parameters) {
   parameters.check();
   return parameters;
-}
-
-/// Whether a lobe covers a point of a body's ellipsoid (m): surface that stands out from it, up to a quarter of the
-/// radius, and faces outward. A cloud without normals has none.
-/// @param outward unit, from the body's center
-/// @param cover how far from the line through the point the surface may be (m)
-bool is_below_lobe(const Cloud& cloud, const Grid<float>& grid, const Eigen::Vector3d& point,
-                   const Eigen::Vector3d& outward, double radius, float cover) {
-  constexpr float kFarthest = 0.25f, kFaces = 0.5f;  // share of the radius; cosine
-  if (cloud.normals.empty()) return false;
-  const Eigen::Vector3f u = outward.cast<float>();
-  const float half = 0.5f * kFarthest * static_cast<float>(radius);
-  const Eigen::Vector3f middle = point.cast<float>() + half * u;
-  bool found = false;
-  grid.visit(middle, half + cover, [&](Index index, float) {
-    const auto i = static_cast<std::size_t>(index);
-    const Eigen::Vector3f q = cloud.points[i] - middle;
-    const float along = std::clamp(q.dot(u), -half, half);
-    found = found || ((q - along * u).squaredNorm() <= cover * cover && cloud.normals[i].dot(u) > kFaces);
-  });
-  return found;
 }
 
 }  // namespace
