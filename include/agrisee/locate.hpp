@@ -45,9 +45,8 @@ Ellipsoid ellipsoid_of(const Body& body);
 /// @param parameters of all stages
 /// @param labels receives one label per point: the fruit's id, or 0
 /// @param is_free evidence of free space, or empty; it bounds closed surfaces where nothing was seen of them
-/// @param least_seen a body above half of the largest expected radius, of whose surface a smaller share (0..1) was
-/// seen,
-///   is no fruit
+/// @param least_seen a body above half of the largest expected radius is no fruit if a smaller share (0..1) of its
+///   surface was seen
 std::vector<Fruit> locate(const Cloud& cloud, const Split& split, const Eigen::Vector3d& cluster_origin,
                           const Parameters& parameters, Labels& labels, const IsFree& is_free = {},
                           double least_seen = 0.0);

@@ -38,8 +38,7 @@ struct CloudOrigin {
 };
 
 /// Check that a cloud can have been seen from its origin. `process` calls it.
-/// @throws InputError if a sensor is more than 20 m from the cloud (and from `origin.volume`, if that is known), so
-/// that
+/// @throws InputError if a sensor is more than 20 m from the cloud (and from `origin.volume`, if that is known): then
 ///   its position must be in millimetres; if there are sensor positions, but the points have neither views nor normals;
 ///   if there are sensor positions, but none for a point's view; if `origin` has a viewpoint and no sensors, but
 ///   `cloud.views` names more than one view, as correct normals would be turned; if a position is not finite, or a
@@ -67,11 +66,10 @@ void check_units(const Cloud& cloud, const Parameters& parameters = {});
 /// pixels without return; the result then has a warning. The cloud's own normals are kept; with `origin.check_normals`,
 /// those that face away from their sensor are turned. Missing normals are estimated and turned towards the sensors or
 /// the viewpoint; without either, so that they face outwards where the surface bulges, and neighbors agree elsewhere;
-/// then bodies need a confidence of 0.8, as hollow leaves bulge as well.
-/// If normals had to be estimated, bodies are fitted with the local noise of the cloud
-/// (`split.bodies.fit.sensor_noise`), for a single view with five times that, because its errors are correlated beyond
-/// the neighborhood in which they can be told from the surface. Any number of points is accepted; too few to form a
-/// body give no fruit.
+/// then bodies need a confidence of 0.8, as hollow leaves bulge as well. If normals had to be estimated, bodies are
+/// fitted with the local noise of the cloud (`split.bodies.fit.sensor_noise`), for a single view with five times that,
+/// because its errors are correlated beyond the neighborhood in which they can be told from the surface. Any number of
+/// points is accepted; too few to form a body give no fruit.
 ///
 /// A viewpoint is refused if the points contradict it: if more than 3 % of them are hidden behind others
 /// (cloud/hidden_points.hpp), so that they were seen from elsewhere, or if less than a third of the surface that is

@@ -23,10 +23,10 @@ namespace agrisee::fuse {
 struct Surfel {
   Eigen::Vector3f position;  ///< m, world
   Eigen::Vector3f normal;    ///< unit, towards the sensors that saw it
-  float weight =
-      0.0f;         ///< sum of 1 / sigma^2 of its samples (1/m2): the inverse variance of its position along the normal
-  int view = -1;    ///< the view that created it
-  int seen_by = 0;  ///< number of views with a sample
+  /// Sum of 1 / sigma^2 of its samples (1/m2): the inverse variance of its position along the normal.
+  float weight = 0.0f;
+  int view = -1;       ///< the view that created it
+  int seen_by = 0;     ///< number of views with a sample
   int last_view = -1;  ///< the last view with a sample
 };
 

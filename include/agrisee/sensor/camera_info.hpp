@@ -50,9 +50,8 @@ bool all_zero(const List& numbers) {
 
 /// The intrinsics of the images: K, or, of `rectified` images, P. Where a driver that does not rectify leaves P empty,
 /// K stands for it: without distortion both are the same.
-/// @throws InputError for binning or a region of interest, for a size or a matrix that no pinhole has, and for
-/// rectified
-///   images without P of a lens that distorts
+/// @throws InputError for binning or a region of interest, for a size or a matrix that no pinhole has, and for images
+///   without P, though rectified, of a lens that distorts
 inline Intrinsics intrinsics_of(const CameraInfo& info, bool rectified = false) {
   constexpr std::uint32_t kMost = 16384;
   const auto check = detail::check_camera_info;
