@@ -24,8 +24,8 @@ namespace {
 constexpr double kObstacle = 0.003;  // points that may hide fruit are thinned to one in a voxel of this edge (m)
 constexpr double kGrowth = 1.25;     // segment the cloud from scratch when it has grown by this factor
 constexpr double kSmaller = 0.97;    // a fruit hides and contains what an ellipsoid smaller by this factor does
-constexpr double kTrusted =
-    0.003;  // earlier views are taken to have promised, and kept, this share of the fruit surface
+constexpr double kPatience = 0.5;    // what is not surely a fruit counts so much after each view that looked at it
+constexpr double kTrusted = 0.003;   // share of the fruit surface that is taken to have been promised and kept before
 
 /// The merged cloud with estimated normals, each turned towards the view that saw its point: for views that are merged
 /// as raw points.
@@ -82,6 +82,7 @@ ExpectedSurface::ExpectedSurface(const sensor::DepthCamera& sensor, const Aabb& 
 void ExpectedSurface::update(const Progress& progress, const SplitParameters& split_parameters,
                              const fuse::FreeSpaceParameters& free_space) {
   const std::vector<Promise> promised = promises(progress);
+  if (shows_anything(progress)) count_looks(promised);
   read_sight_lines(progress.images, free_space);
   const Labels labels = find_fruit(progress, split_parameters, free_space);
   collect_samples(progress, free_space);
@@ -115,6 +116,7 @@ void ExpectedSurface::read_sight_lines(const std::vector<sensor::SurfaceImage>& 
     known_ = KnownSpace(volume_, parameters_.voxel);
     images_read_.clear();
     bodies_.clear();
+    doubts_.clear();
     tracked_views_ = segmented_at_ = 0;
   }
   for (std::size_t v = images_read_.size(); v < images.size(); ++v) known_.add(images[v], free_space);
@@ -125,9 +127,36 @@ std::vector<ExpectedSurface::Promise> ExpectedSurface::promises(const Progress& 
   std::vector<Promise> out;
   if (progress.views.empty()) return out;
   for_each_shown(progress.views.back().world_T_optical, [&](std::size_t i) {
-    out.push_back({samples_[i].point, samples_[i].body < 0, areas_[i]});
+    out.push_back({samples_[i].point, samples_[i].body, areas_[i]});
   });
   return out;
+}
+
+void ExpectedSurface::count_looks(const std::vector<Promise>& promised) {
+  constexpr double kLook = 0.02;  // of a body's surface
+  std::vector<int> shown(bodies_.size(), 0);
+  for (const Promise& p : promised)
+    if (p.body >= 0) ++shown[static_cast<std::size_t>(p.body)];
+  for (std::size_t b = 0; b < bodies_.size(); ++b) {
+    if (is_sure(bodies_[b]) || shown[b] < kLook * parameters_.samples) continue;
+    const Ellipsoid& body = bodies_[b].fit.body;
+    if (Doubt* const known = doubt_about(body))
+      ++known->looks;
+    else
+      doubts_.push_back({body.center, 1});
+  }
+}
+
+ExpectedSurface::Doubt* ExpectedSurface::doubt_about(const Ellipsoid& body) {
+  const auto same = [&](const Doubt& d) { return (d.center - body.center).norm() < 0.5 * body.mean_radius(); };
+  const auto found = std::find_if(doubts_.begin(), doubts_.end(), same);
+  return found == doubts_.end() ? nullptr : &*found;
+}
+
+double ExpectedSurface::weight_of(const FoundBody& body) {
+  const double weight = std::min(1.0, 2.0 * body.confidence);  // a fruit, if it is more likely one than not
+  const Doubt* const doubt = is_sure(body) ? nullptr : doubt_about(body.fit.body);
+  return doubt ? weight * std::pow(kPatience, doubt->looks) : weight;
 }
 
 void ExpectedSurface::weigh(const std::vector<Promise>& promised, const Cloud& cloud, double measured) {
@@ -139,7 +168,7 @@ void ExpectedSurface::weigh(const std::vector<Promise>& promised, const Cloud& c
   kept_ *= kForget;
   for (const Promise& p : promised) {
     promised_ += measured * double(p.area);
-    if (p.voxel ? known_.has(p.point.cast<double>()) : grid.count(p.point, cover, 1) > 0) kept_ += double(p.area);
+    if (p.body < 0 ? known_.has(p.point.cast<double>()) : grid.count(p.point, cover, 1) > 0) kept_ += double(p.area);
   }
 }
 
@@ -204,8 +233,7 @@ void ExpectedSurface::sample_bodies(const Progress& progress, const fuse::FreeSp
     center_ += body.center / static_cast<double>(bodies_.size());
     for (int side : {-1, 1}) extent_.extend(body.center + Eigen::Vector3d::Constant(side * body.mean_radius()));
     const double r = body.mean_radius();
-    const double weight = std::min(1.0, 2.0 * bodies_[b].confidence);  // a fruit, if it is more likely one than not
-    const double share = weight * 4.0 * kPi * r * r / parameters_.samples;
+    const double share = weight_of(bodies_[b]) * 4.0 * kPi * r * r / parameters_.samples;
     double covered = 0.0;
     for (const Eigen::Vector3d& d : directions) {
       const Eigen::Vector3d p = body.surface(d);

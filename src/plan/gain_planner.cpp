@@ -205,7 +205,8 @@ bool GainPlanner::is_left_out(const ViewRequest& request) const {
 }
 
 double GainPlanner::least_gain() const {
-  return parameters_.min_gain * std::max(model_.area(), 1e-6) / std::max(model_.reliability(), 1e-3);
+  const double one_fruit = 4.0 * kPi * split_.bodies.radius_min * split_.bodies.radius_max;  // of middle size (m2)
+  return parameters_.min_gain * std::max(model_.area(), one_fruit) / std::max(model_.reliability(), 1e-3);
 }
 
 std::optional<ReachableView> GainPlanner::stop(StopReason reason, const Joints& current) {

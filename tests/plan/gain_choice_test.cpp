@@ -211,7 +211,7 @@ TEST_CASE("gain choice: a view that the arm can no longer take is not returned")
 
 TEST_CASE("gain choice: when the arm can take none of the views that were worth taking, that ends the scan") {
   Game game(12, {Row::view(0, 8), Row::view(0, 6), Row::view(0, 1)});
-  game.row.parameters.min_gain = 3.0 * Row::kArea / 1e-6;
+  game.row.parameters.min_gain = 3.0 * Row::kArea / Row::one_fruit();
   const auto expect_none = [&](double seconds) {
     CHECK(game.next(seconds) == -1);
     CHECK(game.planner->stop_reason() == StopReason::no_reachable_view);
@@ -267,7 +267,7 @@ TEST_CASE("gain choice: when all are refused, the surroundings of those that wer
   std::vector<std::optional<ReachableView>> views(9, Row::view(0, 8));
   views[4] = Row::view(0, 2);  // less than a view is worth
   Game game(12, views);
-  game.row.parameters.min_gain = 3.0 * Row::kArea / 1e-6;
+  game.row.parameters.min_gain = 3.0 * Row::kArea / Row::one_fruit();
   game.planner = game.row.planner();
   double distance = 0.0;  // of the poor one: candidates differ in it, and those around have that of their middle
   const Reach reach = [&](const ViewRequest& r, const Joints& q) {
@@ -381,7 +381,7 @@ TEST_CASE("gain choice: the same as by comparing all views, in random games") {
       views.back()->move_time = 0.25 * i;
     }
     Game game(24, views);
-    game.row.parameters.min_gain = 1.5 * Row::kArea / 1e-6;
+    game.row.parameters.min_gain = 1.5 * Row::kArea / Row::one_fruit();
     const double now = rng.uniform(-2, 2);
     double most = 0.0;
     std::size_t best = 0;

@@ -202,13 +202,13 @@ TEST_CASE("gain planner: the scan ends when the best view promises too small a s
   CHECK(GainPlannerParameters().min_gain == 0.0012);
 }
 
-TEST_CASE("gain planner: without fruit, the smallest gain is a share of a square millimetre") {
+TEST_CASE("gain planner: without fruit, the smallest gain is a share of a fruit of middle size") {
   Row row(8);
   row.parameters.candidates = 2;
   Script script;
   script.views = {Row::view(0, 4), Row::view(0, 3)};
   const auto reason = [&](double least_voxels) {
-    row.parameters.min_gain = least_voxels * Row::kArea / 1e-6;
+    row.parameters.min_gain = least_voxels * Row::kArea / Row::one_fruit();
     const auto planner = row.planner();
     const auto view = planner->next(row.scan.progress(), Joints::Zero(), script.reach());
     CHECK(script.which(view) == (view ? 0 : -1));

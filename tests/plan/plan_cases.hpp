@@ -112,6 +112,11 @@ inline Aabb box(const Vector3d& center, double half) {
 /// fruit. The points of the cloud are no fruit. All numbers are exact.
 struct Row {
   static constexpr double kArea = 0x1p-10;  // of fruit that a voxel stands for (m2)
+  /// The surface (m2) of a fruit of middle size, with which promises are compared while no fruit is known.
+  static double one_fruit() {
+    const BodyParameters bodies;
+    return 4.0 * kPi * bodies.radius_min * bodies.radius_max;
+  }
   Aabb volume;
   GainPlannerParameters parameters;
   Scan scan;

@@ -71,4 +71,38 @@ TEST_CASE("expected surface: older views count less for how far it can be relied
   CHECK(now < 0.9);
 }
 
+TEST_CASE("expected surface: a body of which little is seen counts half with every view that looked at it in vain") {
+  // A tenth of a fruit is known, or a third.
+  const bool little = GENERATE(true, false);
+  const double height = little ? -0.8 : -0.35;
+  const auto front = [&](const Vector3d& d) { return d.y() < height; };
+  ExpectedSurfaceParameters p = bare();
+  p.missed_factor = 1.0;
+  Scan scan;
+  add_fruit(scan, kFruit, front, 0.002);
+  ExpectedSurface model = model_of(scan, p);
+  REQUIRE(model.bodies().size() == 1);
+  REQUIRE(model.bodies()[0].confidence > 0.5);
+  REQUIRE((model.bodies()[0].coverage < 0.25) == little);
+  const double whole = model.area();
+  View behind, past;
+  behind.world_T_optical = look_at(kFruit, {0, 0.885, 0.2});
+  past.world_T_optical = look_along({0, 0.885, 0.2}, Vector3d::UnitY());  // away from the fruit
+  const auto area_after = [&](View view, std::size_t points = 1000) {
+    view.points_in = points;
+    scan.views.push_back(view);
+    model.update(scan.progress(), {}, {});
+    return model.area() / whole;
+  };
+  const double half = little ? 0.5 : 1.0;
+  CHECK(area_after(behind) == Approx(half));
+  CHECK(area_after(past) == Approx(half));
+  CHECK(area_after(behind, 0) == Approx(half));  // a frame without returns says nothing
+  CHECK(area_after(behind) == Approx(half * half));
+  // What is well seen counts in full, however long it was doubted.
+  add_fruit(
+      scan, kFruit, [](const Vector3d& d) { return d.y() > 0.0; }, 0.002);
+  CHECK(area_after(past) == Approx(1.0).epsilon(0.02));
+}
+
 }  // namespace reliability_test

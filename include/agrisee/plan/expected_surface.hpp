@@ -10,9 +10,10 @@
 /// view shows a sample when the sample lies in the image and within the sensor's range, faces the sensor, and no
 /// ellipsoid or other point of the cloud hides it. The area of a sample shrinks with each view that should have shown
 /// it but did not, because the prediction seems to be wrong there. A body with a fruit probability p below one half
-/// counts with the weight 2 p instead of not at all, so that doubtful bodies are looked at. The share of the expected
-/// surface that the last views really showed is the reliability of further expectations. World frame, metres; gains in
-/// m2 of fruit surface.
+/// counts with the weight 2 p instead of not at all, so that doubtful bodies are looked at. What stays doubtful, or
+/// little seen, counts half with every view that looked at it: such bodies are leaves more often than fruit. The share
+/// of the expected surface that the last views really showed is the reliability of further expectations. World frame,
+/// metres; gains in m2 of fruit surface.
 #pragma once
 
 #include <agrisee/cloud/found_body.hpp>
@@ -68,6 +69,8 @@ class ExpectedSurface {
   const Aabb& extent() const { return extent_; }
 
  private:
+  static constexpr double kWellSeen = 0.25;  // coverage from which a believed body is surely a fruit
+
   struct Sample {
     Eigen::Vector3f point, normal;  // m, world; a zero normal marks a voxel, which can be seen from any side
     int body;                       // index of its fruit; -1 for a voxel
@@ -82,12 +85,24 @@ class ExpectedSurface {
   /// A sample that a view was expected to show.
   struct Promise {
     Eigen::Vector3f point;  // m, world
-    bool voxel;             // it stands for unknown space, not for the surface of a body
+    int body;               // index of its fruit when it was promised; -1 for a voxel
     float area;             // m2
+  };
+
+  /// A place where a body was looked at that is not surely one.
+  struct Doubt {
+    Eigen::Vector3d center;  // of the body (m, world)
+    int looks;               // views that were expected to show some of its unseen surface
   };
 
   /// What the last view was expected to show, before it is used.
   std::vector<Promise> promises(const Progress& progress) const;
+  /// Note which bodies that are not surely fruit the last view looked at, before the fruit are found anew.
+  void count_looks(const std::vector<Promise>& promised);
+  /// The doubt about a body; null if it was not looked at.
+  Doubt* doubt_about(const Ellipsoid& body);
+  /// How much the surface of a body counts (0..1): less if it is doubtful, and after views looked at it in vain.
+  double weight_of(const FoundBody& body);
   /// Compare what was expected of a view with the cloud and the space that are known since.
   /// @param measured share (0..1) of the surface before it that the view measured
   void weigh(const std::vector<Promise>& promised, const Cloud& cloud, double measured);
@@ -109,6 +124,8 @@ class ExpectedSurface {
   bool inside_other(const Eigen::Vector3d& point, int own) const;
   /// Whether a body counts as a fruit, and not only as a possible one.
   bool believed(const FoundBody& body) const { return body.confidence >= min_confidence_; }
+  /// Whether a body counts as a fruit, and so much of it was seen that it will stay one.
+  bool is_sure(const FoundBody& body) const { return believed(body) && body.coverage >= kWellSeen; }
 
   /// Calls f(i) for every sample that a view shows, in ascending order.
   template <typename F>
@@ -122,6 +139,7 @@ class ExpectedSurface {
   KnownSpace known_;               // what sight lines have reached
   std::vector<char> images_read_;  // views whose sight lines are marked in `known_`: whether they have some
   std::vector<FoundBody> bodies_;
+  std::vector<Doubt> doubts_;
   double min_confidence_ = 0.0;    // a body is believed from this probability on
   std::size_t segmented_at_ = 0;   // size of the cloud when it was last segmented from scratch
   std::size_t tracked_views_ = 0;  // views of the cloud in which `bodies_` were found

@@ -10,8 +10,8 @@
 /// that the arm last answered for the view, which for most candidates is of an earlier call. The reach of the best
 /// candidates is computed again from the arm's present joints: those that it can no longer take are dropped, and
 /// directions close to theirs are tried as well. The scan ends when the best view promises less than `min_gain` of the
-/// fruit surface known so far. Promises are scaled by ExpectedSurface::reliability, because views among leaves show
-/// less than they promise. World frame, metres, seconds.
+/// fruit surface known so far, or, while there is none, of that of one fruit of middle size. Promises are scaled by
+/// ExpectedSurface::reliability, because views among leaves show less than they promise. World frame, metres, seconds.
 #pragma once
 
 #include <agrisee/plan/expected_surface.hpp>

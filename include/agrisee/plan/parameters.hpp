@@ -44,8 +44,8 @@ struct ExpectedSurfaceParameters {
 
 /// Parameters of GainPlanner.
 struct GainPlannerParameters {
-  int candidates = 4000;  ///< number of views that are compared, in directions all over the sphere; about a tenth of
-                          ///< them can be reached
+  int candidates = 2000;  ///< number of views that are compared, in directions all over the sphere; a tenth to a
+                          ///< quarter of them can be reached
   double spread = 0.6;    ///< how far from the middle of the bodies the views aim, as a share of the way to the border
   double distance = kViewDistance;  ///< distance of the first view from its target (m); with `fixed` and `random`
                                     ///< of all views
@@ -53,7 +53,8 @@ struct GainPlannerParameters {
   double distance_max = 0.55;       ///< longest distance of a view from its target (m)
   double dwell = 20.0;  ///< what a view costs besides the move (s): the default asks for few views; with a slow arm the
                         ///< true 1 to 3 s for settling, exposure and computing ask for shorter moves and more views
-  double min_gain = 0.0012;  ///< the scan ends when the best view promises less than this share of the known surface
+  double min_gain = 0.0012;  ///< the scan ends when the best view promises less than this share of the known surface,
+                             ///< or, while no fruit is known, of that of a fruit of middle size
   ExpectedSurfaceParameters expected;  ///< what a view is expected to show
 
   /// @throws FieldError for the first field that is out of its range
