@@ -14,6 +14,7 @@
 #include <agrisee/locate.hpp>
 #include <agrisee/pick/arm_approach.hpp>
 #include <agrisee/pick/picking.hpp>
+#include <agrisee/pick/surroundings.hpp>
 #include <agrisee/pipeline.hpp>
 #include <agrisee/plan/arm_reach.hpp>
 #include <agrisee/planners.hpp>

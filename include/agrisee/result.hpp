@@ -73,15 +73,16 @@ struct Body {
 /// Whether a fruit can be picked, or what prevents it. Each direction of approach is tested in this order; the reason
 /// is that of the direction that passed most tests.
 enum class PickingReason {
-  reachable,             ///< it can be picked
-  not_tested,            ///< an approach is free, but there is no arm model to ask whether it can be reached
-  no_body,               ///< no body was fitted, so it is unknown where to grip
-  blocked_by_keep_out,   ///< every approach meets a space to keep out of
-  blocked_by_fruit,      ///< every approach meets fruit that cannot be picked first
-  out_of_reach,          ///< no joint angles within the limits put the tool at a pre-grasp pose
-  arm_collision,         ///< the arm would meet a space to keep out of, or itself
-  approach_interrupted,  ///< the arm can stand at a pre-grasp pose but not follow the straight approach
-  arm_meets_fruit        ///< the arm would meet fruit that cannot be picked first
+  reachable,                ///< it can be picked
+  not_tested,               ///< an approach is free, but there is no arm model to ask whether it can be reached
+  no_body,                  ///< no body was fitted, so it is unknown where to grip
+  blocked_by_keep_out,      ///< every approach meets a space to keep out of
+  blocked_by_surroundings,  ///< every approach crosses more than `picking.max_crossed` of what was measured
+  blocked_by_fruit,         ///< every approach meets fruit that cannot be picked first
+  out_of_reach,             ///< no joint angles within the limits put the tool at a pre-grasp pose
+  arm_collision,            ///< the arm would meet a space to keep out of, or itself
+  approach_interrupted,     ///< the arm can stand at a pre-grasp pose but not follow the straight approach
+  arm_meets_fruit           ///< the arm would meet fruit that cannot be picked first
 };
 
 /// Its name, as in fruits.json.
@@ -95,6 +96,8 @@ inline const char* to_string(PickingReason reason) {
       return "no_body";
     case PickingReason::blocked_by_keep_out:
       return "blocked_by_keep_out";
+    case PickingReason::blocked_by_surroundings:
+      return "blocked_by_surroundings";
     case PickingReason::blocked_by_fruit:
       return "blocked_by_fruit";
     case PickingReason::out_of_reach:
@@ -118,6 +121,9 @@ struct Picking {
   Pose world_T_pre_grasp = Pose::Identity();  ///< of the tool, z along `direction`; identity if the fruit has no body
   std::optional<Joints> joints;  ///< at the pre-grasp pose (rad), if it is reachable and the arm model gives them
   std::vector<int> after;        ///< ids of the fruit that are in the way and must be picked first
+  /// Measured surface of stems, leaves, trays and other things that are no fruit in the space that the gripper sweeps
+  /// (m2); zero if the fruit has no body or nothing was measured there.
+  double crossed = 0.0;
 };
 
 /// A located fruit.

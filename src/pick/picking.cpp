@@ -14,6 +14,8 @@ namespace agrisee::pick {
 
 namespace {
 
+constexpr double kNoLimit = 10.0;  // m2: a `max_crossed` from which on there is none
+
 /// A fruit while its picking is being planned.
 struct Candidate {
   std::size_t index = 0;  // in the caller's list
@@ -23,6 +25,7 @@ struct Candidate {
   double depth = 0.0;                       // distance from the robot along the front (m)
   std::vector<KeepOut> keep_out;            // that apply to this fruit
   std::vector<Eigen::Vector3d> directions;  // of approach, best first
+  std::vector<double> crossed;              // surface of the surroundings, one per direction (m2)
   std::vector<PickingReason> verdicts;      // one per direction; `not_tested` as long as other fruit may decide
 };
 
@@ -102,30 +105,49 @@ double seen_score(const SeenDirections& seen, const Eigen::Vector3d& side, doubl
   return weight * covered / cap;
 }
 
-/// Directions of approach to fruit `f`, best first. A direction scores by how far it comes from the robot's side,
-/// across the growth axis, away from the neighbors and towards the observed surface; those near the pedicel are left
-/// out.
-std::vector<Eigen::Vector3d> ranked_directions(const std::vector<Candidate>& all, std::size_t f,
-                                               const Eigen::Vector3d& growth_axis, const SeenDirections* seen,
-                                               const Eigen::Vector3d& robot, const PickingParameters& parameters) {
-  const Eigen::Vector3d front = plan::level_direction(robot, all[f].body.center);
+/// The pieces of the surroundings that are on no fruit.
+std::vector<SurfacePiece> pieces_off(const std::vector<Candidate>& all, const Cloud& surroundings) {
+  std::vector<SurfacePiece> pieces = surface_pieces(surroundings);
+  for (const Candidate& c : all) pieces = pieces_beyond(kRimReach, c.body, pieces);
+  return pieces;
+}
+
+/// What the choice of directions needs to know of a fruit, besides its place among the others.
+struct Sides {
+  Eigen::Vector3d growth_axis;              // unit vector
+  const SeenDirections* seen;               // null: not known
+  const std::vector<SurfacePiece>& pieces;  // of the surroundings
+};
+
+/// Sets the directions of approach to fruit `f`, best first, and what each crosses. A direction scores by how far it
+/// comes from the robot's side, across the growth axis, away from the neighbors, towards the observed surface, and
+/// through little of the surroundings; those near the pedicel are left out.
+void rank_directions(std::vector<Candidate>& all, std::size_t f, const Sides& sides, const Eigen::Vector3d& robot,
+                     const PickingParameters& parameters) {
+  Candidate& c = all[f];
+  const Eigen::Vector3d front = plan::level_direction(robot, c.body.center);
   const std::vector<Neighbor> neighbors = neighbors_of(all, f);
   const std::vector<Eigen::Vector3d> spread = plan::spread_directions(parameters.directions);
-  const double cos_pedicel = std::cos(parameters.pedicel_angle);
+  const std::vector<double> crossed =
+      crossed_surface(pieces_beyond(kOwnReach, c.body, sides.pieces), c.body, spread, parameters);
+  const double section = kPi * std::pow(parameters.gripper_radius, 2), cos_pedicel = std::cos(parameters.pedicel_angle);
   std::vector<std::pair<double, std::size_t>> scores;
   for (std::size_t i = 0; i < spread.size(); ++i) {
     const Eigen::Vector3d &d = spread[i], side = -d;
-    if (parameters.pedicel_angle > 0.0 && side.dot(growth_axis) > cos_pedicel) continue;
-    double score = parameters.front_weight * d.dot(front) - parameters.across_weight * std::pow(d.dot(growth_axis), 2);
+    if (parameters.pedicel_angle > 0.0 && side.dot(sides.growth_axis) > cos_pedicel) continue;
+    double score =
+        parameters.front_weight * d.dot(front) - parameters.across_weight * std::pow(d.dot(sides.growth_axis), 2);
     for (const Neighbor& n : neighbors)
       score -= parameters.away_weight * n.weight * std::pow(std::max(side.dot(n.direction), 0.0), 2);
-    if (seen) score += seen_score(*seen, side, parameters.seen_weight);
+    if (sides.seen) score += seen_score(*sides.seen, side, parameters.seen_weight);
+    if (crossed[i] > 0.0 && section > 0.0) score -= parameters.clear_weight * crossed[i] / section;
     scores.emplace_back(-score, i);
   }
   std::sort(scores.begin(), scores.end());
-  std::vector<Eigen::Vector3d> out;
-  for (const auto& s : scores) out.push_back(spread[s.second]);
-  return out;
+  for (const auto& s : scores) {
+    c.directions.push_back(spread[s.second]);
+    c.crossed.push_back(crossed[s.second]);
+  }
 }
 
 /// The request to approach a fruit along `direction`.
@@ -201,7 +223,7 @@ class PickingRounds {
     std::vector<int> after;
     for (std::size_t j : picked_) {
       others.push_back(all_[j].body);
-      const ApproachAnswer with = try_direction(all_[f], out.direction, others);
+      const ApproachAnswer with = try_direction(all_[f], out.direction, out.crossed, others);
       if (!with.reached || with.reached->joints != out.joints) after.push_back(all_[j].id);
       others.pop_back();
     }
@@ -209,13 +231,16 @@ class PickingRounds {
     return after;
   }
 
-  /// Whether a fruit can be approached along `direction` while `others` are hanging.
-  ApproachAnswer try_direction(const Candidate& c, const Eigen::Vector3d& direction,
+  /// Whether a fruit can be approached along `direction`, which crosses `crossed` (m2) of the surroundings, while
+  /// `others` are hanging.
+  ApproachAnswer try_direction(const Candidate& c, const Eigen::Vector3d& direction, double crossed,
                                const std::vector<OrientedEllipsoid>& others) const {
     const Capsule gripper = swept_gripper(c.body, direction, parameters_);
     const Capsule outside = short_of_center(gripper);
     for (const KeepOut& space : c.keep_out)
       if (overlap(outside, space)) return {std::nullopt, PickingReason::blocked_by_keep_out};
+    if (crossed > parameters_.max_crossed && parameters_.max_crossed < kNoLimit)
+      return {std::nullopt, PickingReason::blocked_by_surroundings};
     for (const OrientedEllipsoid& other : others)
       if (meets(gripper, other)) return {std::nullopt, PickingReason::blocked_by_fruit};
     const ApproachRequest request = request_of(c, direction, others, parameters_);
@@ -232,9 +257,10 @@ class PickingRounds {
       PickingReason reason = c.verdicts[i];
       if (reason == PickingReason::not_tested) {
         throw_if_cancelled();
-        const ApproachAnswer answer = try_direction(c, c.directions[i], others);
+        const ApproachAnswer answer = try_direction(c, c.directions[i], c.crossed[i], others);
         if (answer.reached) {
           out.direction = c.directions[i];
+          out.crossed = c.crossed[i];
           out.world_T_pre_grasp = answer.reached->world_T_pre_grasp;
           out.joints = answer.reached->joints;
           out.reachable = static_cast<bool>(reach_);
@@ -253,6 +279,7 @@ class PickingRounds {
     if (c.directions.empty()) return false;
     const ApproachRequest request = request_of(c, c.directions[farthest], others, parameters_);
     out.direction = request.direction;
+    out.crossed = c.crossed[farthest];
     out.world_T_pre_grasp = look_along(request.start, request.direction);
     return false;
   }
@@ -323,11 +350,12 @@ std::vector<Picking> plan_picking(const std::vector<Fruit>& fruits, const Pickin
   check_scene(fruits, scene);
   std::vector<Candidate> all = sorted_candidates(fruits, scene.keep_out);
   set_depths(all, scene.robot);
+  const std::vector<SurfacePiece> pieces = pieces_off(all, scene.surroundings);
   for (std::size_t i = 0; i < all.size(); ++i) {
     Candidate& c = all[i];
     if (!c.has_body) continue;
     const SeenDirections* seen = scene.seen.empty() ? nullptr : &scene.seen[c.index];
-    c.directions = ranked_directions(all, i, fruits[c.index].orientation.col(2), seen, scene.robot, parameters);
+    rank_directions(all, i, {fruits[c.index].orientation.col(2), seen, pieces}, scene.robot, parameters);
     c.verdicts.assign(c.directions.size(), PickingReason::not_tested);
   }
   return PickingRounds(std::move(all), scene.joints, reach, parameters).plan();

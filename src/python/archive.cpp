@@ -27,7 +27,7 @@ void members(A& a, Body& b) {
 }
 template <typename A>
 void members(A& a, Picking& p) {
-  a(p.order, p.reachable, p.reason, p.direction, p.world_T_pre_grasp, p.joints, p.after);
+  a(p.order, p.reachable, p.reason, p.direction, p.world_T_pre_grasp, p.joints, p.after, p.crossed);
 }
 template <typename A>
 void members(A& a, Ripeness& r) {

@@ -135,6 +135,8 @@ void bind_picking(py::module_& m) {
           "4 x 4 pose of the tool in world, z along the direction")
       .def_readonly("joints", &Picking::joints, "joints at the pre-grasp pose (rad), or None")
       .def_readonly("after", &Picking::after, "ids of the fruit that must be picked first")
+      .def_readonly("crossed", &Picking::crossed,
+                    "measured surface of what is no fruit in the space that the gripper sweeps (m2)")
       .def("__repr__", [](const Picking& p) { return formatted("<Picking %d: %s>", p.order, to_string(p.reason)); });
   bind_pickle(picking);
 }

@@ -14,7 +14,7 @@ import sys
 from documents import ROOT, blocks
 
 DOCUMENT = "docs/parameters.md"
-UNITS = r"\((m|rad|s|kg/m3|points / m3|pixels|cells)(?=[),;:/ ])"
+UNITS = r"\((m|m2|rad|s|kg/m3|points / m3|pixels|cells)(?=[),;:/ ])"
 
 
 def values(agrisee, work, preset):

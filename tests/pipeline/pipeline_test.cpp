@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <agrisee/arm/ur.hpp>
 #include <agrisee/neighbors/kdtree.hpp>
+#include <agrisee/pick/picking.hpp>
 #include <agrisee/pipeline.hpp>
 #include <agrisee/plan/directions.hpp>
 #include <agrisee/process.hpp>
@@ -123,6 +124,40 @@ TEST_CASE("a gripper that is not on the camera's axis is planned for where it is
     CHECK(tool.linear().col(2).dot(to_center.normalized()) == Approx(1.0));
   }
   CHECK(reachable >= 1);
+}
+
+TEST_CASE("what was measured beside the fruit counts for the picking") {
+  // Beads on a string, 7 cm before the first fruit.
+  auto seen = test::kThreeFruit;
+  for (int i = -10; i <= 10; ++i)
+    seen.push_back({test::kThreeFruit[0].center + Eigen::Vector3d(0.0, -0.07, 0.006 * i), 0.004});
+  const Workcell w = cell();
+  double crossed[2] = {0.0, 0.0};
+  for (const bool careful : {false, true}) {
+    Parameters p;
+    if (!careful) p.picking.clear_weight = 0.0;
+    Pipeline pipeline(w, p);
+    Joints joints = w.start;
+    while (const auto next = pipeline.next_view(joints)) {
+      if (pipeline.views().size() == 5) break;
+      joints = *next->joints;
+      pipeline.observe(test::render(seen, w.sensor.intrinsics, next->world_T_optical), next->world_T_optical, joints);
+    }
+    const ScanResult result = pipeline.result();
+    REQUIRE(result.fruits.size() == 3);
+    auto pieces = pick::surface_pieces(pick::surroundings_of(result.cloud, result.labels));
+    CHECK_FALSE(pieces.empty());
+    for (const Fruit& f : result.fruits) pieces = pick::pieces_beyond(pick::kRimReach, pick::occupied(f), pieces);
+    for (const Fruit& f : result.fruits) {
+      const auto counting = pick::pieces_beyond(pick::kOwnReach, pick::occupied(f), pieces);
+      const double here = pick::crossed_surface(counting, pick::occupied(f), {f.picking->direction}, p.picking).front();
+      CHECK(f.picking->crossed == Approx(here));
+      CHECK(f.picking->reachable);
+      crossed[careful] += here;
+    }
+  }
+  CHECK(crossed[0] > 1e-4);
+  CHECK(crossed[1] < 0.3 * crossed[0]);
 }
 
 TEST_CASE("a camera without intrinsics is refused") {

@@ -47,6 +47,7 @@ def test_scan_finds_the_fruit(scanned):
     assert len(scanned.fruits) == 3 and len(scanned.views) > 3
     assert scanned.stop_reason in ("low_gain", "no_reachable_view", "max_views")
     assert scanned.fruits[0].picking.order >= 1 and "views, ended by" in repr(scanned)
+    assert all(0 <= fruit.picking.crossed < 0.01 for fruit in scanned.fruits)
     assert 0 < scanned.completeness["seen"] <= 1 and scanned.trusses[0].pose.shape == (4, 4)
     assert pickle.dumps(pickle.loads(pickle.dumps(scanned))) == pickle.dumps(scanned)
     assert len(scanned.raw_points) >= len(scanned.points) == len(scanned.point_views)
