@@ -81,6 +81,7 @@ ScanResult some_result() {
       p.world_T_pre_grasp = look_along({0.03, -0.64, 1.0 / 3.0}, p.direction);
       p.joints = Joints::Constant(1.0 / 7.0);
       p.after = {2, 12};
+      p.crossed = 1.0 / 700.0;
       f.picking = p;
     } else {
       f.picking = Picking{};
@@ -176,6 +177,7 @@ TEST_CASE("a result folder holds every file of the contract and reads back") {
   CHECK(pick.world_T_pre_grasp.isApprox(written.world_T_pre_grasp, 1e-14));
   CHECK(pick.joints == written.joints);
   CHECK(pick.after == written.after);
+  CHECK(pick.crossed == written.crossed);
   REQUIRE(fruits[1].picking);
   CHECK(fruits[1].picking->order == 3);
   CHECK_FALSE(fruits[1].picking->reachable);
@@ -219,7 +221,7 @@ TEST_CASE("the text files have the contract's keys and columns") {
   for (const char* key :
        {"center_world", "radii", "body_orientation_world", "center_covariance_world", "completeness", "confidence",
         "volume", "volume_error", "mass", "mass_error", "growth_axis_error", "approach_direction_world",
-        "pre_grasp_position_world", "pre_grasp_orientation_world", "pre_grasp_joints"}) {
+        "pre_grasp_position_world", "pre_grasp_orientation_world", "pre_grasp_joints", "approach_crossed"}) {
     CHECK(fruits[0].contains(key));
     CHECK_FALSE(fruits[1].contains(key));
   }
@@ -292,6 +294,25 @@ TEST_CASE("the text files have the contract's keys and columns") {
   CHECK(cell("position_world_y") == "-0.49");
   CHECK(cell("truss") == "1");
   CHECK(cell("pre_grasp_q6") == "0.14285714285714285");
+  CHECK(cell("approach_crossed") == "0.0014285714285714286");
+}
+
+TEST_CASE("every reason of a picking is read as written, and files without what is crossed are read") {
+  const TempFolder folder;
+  ScanResult result = some_result();
+  for (int i = 0; i <= static_cast<int>(PickingReason::arm_meets_fruit); ++i) {
+    result.fruits[0].picking->reason = static_cast<PickingReason>(i);
+    io::write_fruits(folder / "fruits.json", result.fruits);
+    CHECK(io::read_fruits(folder / "fruits.json")[0].picking->reason == static_cast<PickingReason>(i));
+  }
+  CHECK(std::string(to_string(PickingReason::blocked_by_surroundings)) == "blocked_by_surroundings");
+  auto json = nlohmann::json::parse(io::fruits_to_json(result.fruits));
+  json[0].erase("approach_crossed");
+  const Picking old = *io::read_fruits(folder.file("old.json", json.dump()))[0].picking;
+  CHECK(old.crossed == 0.0);
+  CHECK(old.direction == result.fruits[0].picking->direction);
+  result.fruits[0].picking->crossed = std::numeric_limits<double>::quiet_NaN();
+  CHECK_THROWS_WITH(io::fruits_to_json(result.fruits), "fruit: approach_crossed is not finite");
 }
 
 TEST_CASE("equal results leave equal bytes") {

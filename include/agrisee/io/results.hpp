@@ -65,8 +65,8 @@ void write_views(const std::filesystem::path& path, const std::vector<View>& vie
 /// - With a picking plan: `picking_order` (from 1), `picking_after` (ids of the fruit that are in the way and must be
 ///   picked first), `reachable` and `picking_reason` (see PickingReason); unless the reason is `no_body`, also
 ///   `approach_direction_world` (unit vector from the pre-grasp position to the center of the fruit),
-///   `pre_grasp_position_world` (m), `pre_grasp_orientation_world` (of the tool, z along the approach direction) and,
-///   if the arm is known, `pre_grasp_joints` (rad).
+///   `pre_grasp_position_world` (m), `pre_grasp_orientation_world` (of the tool, z along the approach direction),
+///   `approach_crossed` (m2, see Picking::crossed) and, if the arm is known, `pre_grasp_joints` (rad).
 /// - Where they are known: `truss` (see FoundTruss) and `ripeness` (see Ripeness).
 /// @throws InputError for a fruit that is not finite or two with the same id
 /// @throws FileError when it cannot be written

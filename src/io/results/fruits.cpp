@@ -38,6 +38,7 @@ void add_picking(Json& j, const Picking& picking) {
   j["pre_grasp_position_world"] = json_list(pose.translation(), "fruit: pre_grasp_position_world is not finite");
   j["pre_grasp_orientation_world"] = json_list(xyzw(pose.linear()), "fruit: pre_grasp_orientation_world is not finite");
   if (picking.joints) j["pre_grasp_joints"] = json_list(*picking.joints, "fruit: pre_grasp_joints is not finite");
+  j["approach_crossed"] = finite(picking.crossed, "fruit: approach_crossed is not finite");
 }
 
 /// Add the nine cells of its ripeness to the row of a fruit.
@@ -96,6 +97,7 @@ void add_head(CsvWriter& csv, bool ripeness) {
     for (const char* axis : {"_x", "_y", "_z"}) csv.cell(std::string(name) + axis);
   csv.cell("truss");
   csv.cell("growth_axis_error");
+  csv.cell("approach_crossed");
   if (ripeness)
     for (const char* name : {"ripeness_class", "ripeness_probability", "ripe_share", "ripe_share_error", "lab_l",
                              "lab_a", "lab_b", "hue", "hue_error"})
@@ -206,6 +208,7 @@ Picking picking_of(const JsonValue& value) {
   picking.world_T_pre_grasp.translation() = value.at("pre_grasp_position_world").numbers<3>();
   picking.world_T_pre_grasp.linear() = rotation(value.at("pre_grasp_orientation_world"));
   if (value.has("pre_grasp_joints")) picking.joints = value.at("pre_grasp_joints").numbers<6>();
+  if (value.has("approach_crossed")) picking.crossed = value.at("approach_crossed").number();
   return picking;
 }
 
@@ -281,6 +284,10 @@ std::string fruits_csv_text(const std::vector<Fruit>& fruits) {
     csv.cell(static_cast<std::size_t>(fruit.truss));
     if (fruit.growth_axis_error)
       csv.cell(*fruit.growth_axis_error);
+    else
+      csv.empty_cells(1);
+    if (fruit.picking && !fruit.picking->direction.isZero(0.0))
+      csv.cell(fruit.picking->crossed);
     else
       csv.empty_cells(1);
     if (ripeness) add_ripeness(csv, fruit.ripeness);
