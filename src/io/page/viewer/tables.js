@@ -80,6 +80,7 @@ export function makeFruitTable(data, nodes, on) {
       if (f.pre_grasp_position_world)
         entries.push(['Approach', list(f.approach_direction_world, (v) => fixed(v, 3))], ['Pre-grasp position', list(f.pre_grasp_position_world, (v) => mm(v)) + ' mm'],
           ['Pre-grasp rotation', list(f.pre_grasp_orientation_world, (v) => fixed(v, 4)) + '\u2002(x\u00a0y\u00a0z\u00a0w)']);
+      if (f.approach_crossed > 0) entries.push(['Approach crosses', `${fixed(1e4 * f.approach_crossed, 1)} cm\u00b2 of what is no fruit`]);
       if (f.pre_grasp_joints) entries.push(['Pre-grasp joints', list(f.pre_grasp_joints, (v) => fixed((v * 180) / Math.PI, 1)) + ' \u00b0']);
     }
     nodes.detail.style.setProperty('--c', data.colors[f.id]);
