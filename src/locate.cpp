@@ -293,23 +293,35 @@ Eigen::Vector3d cluster_origin(const Aabb& volume, const Eigen::Vector3d& robot)
 }
 
 std::vector<Fruit> locate(const Cloud& cloud, const Split& split, const Eigen::Vector3d& cluster_origin,
-                          const Parameters& parameters, Labels& labels, const IsFree& is_free, double least_seen) {
+                          const Parameters& parameters, Labels& labels, const IsFree& is_free, double least_seen,
+                          BodyCounts* counts) {
   auto members = indices_by_label(split.labels);
   members.resize(split.found.size());
   Labels with_joined = split.labels;
   const auto surfaces = closed_surfaces(cloud, split, parameters, is_free, members, with_joined);
   std::optional<Grid<float>> grid;
   if (is_free) grid.emplace(cloud, static_cast<float>(parameters.split.bodies.cell()));
+  const auto given_up = [counts](std::size_t BodyCounts::*reason) {
+    if (counts) --counts->taken, ++(counts->*reason);
+  };
   std::vector<Fruit> fruits;
   std::vector<std::size_t> source;  // the entry of split.found that each fruit comes from
   for (std::size_t f = 0; f < members.size(); ++f) {
-    if (members[f].empty()) continue;
+    if (members[f].empty()) {
+      given_up(&BodyCounts::little_seen);
+      continue;
+    }
     Fruit fruit = fruit_of(cloud, with_joined, members[f], split.found[f], surfaces[f] ? &*surfaces[f] : nullptr,
                            cluster_origin, parameters);
-    if (fruit.body && !split.found[f].by_mask &&
-        (hardly_seen(*fruit.body, parameters.split.bodies, least_seen) ||
-         (grid && is_part(cloud, *grid, with_joined, static_cast<int>(f) + 1, *fruit.body))))
+    const bool by_points = fruit.body && !split.found[f].by_mask;
+    if (by_points && hardly_seen(*fruit.body, parameters.split.bodies, least_seen)) {
+      given_up(&BodyCounts::little_seen);
       continue;
+    }
+    if (by_points && grid && is_part(cloud, *grid, with_joined, static_cast<int>(f) + 1, *fruit.body)) {
+      given_up(&BodyCounts::too_flat);
+      continue;
+    }
     fruits.push_back(std::move(fruit));
     source.push_back(f);
   }

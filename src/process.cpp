@@ -307,14 +307,9 @@ ScanResult process(Cloud&& cloud, const Parameters& parameters, const CloudOrigi
   constexpr double kLeastSeen = 0.2;  // of 1167 fruit in scans of several views the least was 0.36
   const double least_seen = is_several_views(origin) ? kLeastSeen : 0.0;
   timed(t.locate, [&] {
-    result.fruits =
-        locate(result.cloud, found, result.cluster_origin, fitted, result.labels, origin.is_free, least_seen);
+    result.fruits = locate(result.cloud, found, result.cluster_origin, fitted, result.labels, origin.is_free,
+                           least_seen, parameters.split.fit_bodies ? &result.bodies : nullptr);
   });
-  // What `locate` gave up counts as a part of something larger.
-  if (parameters.split.fit_bodies && result.bodies.taken > result.fruits.size()) {
-    result.bodies.too_flat += result.bodies.taken - result.fruits.size();
-    result.bodies.taken = result.fruits.size();
-  }
   result.trusses = found_trusses(result.fruits);
   timed(t.locate, [&] {
     if (result.cloud.colors.empty()) result.cloud.colors = fuse::colors_of(result.cloud, origin.detected);

@@ -14,6 +14,7 @@
 
 namespace agrisee {
 
+struct BodyCounts;
 struct Ellipsoid;
 struct Split;
 
@@ -47,8 +48,10 @@ Ellipsoid ellipsoid_of(const Body& body);
 /// @param is_free evidence of free space, or empty; it bounds closed surfaces where nothing was seen of them
 /// @param least_seen a body above half of the largest expected radius is no fruit if a smaller share (0..1) of its
 ///   surface was seen
+/// @param counts if not null, a body that is no fruit moves from `taken` to the reason: `little_seen`, or `too_flat` if
+///   it is a part of something larger
 std::vector<Fruit> locate(const Cloud& cloud, const Split& split, const Eigen::Vector3d& cluster_origin,
                           const Parameters& parameters, Labels& labels, const IsFree& is_free = {},
-                          double least_seen = 0.0);
+                          double least_seen = 0.0, BodyCounts* counts = nullptr);
 
 }  // namespace agrisee

@@ -131,7 +131,13 @@ TEST_CASE("the end of a post is no fruit, a fruit on a thin shelf is one") {
     REQUIRE(fit);
     split.found[0].fit = *fit;
     Labels labels;
-    return locate(cloud, split, Eigen::Vector3d::Zero(), parameters, labels, nothing).size();
+    BodyCounts counts;
+    counts.taken = 1;
+    const std::size_t fruits =
+        locate(cloud, split, Eigen::Vector3d::Zero(), parameters, labels, nothing, 0.0, &counts).size();
+    CHECK(counts.taken == fruits);
+    CHECK(counts.too_flat == 1 - fruits);
+    return fruits;
   };
   const auto above = [](const Eigen::Vector3d& d) { return d.z() > -0.6; };
   Cloud shelf;

@@ -391,10 +391,15 @@ TEST_CASE("of a large fruit several views see more than a little") {
   constexpr double kRadius = 0.045;
   const Eigen::Vector3d center(0.0, 0.5, 0.2);
   test::add_sphere(cloud, {center, kRadius}, 0.002, [](const Eigen::Vector3d& d) { return d.y() < -0.7; });
-  CHECK(process(cloud).fruits.empty());
+  const ScanResult merged = process(cloud);
+  CHECK(merged.fruits.empty());
+  CHECK(merged.bodies.taken == 0);
+  CHECK(merged.bodies.little_seen >= 1);
   CloudOrigin origin;
   origin.viewpoint = center - Eigen::Vector3d(0.0, 0.4, 0.0);
-  CHECK(process(cloud, {}, origin).fruits.size() == 1);
+  const ScanResult seen = process(cloud, {}, origin);
+  CHECK(seen.fruits.size() == 1);
+  CHECK(seen.bodies.taken == 1);
 }
 
 TEST_CASE("a cloud's own noise widens its neighborhoods") {
