@@ -85,9 +85,10 @@ void ExpectedSurface::update(const Progress& progress, const SplitParameters& sp
   if (shows_anything(progress)) count_looks(promised);
   read_sight_lines(progress.images, free_space);
   const Labels labels = find_fruit(progress, split_parameters, free_space);
-  collect_samples(progress, free_space);
+  const Grid<float> grid(progress.cloud, static_cast<float>(parameters_.cover_radius));
+  collect_samples(progress, grid, free_space);
   if (shows_anything(progress))
-    weigh(promised, progress.cloud, progress.images.empty() ? 1.0 : measured_share(progress.images.back(), free_space));
+    weigh(promised, grid, progress.images.empty() ? 1.0 : measured_share(progress.images.back(), free_space));
   PointCloud<float> rest;
   for (std::size_t i = 0; i < progress.cloud.size(); ++i)
     if (labels[i] == 0) rest.points.push_back(progress.cloud.points[i]);
@@ -159,11 +160,10 @@ double ExpectedSurface::weight_of(const FoundBody& body) {
   return doubt ? weight * std::pow(kPatience, doubt->looks) : weight;
 }
 
-void ExpectedSurface::weigh(const std::vector<Promise>& promised, const Cloud& cloud, double measured) {
+void ExpectedSurface::weigh(const std::vector<Promise>& promised, const Grid<float>& grid, double measured) {
   constexpr double kForget = 0.5;
   if (promised.empty()) return;
   const auto cover = static_cast<float>(parameters_.cover_radius);
-  const Grid<float> grid(cloud, cover);
   promised_ *= kForget;
   kept_ *= kForget;
   for (const Promise& p : promised) {
@@ -201,7 +201,8 @@ Labels ExpectedSurface::find_fruit(const Progress& progress, const SplitParamete
   return std::move(found.labels);
 }
 
-void ExpectedSurface::collect_samples(const Progress& progress, const fuse::FreeSpaceParameters& free_space) {
+void ExpectedSurface::collect_samples(const Progress& progress, const Grid<float>& grid,
+                                      const fuse::FreeSpaceParameters& free_space) {
   samples_.clear();
   areas_.clear();
   occluders_.clear();
@@ -214,18 +215,19 @@ void ExpectedSurface::collect_samples(const Progress& progress, const fuse::Free
   area_ = covered_ = 0.0;
   area_of_.clear();
   covered_of_.clear();
+  weight_of_.clear();
   const Aabb cloud_extent = bounding_box(progress.cloud.points);
   extent_ = cloud_extent.empty() ? volume_ : cloud_extent;
   center_ = extent_.center();
   if (!bodies_.empty()) extent_ = {}, center_.setZero();
-  sample_bodies(progress, free_space);
+  sample_bodies(progress, grid, free_space);
   sample_unknown_space(cloud_extent);
 }
 
-void ExpectedSurface::sample_bodies(const Progress& progress, const fuse::FreeSpaceParameters& free_space) {
+void ExpectedSurface::sample_bodies(const Progress& progress, const Grid<float>& grid,
+                                    const fuse::FreeSpaceParameters& free_space) {
   // Any point near a fruit's surface covers it, also points of calyx and stem: no more will be seen behind them.
   const auto cover = static_cast<float>(parameters_.cover_radius);
-  const Grid<float> grid(progress.cloud, cover);
   const auto is_covered = [&](const Eigen::Vector3d& p) { return grid.count(p.cast<float>(), cover, 1) > 0; };
   const std::vector<Eigen::Vector3d> directions = spread_directions(parameters_.samples);
   for (std::size_t b = 0; b < bodies_.size(); ++b) {
@@ -233,7 +235,7 @@ void ExpectedSurface::sample_bodies(const Progress& progress, const fuse::FreeSp
     center_ += body.center / static_cast<double>(bodies_.size());
     for (int side : {-1, 1}) extent_.extend(body.center + Eigen::Vector3d::Constant(side * body.mean_radius()));
     const double r = body.mean_radius();
-    const double share = weight_of(bodies_[b]) * 4.0 * kPi * r * r / parameters_.samples;
+    const double weight = weight_of(bodies_[b]), share = 4.0 * kPi * r * r / parameters_.samples;
     double covered = 0.0;
     for (const Eigen::Vector3d& d : directions) {
       const Eigen::Vector3d p = body.surface(d);
@@ -246,12 +248,13 @@ void ExpectedSurface::sample_bodies(const Progress& progress, const fuse::FreeSp
       if (at && is_covered(*at))
         covered += share;
       else if (at && !inside_other(*at, static_cast<int>(b)))
-        add_sample(*at, normal, share, static_cast<int>(b));
+        add_sample(*at, normal, weight * share, static_cast<int>(b));
     }
     area_of_.push_back(share * parameters_.samples);
     covered_of_.push_back(covered);
-    area_ += area_of_.back();
-    covered_ += covered;
+    weight_of_.push_back(weight);
+    area_ += weight * area_of_.back();
+    covered_ += weight * covered;
   }
 }
 
@@ -333,14 +336,14 @@ double ExpectedSurface::gain(const std::vector<std::uint32_t>& shown) const {
 
 Completeness ExpectedSurface::completeness(const std::vector<char>& can_be_seen) const {
   Completeness out;
-  std::vector<double> open(bodies_.size(), 0.0);  // unseen surface of each fruit that can be seen (m2)
+  std::vector<double> open(bodies_.size(), 0.0);  // unseen surface of each fruit that can be seen (m2), weighted
   for (std::size_t i = 0; i < samples_.size(); ++i)
     if (samples_[i].body >= 0 && can_be_seen[i])
       open[static_cast<std::size_t>(samples_[i].body)] += double(observable_[i]);
   double all = 0.0;
   for (std::size_t b = 0; b < bodies_.size(); ++b) {
     if (!believed(bodies_[b])) continue;
-    const double seen = covered_of_[b], observable = seen + open[b];
+    const double seen = covered_of_[b], observable = seen + open[b] / weight_of_[b];
     out.fruits.push_back({bodies_[b].fit.body.center, seen / area_of_[b], observable / area_of_[b]});
     out.seen += seen;
     out.observable += observable;

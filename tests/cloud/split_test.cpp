@@ -14,6 +14,11 @@ namespace split_test {
 
 namespace {
 
+/// The grid in which bodies find the points near them.
+Grid<float> grid_of(const Cloud& cloud, const BodyParameters& parameters = {}) {
+  return Grid<float>(cloud, static_cast<float>(parameters.cell()));
+}
+
 constexpr double kRadius = 0.03;
 const Eigen::Vector3d kCenter(0.0, 0.5, 0.2);
 
@@ -79,18 +84,18 @@ TEST_CASE("the last fit moves a body to its points, those of masks stay") {
   out.found = {ball(kCenter + Eigen::Vector3d(0.002, 0, 0.001), 0.0305)};
   Split mask = out;
   mask.found[0].by_mask = true;
-  detail::refit(cloud, BodyParameters(), out);
+  detail::refit(cloud, grid_of(cloud, BodyParameters()), BodyParameters(), out);
   CHECK((out.found[0].fit.body.center - kCenter).norm() < 1e-5);
   CHECK(out.labels == Labels(cloud.size(), 1));
   const Eigen::Vector3d before = mask.found[0].fit.body.center;
-  detail::refit(cloud, BodyParameters(), mask);
+  detail::refit(cloud, grid_of(cloud, BodyParameters()), BodyParameters(), mask);
   CHECK(mask.found[0].fit.body.center == before);
   // One that becomes too large stays as it was.
   Split large = out;
   BodyParameters small;
   small.radius_min = 0.01, small.radius_max = 0.025;
   large.found = {ball(kCenter, 0.0287)};
-  detail::refit(cloud, small, large);
+  detail::refit(cloud, grid_of(cloud, small), small, large);
   CHECK(large.found[0].fit.body.mean_radius() == Approx(0.0287));
 }
 
@@ -100,7 +105,7 @@ TEST_CASE("after the last fit the points are given out anew") {
   Split out;
   out.labels.assign(cloud.size(), 1);
   out.found = {ball()};
-  detail::refit(cloud, BodyParameters(), out);
+  detail::refit(cloud, grid_of(cloud, BodyParameters()), BodyParameters(), out);
   CHECK(out.labels.back() == 0);
   CHECK(std::accumulate(out.labels.begin(), out.labels.end(), 0) + 1 == static_cast<int>(cloud.size()));
 }
@@ -131,7 +136,7 @@ TEST_CASE("in a single view points count as fewer, and the size of the other fru
     BodyParameters parameters;
     parameters.fit.independent = independent;
     parameters.fit.shape_prior = 10.0;  // nor does this
-    detail::refit(cloud, parameters, out);
+    detail::refit(cloud, grid_of(cloud, parameters), parameters, out);
     return out.found[0].fit.center_covariance(0, 0);
   };
   CHECK(variance(true, 150) / variance(false, 150) == Approx(150.0 / 60.0).epsilon(0.01));
@@ -147,7 +152,7 @@ TEST_CASE("in a single view the last verdict decides: a doubtful body that it be
     out.found[0].by_mask = by_mask;
     out.bodies.taken = 1;
     detail::settle(
-        cloud, BodyParameters(), BodyParameters(), {}, [&](const Ellipsoid&) { return seen_on; }, out);
+        cloud, grid_of(cloud), BodyParameters(), BodyParameters(), {}, [&](const Ellipsoid&) { return seen_on; }, out);
     CHECK(out.bodies.taken == out.found.size());
     CHECK(out.bodies.doubtful == 1 - out.found.size());
     CHECK(std::count(out.labels.begin(), out.labels.end(), 1) > (out.found.empty() ? -1 : 1000));

@@ -84,7 +84,7 @@ TEST_CASE("expected surface: a body of which little is seen counts half with eve
   REQUIRE(model.bodies().size() == 1);
   REQUIRE(model.bodies()[0].confidence > 0.5);
   REQUIRE((model.bodies()[0].coverage < 0.25) == little);
-  const double whole = model.area();
+  const double whole = model.area(), seen = model.completeness(std::vector<char>(200, 1)).seen;
   View behind, past;
   behind.world_T_optical = look_at(kFruit, {0, 0.885, 0.2});
   past.world_T_optical = look_along({0, 0.885, 0.2}, Vector3d::UnitY());  // away from the fruit
@@ -99,6 +99,8 @@ TEST_CASE("expected surface: a body of which little is seen counts half with eve
   CHECK(area_after(past) == Approx(half));
   CHECK(area_after(behind, 0) == Approx(half));  // a frame without returns says nothing
   CHECK(area_after(behind) == Approx(half * half));
+  CHECK(model.completeness(std::vector<char>(200, 1)).seen == Approx(seen));
+  CHECK(model.completeness(std::vector<char>(200, 1)).observable == Approx(1.0));
   // What is well seen counts in full, however long it was doubted.
   add_fruit(
       scan, kFruit, [](const Vector3d& d) { return d.y() > 0.0; }, 0.002);

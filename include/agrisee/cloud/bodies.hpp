@@ -17,6 +17,53 @@
 
 namespace agrisee {
 
+namespace detail {
+
+/// find_bodies with the grid of the cloud's points, whose cells are `parameters.cell()`.
+template <typename S>
+std::vector<FoundBody> find_bodies_near(const PointCloud<S>& cloud, const Grid<S>& grid,
+                                        const std::vector<BodyCandidate>& candidates, const BodyParameters& parameters,
+                                        const SeenThrough& seen_through, BodyCounts* counts, const MaskEvidence& masks,
+                                        const SeenOn& seen_on) {
+  Competition<S> competition(cloud, grid, parameters, seen_through, masks, seen_on);
+  competition.enter(candidates);
+  std::vector<FoundBody> found;
+  if (parameters.alike > 0.0) competition.remember();
+  competition.decide(found);
+  if (parameters.alike > 0.0) competition.decide_by_size(found);
+  if (masks.remaining) competition.fill_gaps(found);
+  competition.close();
+  if (counts) *counts = competition.counts();
+  return found;
+}
+
+/// assign_to_bodies with the grid of the cloud's points, whose cells are `parameters.cell()`.
+template <typename S>
+Labels assign_to_bodies_near(const PointCloud<S>& cloud, const Grid<S>& grid, const std::vector<FoundBody>& bodies,
+                             const BodyParameters& parameters) {
+  Labels labels(cloud.size(), 0);
+  std::vector<double> best(cloud.size(), std::numeric_limits<double>::infinity());
+  const double cos_loose = loose_cosine(parameters);
+  for (std::size_t b = 0; b < bodies.size(); ++b) {
+    throw_if_cancelled();
+    const Ellipsoid& body = bodies[b].fit.body;
+    const double r = body.mean_radius();
+    grid.visit(body.center.cast<S>(), static_cast<S>(1.4 * r), [&](Index index, S) {
+      const auto i = static_cast<std::size_t>(index);
+      const Eigen::Vector3d p = cloud.points[i].template cast<double>();
+      const auto foot = body.foot(p);
+      const double d = std::abs(foot.distance);
+      if (d > parameters.near(r) || d >= best[i]) return;
+      if (foot.normal.dot(cloud.normals[i].template cast<double>()) < cos_loose) return;
+      best[i] = d;
+      labels[i] = static_cast<int>(b) + 1;
+    });
+  }
+  return labels;
+}
+
+}  // namespace detail
+
 /// Let candidates compete for the points of a cloud with outward normals.
 ///
 /// @param cloud points (m) with normals
@@ -35,16 +82,8 @@ std::vector<FoundBody> find_bodies(const PointCloud<S>& cloud, const std::vector
                                    const SeenOn& seen_on = {}) {
   parameters.check();
   check_input(cloud.normals.size() == cloud.points.size(), "find_bodies: the cloud has no normals");
-  detail::Competition<S> competition(cloud, parameters, seen_through, masks, seen_on);
-  competition.enter(candidates);
-  std::vector<FoundBody> found;
-  if (parameters.alike > 0.0) competition.remember();
-  competition.decide(found);
-  if (parameters.alike > 0.0) competition.decide_by_size(found);
-  if (masks.remaining) competition.fill_gaps(found);
-  competition.close();
-  if (counts) *counts = competition.counts();
-  return found;
+  const Grid<S> grid(cloud, static_cast<S>(parameters.cell()));
+  return detail::find_bodies_near(cloud, grid, candidates, parameters, seen_through, counts, masks, seen_on);
 }
 
 /// Label each point with the body (counted from 1) on whose surface it lies, 0 for none. That is the nearest body whose
@@ -56,27 +95,8 @@ std::vector<FoundBody> find_bodies(const PointCloud<S>& cloud, const std::vector
 template <typename S>
 Labels assign_to_bodies(const PointCloud<S>& cloud, const std::vector<FoundBody>& bodies,
                         const BodyParameters& parameters = {}) {
-  Labels labels(cloud.size(), 0);
-  if (bodies.empty()) return labels;
-  const Grid<S> grid(cloud, static_cast<S>(parameters.cell()));
-  std::vector<double> best(cloud.size(), std::numeric_limits<double>::infinity());
-  const double cos_loose = detail::loose_cosine(parameters);
-  for (std::size_t b = 0; b < bodies.size(); ++b) {
-    throw_if_cancelled();
-    const Ellipsoid& body = bodies[b].fit.body;
-    const double r = body.mean_radius();
-    grid.visit(body.center.cast<S>(), static_cast<S>(1.4 * r), [&](Index index, S) {
-      const auto i = static_cast<std::size_t>(index);
-      const Eigen::Vector3d p = cloud.points[i].template cast<double>();
-      const auto foot = body.foot(p);
-      const double d = std::abs(foot.distance);
-      if (d > parameters.near(r) || d >= best[i]) return;
-      if (foot.normal.dot(cloud.normals[i].template cast<double>()) < cos_loose) return;
-      best[i] = d;
-      labels[i] = static_cast<int>(b) + 1;
-    });
-  }
-  return labels;
+  if (bodies.empty()) return Labels(cloud.size(), 0);
+  return detail::assign_to_bodies_near(cloud, Grid<S>(cloud, static_cast<S>(parameters.cell())), bodies, parameters);
 }
 
 }  // namespace agrisee

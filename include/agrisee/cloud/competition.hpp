@@ -39,13 +39,13 @@ inline double overlap(const Ellipsoid& a, const Ellipsoid& b) {
 template <typename S>
 class Competition {
  public:
-  Competition(const PointCloud<S>& cloud, const BodyParameters& parameters, const SeenThrough& seen_through,
-              const MaskEvidence& masks, const SeenOn& seen_on)
+  Competition(const PointCloud<S>& cloud, const Grid<S>& grid, const BodyParameters& parameters,
+              const SeenThrough& seen_through, const MaskEvidence& masks, const SeenOn& seen_on)
       : parameters_(parameters),
         seen_through_(seen_through),
         masks_(masks),
         seen_on_(seen_on),
-        free_(cloud, parameters) {}
+        free_(cloud, grid, parameters) {}
 
   /// Fit and judge the candidates. Those that score enough enter the competition.
   void enter(const std::vector<BodyCandidate>& candidates) {

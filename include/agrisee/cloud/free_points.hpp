@@ -19,12 +19,10 @@ namespace agrisee::detail {
 template <typename S>
 class FreePoints {
  public:
-  /// @param cloud with outward unit normals; must outlive this, as must `parameters`
-  FreePoints(const PointCloud<S>& cloud, const BodyParameters& parameters)
-      : cloud_(cloud),
-        parameters_(parameters),
-        grid_(cloud, static_cast<S>(parameters.cell())),
-        taken_(cloud.size(), 0) {}
+  /// @param cloud with outward unit normals; must outlive this, as must the others
+  /// @param grid of its points, with cells of `parameters.cell()`
+  FreePoints(const PointCloud<S>& cloud, const Grid<S>& grid, const BodyParameters& parameters)
+      : cloud_(cloud), parameters_(parameters), grid_(grid), taken_(cloud.size(), 0) {}
 
   /// Fit a body to the free points near it; empty if there is no fit, see fit_ellipsoid.
   std::optional<EllipsoidFit> fit(const Ellipsoid& start, const FitParameters& how) {
@@ -67,7 +65,7 @@ class FreePoints {
  private:
   const PointCloud<S>& cloud_;
   const BodyParameters& parameters_;
-  Grid<S> grid_;
+  const Grid<S>& grid_;
   std::vector<char> taken_;  // whether a point belongs to a body that has won
   Indices near_;             // the free points near the last body that was fitted
 };

@@ -110,8 +110,9 @@ bool has_changed(const Grid<S>& grid, const Ellipsoid& body, const std::vector<c
 /// Fit each body once more to all points of its own label, and assign the points anew; twice. Bodies by masks stay.
 /// A body of a single cloud that has a size prior is seen from one side: the errors of its points are alike over larger
 /// parts of it than where several views were fused, so they count as fewer, and the priors decide more.
+/// @param grid of the cloud's points, with cells of `bodies.cell()`
 template <typename S>
-void refit(const PointCloud<S>& cloud, const BodyParameters& bodies, Split& out) {
+void refit(const PointCloud<S>& cloud, const Grid<S>& grid, const BodyParameters& bodies, Split& out) {
   FitParameters last_fit = bodies.fit;
   last_fit.max_points = std::max(last_fit.max_points, static_cast<int>(cloud.size()));
   constexpr int kIndependentOnOneSide = 60;
@@ -127,7 +128,7 @@ void refit(const PointCloud<S>& cloud, const BodyParameters& bodies, Split& out)
       if (const auto fit = fit_ellipsoid(cloud, own[b], last.body, how, last.size_prior))
         if (plausible(fit->body, bodies)) last = *fit;
     }
-    out.labels = assign_to_bodies(cloud, out.found, bodies);
+    out.labels = assign_to_bodies_near(cloud, grid, out.found, bodies);
   }
 }
 
@@ -150,11 +151,12 @@ inline BodyParameters sought_in_single_view(BodyParameters bodies) {
 
 /// Judge the bodies of a single view once more, by their last fits. Those with too little confidence, and those of
 /// another size than expected, lose their points; those of masks stay.
+/// @param grid of the cloud's points, with cells of `sought.cell()`
 /// @param sought parameters with which the bodies were found  @param expected those with the radii of fruit
 template <typename S>
-void settle(const PointCloud<S>& cloud, const BodyParameters& sought, const BodyParameters& expected,
-            const SeenThrough& seen_through, const SeenOn& seen_on, Split& out) {
-  const FreePoints<S> points(cloud, sought);
+void settle(const PointCloud<S>& cloud, const Grid<S>& grid, const BodyParameters& sought,
+            const BodyParameters& expected, const SeenThrough& seen_through, const SeenOn& seen_on, Split& out) {
+  const FreePoints<S> points(cloud, grid, sought);
   const auto falls = [&](FoundBody& f) {
     if (f.by_mask) return false;
     if (!plausible(f.fit.body, expected)) {
@@ -170,7 +172,7 @@ void settle(const PointCloud<S>& cloud, const BodyParameters& sought, const Body
   const auto end = std::remove_if(out.found.begin(), out.found.end(), falls);
   out.bodies.taken -= static_cast<std::size_t>(out.found.end() - end);
   out.found.erase(end, out.found.end());
-  out.labels = assign_to_bodies(cloud, out.found, sought);
+  out.labels = assign_to_bodies_near(cloud, grid, out.found, sought);
 }
 
 /// The body to which at least 60 % of the points of each region belong, by the region's label; 0 if there is none.
@@ -230,19 +232,19 @@ void split_by_bodies(const PointCloud<S>& cloud, const Segments& segments, const
     if (const auto sphere = sphere_from_normals(cloud, segments.members[s]))
       if (std::size_t BodyCounts::*const fault = propose(*sphere, segments.found_by(s + 1), bodies, candidates))
         ++(not_proposed.*fault);
-  const Grid<S> grid(cloud, static_cast<S>(stages.growing.radius), threads);
+  const Grid<S> grid(cloud, static_cast<S>(bodies.cell()), threads);
   propose_voted(cloud, cloud, {}, grid, stages, parameters, candidates, static_cast<bool>(seen_on));
   for (const MaskBody& m : masks.bodies) candidates.push_back({m.fit.body, "mask", nullptr, m.fit, m.log_odds});
   const bool settles = settled(seen_on, masks);
   BodyParameters winners = bodies;
   if (settles) winners.min_confidence *= kShareToWin;
-  out.found = find_bodies(cloud, candidates, winners, seen_through, &out.bodies, masks, seen_on);
+  out.found = find_bodies_near(cloud, grid, candidates, winners, seen_through, &out.bodies, masks, seen_on);
   out.bodies.too_small += not_proposed.too_small;
   out.bodies.too_large += not_proposed.too_large;
   out.bodies.inside_out += not_proposed.inside_out;
-  out.labels = assign_to_bodies(cloud, out.found, bodies);
-  refit(cloud, bodies, out);
-  if (settles) settle(cloud, bodies, expected, seen_through, seen_on, out);
+  out.labels = assign_to_bodies_near(cloud, grid, out.found, bodies);
+  refit(cloud, grid, bodies, out);
+  if (settles) settle(cloud, grid, bodies, expected, seen_through, seen_on, out);
   extend_labels(out.labels, cloud, out.found, out.regions, out.regions_found, bodies);
 
   std::vector<std::size_t> sizes(segments.members.size() + 1, 0);
@@ -323,14 +325,14 @@ Split track(const PointCloud<S>& cloud, const std::vector<FoundBody>& known, con
     candidates.push_back({k.fit.body, k.found_by});
     if (!fresh.empty() && !detail::has_changed(grid, k.fit.body, fresh)) candidates.back().fit = k.fit;
   }
-  const Indices off_them = residual(assign_to_bodies(cloud, known, bodies));
+  const Indices off_them = residual(detail::assign_to_bodies_near(cloud, grid, known, bodies));
   std::vector<char> fresh_off_them;
   if (!fresh.empty())
     for (const Index i : off_them) fresh_off_them.push_back(fresh[static_cast<std::size_t>(i)]);
   detail::propose_voted(cloud, select(cloud, off_them), fresh_off_them, grid, *stages, parameters, candidates);
   for (const MaskBody& m : masks.bodies) candidates.push_back({m.fit.body, "mask", nullptr, m.fit, m.log_odds});
-  out.found = find_bodies(cloud, candidates, bodies, seen_through, nullptr, masks);
-  out.labels = assign_to_bodies(cloud, out.found, bodies);
+  out.found = detail::find_bodies_near(cloud, grid, candidates, bodies, seen_through, nullptr, masks, {});
+  out.labels = detail::assign_to_bodies_near(cloud, grid, out.found, bodies);
   return out;
 }
 

@@ -20,6 +20,7 @@
 #include <agrisee/cloud/parameters.hpp>
 #include <agrisee/fuse/parameters.hpp>
 #include <agrisee/geometry/aabb.hpp>
+#include <agrisee/neighbors/grid.hpp>
 #include <agrisee/plan/known_space.hpp>
 #include <agrisee/plan/parameters.hpp>
 #include <agrisee/plan/planner.hpp>
@@ -104,8 +105,9 @@ class ExpectedSurface {
   /// How much the surface of a body counts (0..1): less if it is doubtful, and after views looked at it in vain.
   double weight_of(const FoundBody& body);
   /// Compare what was expected of a view with the cloud and the space that are known since.
+  /// @param grid of the cloud's points
   /// @param measured share (0..1) of the surface before it that the view measured
-  void weigh(const std::vector<Promise>& promised, const Cloud& cloud, double measured);
+  void weigh(const std::vector<Promise>& promised, const Grid<float>& grid, double measured);
   /// Mark what the sight lines of new views have reached. Where earlier ones are others than before, as the map has
   /// started again, everything is forgotten.
   void read_sight_lines(const std::vector<sensor::SurfaceImage>& images, const fuse::FreeSpaceParameters& free_space);
@@ -113,9 +115,10 @@ class ExpectedSurface {
   Labels find_fruit(const Progress& progress, const SplitParameters& split_parameters,
                     const fuse::FreeSpaceParameters& free_space);
   /// Replace all samples, and the areas and boxes that go with them.
-  void collect_samples(const Progress& progress, const fuse::FreeSpaceParameters& free_space);
+  /// @param grid of the cloud's points
+  void collect_samples(const Progress& progress, const Grid<float>& grid, const fuse::FreeSpaceParameters& free_space);
   /// Add samples of each fruit's unseen surface; counts the covered surface.
-  void sample_bodies(const Progress& progress, const fuse::FreeSpaceParameters& free_space);
+  void sample_bodies(const Progress& progress, const Grid<float>& grid, const fuse::FreeSpaceParameters& free_space);
   /// Add a sample for each unknown voxel near the fruit, or near the cloud when no fruit has been found, and for some
   /// of the others.
   void sample_unknown_space(const Aabb& cloud);
@@ -150,7 +153,8 @@ class ExpectedSurface {
   std::vector<float> obstacles_;     // points that belong to no fruit, thinned: all x, then all y, then all z (m)
   double area_ = 0.0, covered_ = 0.0;
   double promised_ = 0.0, kept_ = 0.0;  // what the last views were expected to show, and what they showed of it (m2)
-  std::vector<double> area_of_, covered_of_;  // one per fruit (m2)
+  std::vector<double> area_of_, covered_of_;  // one per body (m2)
+  std::vector<double> weight_of_;             // how much its surface counts
   Eigen::Vector3d center_ = Eigen::Vector3d::Zero();
   Aabb extent_;
 };
