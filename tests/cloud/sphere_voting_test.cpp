@@ -42,6 +42,9 @@ TEST_CASE("new points tell where to look for centers") {
   const auto same = std::find_if(all.begin(), all.end(), [&](const auto& c) { return c.center == near[0].center; });
   REQUIRE(same != all.end());
   CHECK(same->votes == near[0].votes);
+  // A quarter of these votes are new: enough if they are half of the votes that a center needs.
+  CHECK_FALSE(vote_for_centers(cloud, 0.02, 0.05, 0.4 * same->votes, fresh).empty());
+  CHECK(vote_for_centers(cloud, 0.02, 0.05, 0.6 * same->votes, fresh).empty());
 
   std::fill(fresh.begin(), fresh.end(), char(1));
   CHECK(vote_for_centers(cloud, 0.02, 0.05, 100, fresh).size() == all.size());

@@ -311,7 +311,7 @@ inline std::vector<VotedCenter> thin_out(const std::vector<VoteSum>& sums, doubl
 /// @param radius_min smallest expected radius (m), positive
 /// @param radius_max largest expected radius (m), at least `radius_min`
 /// @param min_votes weaker maxima are left out
-/// @param fresh one per point, nonzero for new ones, or empty: centers for which new points cast less than a tenth of
+/// @param fresh one per point, nonzero for new ones, or empty: centers for which new points cast less than half of
 ///   `min_votes` are left out, which is fast if few points are new
 /// @param most the largest number of maxima; weaker ones are left out
 /// @throws ParameterError; InputError if the cloud has no normals, or `fresh` has not one value per point; Cancelled
@@ -325,7 +325,7 @@ std::vector<VotedCenter> vote_for_centers(const PointCloud<S>& cloud, double rad
   check_input(cloud.normals.size() == cloud.points.size(), "vote_for_centers: the cloud has no normals");
   check_input(fresh.empty() || fresh.size() == cloud.size(), "vote_for_centers: fresh needs one value a point");
   if (cloud.empty()) return {};
-  constexpr double kFreshShare = 0.1;
+  constexpr double kFreshShare = 0.5;
   const detail::VoteGrid grid(cloud, radius_max, radius_min / 5.0);
   const auto all = [](auto) { return true; };
   const auto cells_of = [&](const auto& votes, const auto& keeps) {
