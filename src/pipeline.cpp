@@ -20,6 +20,7 @@
 #include <utility>
 
 #include "input_checks.hpp"
+#include "lone_views.hpp"
 #include "scan_doubts.hpp"
 #include "stated_errors.hpp"
 
@@ -162,6 +163,8 @@ ScanResult Pipeline::result() const {
   timed(out.seconds.locate, [&] {
     state_errors(*map_, parameters_, out.fruits);
     if (auto doubt = doubt_calibration(*map_, parameters_, out.fruits)) out.warnings.push_back(std::move(*doubt));
+    if (auto doubt = doubt_of_agreement(*map_, views_, parameters_, workcell_.scan_volume, out.fruits.size(), threads_))
+      out.warnings.push_back(std::move(*doubt));
   });
   out.completeness = completeness();
   center_on_reported_poses(out);

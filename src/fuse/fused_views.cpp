@@ -135,6 +135,15 @@ Cloud FusedViews::cloud() const {
   return out;
 }
 
+Cloud FusedViews::alone(std::size_t view) const {
+  Cloud out;
+  if (const auto seen = seen_.find(view); seen != seen_.end()) {
+    out.points = seen->second.points;
+    out.normals = seen->second.normals;
+  }
+  return out;
+}
+
 Eigen::Vector3d FusedViews::shift_to_reported(const Eigen::Vector3d& center) const {
   Eigen::Vector3d shift = Eigen::Vector3d::Zero();
   std::size_t used = 0;

@@ -191,6 +191,23 @@ TEST_CASE("a wrong scale of the depths, and a hand-eye transform that is left ou
   CHECK_THAT(aside, test::says("if the camera were 8 mm further left in its own frame"));
 }
 
+TEST_CASE("where views alone show fruit that all together do not, a warning doubts poses and calibration") {
+  const auto after = [](double ahead) {
+    return warnings_after(8,
+                          [&](sensor::DepthFrame&, Pose& pose) { pose.translate(Eigen::Vector3d(0.0, 0.0, ahead)); });
+  };
+  CHECK_THAT(after(0.02), !test::says("alone shows"));  // the fruit are found, and tell what is wrong
+  const std::string far = after(0.03);
+  CHECK_THAT(far,
+             test::says("view 0 alone shows 3 fruit and view 2 alone shows 3 fruit, but all views together show 0"));
+  CHECK_THAT(far, test::says("Are the hand-eye transform and the depth scale right?"));
+  // A single fruit that was found needs no such doubt, and neither does a place without fruit.
+  const auto one_left = [](sensor::DepthFrame& frame, Pose&) {
+    std::fill(frame.depth.begin(), frame.depth.end(), 0.0f);
+  };
+  CHECK_THAT(warnings_after(8, one_left), !test::says("alone shows"));
+}
+
 TEST_CASE("a wrong scale of the depths counts as an error of the fruit") {
   const auto scanned = [](float scale) {
     Pipeline pipeline(cell());

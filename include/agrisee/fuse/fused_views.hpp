@@ -35,6 +35,7 @@ class FusedViews : public Views {
   Cloud cloud() const override;  ///< without the surfels that later sight lines went through
   Cloud all() const override;
   const std::vector<sensor::SurfaceImage>& images() const override { return images_; }
+  Cloud alone(std::size_t view) const override;
   bool discarded(std::size_t view) const override { return views_[view].discarded; }
   Eigen::Vector3d shift_to_reported(const Eigen::Vector3d& center) const override;
   std::vector<BodyErrors> body_errors(const std::vector<Ellipsoid>& bodies,

@@ -28,6 +28,7 @@ class MergedViews : public Views {
   Cloud cloud() const override { return points_.cloud(); }
   Cloud all() const override { return all_; }
   const std::vector<sensor::SurfaceImage>& images() const override { return images_; }
+  Cloud alone(std::size_t) const override { return {}; }
   bool discarded(std::size_t view) const override { return discarded_[view]; }
   Eigen::Vector3d shift_to_reported(const Eigen::Vector3d&) const override { return Eigen::Vector3d::Zero(); }
   std::vector<BodyErrors> body_errors(const std::vector<Ellipsoid>& bodies, const FitParameters&) const override {

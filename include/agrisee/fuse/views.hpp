@@ -75,6 +75,9 @@ class Views {
   /// The surface image of each view, as evidence of free space; empty for raw points. Discarded views have only a pose.
   virtual const std::vector<sensor::SurfaceImage>& images() const = 0;
 
+  /// What a view (by number) shows by itself, at its reported pose: points and normals. Empty for raw points.
+  virtual Cloud alone(std::size_t view) const = 0;
+
   /// Whether a view (by number) is discarded; a later view can change that.
   virtual bool discarded(std::size_t view) const = 0;
 
