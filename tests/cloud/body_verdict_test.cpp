@@ -121,6 +121,16 @@ TEST_CASE("fewer points on a smaller body count as much in several views, but no
   CHECK(believed(2.0 * usual, 200, {}) == Approx(believed(usual, 200, {})));
 }
 
+TEST_CASE("a small fruit is not less likely where only small ones are expected") {
+  EllipsoidFit fit;
+  fit.body = Ellipsoid(Sphere{Eigen::Vector3d::Zero(), 0.01});
+  fit.rms = 0.0005;
+  BodyParameters wide, narrow;
+  narrow.radius_max = 0.02;
+  const Verdict v = verdict_of(cap(kPi / 2));
+  CHECK(fruit_probability(v, fit, narrow) >= fruit_probability(v, fit, wide));
+}
+
 TEST_CASE("whatever speaks against a fruit lowers its probability") {
   const Verdict good = verdict_of(cap(kPi / 2));
   const double believed = fruit_probability(good, fit_of(0.0005), BodyParameters());
