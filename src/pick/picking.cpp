@@ -105,7 +105,7 @@ double seen_score(const SeenDirections& seen, const Eigen::Vector3d& side, doubl
   return weight * covered / cap;
 }
 
-/// The pieces of the surroundings that are on no fruit.
+/// The pieces of the surroundings that count: those on no fruit.
 std::vector<SurfacePiece> pieces_off(const std::vector<Candidate>& all, const Cloud& surroundings) {
   std::vector<SurfacePiece> pieces = surface_pieces(surroundings);
   for (const Candidate& c : all) pieces = pieces_beyond(kRimReach, c.body, pieces);
@@ -128,8 +128,7 @@ void rank_directions(std::vector<Candidate>& all, std::size_t f, const Sides& si
   const Eigen::Vector3d front = plan::level_direction(robot, c.body.center);
   const std::vector<Neighbor> neighbors = neighbors_of(all, f);
   const std::vector<Eigen::Vector3d> spread = plan::spread_directions(parameters.directions);
-  const std::vector<double> crossed =
-      crossed_surface(pieces_beyond(kOwnReach, c.body, sides.pieces), c.body, spread, parameters);
+  const std::vector<double> crossed = crossed_surface(sides.pieces, c.body, spread, parameters);
   const double section = kPi * std::pow(parameters.gripper_radius, 2), cos_pedicel = std::cos(parameters.pedicel_angle);
   std::vector<std::pair<double, std::size_t>> scores;
   for (std::size_t i = 0; i < spread.size(); ++i) {
@@ -171,9 +170,18 @@ class PickingRounds {
 
   /// Run all rounds. An entry per fruit, in the caller's order.
   std::vector<Picking> plan() {
+    // What could only be picked through its surroundings may be free when others have been picked: a round allows more
+    // only if there is nothing to pick with less.
+    constexpr double kLittle = 0.1, kMore = 4.0, kMost = 2.0;  // kLittle and kMost: of the gripper's cross-section
+    const double section = kPi * std::pow(parameters_.gripper_radius, 2);
+    double allowed = kLittle * section;
     for (bool first = true;; first = false) {
-      std::vector<std::size_t> free = plan_round(first);
-      if (free.empty()) break;
+      const bool all =
+          !(parameters_.clear_weight > 0.0) || !(allowed < kMost * section) || allowed >= parameters_.max_crossed;
+      std::vector<std::size_t> free = plan_round(all ? parameters_.max_crossed : allowed, first);
+      if (free.empty() && all) break;
+      allowed = free.empty() ? kMore * allowed : kLittle * section;
+      if (free.empty()) continue;
       hanging_.erase(
           std::remove_if(hanging_.begin(), hanging_.end(),
                          [&](std::size_t f) { return std::find(free.begin(), free.end(), f) != free.end(); }),
@@ -190,13 +198,14 @@ class PickingRounds {
 
  private:
   /// Plan the approach to each hanging fruit; returns those (indices in `all_`) whose approach is free.
-  std::vector<std::size_t> plan_round(bool first) {
+  /// @param allowed how much of the surroundings it may cross in this round (m2)
+  std::vector<std::size_t> plan_round(double allowed, bool first) {
     std::vector<std::size_t> free;
     for (std::size_t f : hanging_) {
       Picking& out = plan_[all_[f].index];
       if (!first && !may_have_changed(all_[f], out)) continue;
       std::vector<OrientedEllipsoid> others = others_than(f);
-      if (!plan_approach(all_[f], others, out)) continue;
+      if (!plan_approach(all_[f], others, allowed, out)) continue;
       free.push_back(f);
       out.after = blocking(f, out, others);
     }
@@ -250,10 +259,12 @@ class PickingRounds {
 
   /// Write the best approach while `others` are hanging to `out`; false, with the reason, when there is none. Verdicts
   /// that do not depend on other fruit are kept for later rounds.
-  bool plan_approach(Candidate& c, const std::vector<OrientedEllipsoid>& others, Picking& out) const {
+  /// @param allowed directions that cross more (m2), but not too much, are left for later rounds
+  bool plan_approach(Candidate& c, const std::vector<OrientedEllipsoid>& others, double allowed, Picking& out) const {
     std::size_t farthest = 0;
     out.reason = PickingReason::no_body;
     for (std::size_t i = 0; i < c.directions.size(); ++i) {
+      if (c.crossed[i] > allowed && c.crossed[i] <= parameters_.max_crossed) continue;
       PickingReason reason = c.verdicts[i];
       if (reason == PickingReason::not_tested) {
         throw_if_cancelled();

@@ -286,6 +286,39 @@ TEST_CASE("surroundings: beyond the limit a direction is not taken") {
   CHECK(plan_picking({fruit}, walled, {}, p)[0].reason == PickingReason::blocked_by_keep_out);
 }
 
+TEST_CASE("surroundings: a fruit that would be picked through a tray waits until its neighbor is picked") {
+  // The second fruit is behind the first, and below a sheet. The arm reaches them from the front and from above.
+  const std::vector<Fruit> fruits{ball(1, {0.0, 0.5, 0.2}), ball(2, {0.0, 0.6, 0.2})};
+  Cloud sheet;
+  add_patch(sheet, {0.0, 0.6, 0.28}, Vector3d::UnitX(), Vector3d::UnitY(), 0.1, 0.09);
+  const ReachApproach front_or_above = [](const ApproachRequest& request, const Joints&) -> ApproachAnswer {
+    if (request.direction.y() < 0.95 && request.direction.z() > -0.8)
+      return {std::nullopt, PickingReason::out_of_reach};
+    return {ReachableApproach{look_along(request.start, request.direction), std::nullopt}, PickingReason::reachable};
+  };
+  PickingParameters p;
+  p.pedicel_angle = 0.0;
+  const auto plan = plan_picking(fruits, among(sheet), front_or_above, p);
+  CHECK(plan[1].reachable);
+  CHECK(plan[1].order == 2);
+  CHECK(plan[1].after == std::vector<int>{1});
+  CHECK(plan[1].crossed == 0.0);
+  p.clear_weight = 0.0;
+  const auto careless = plan_picking(fruits, among(sheet), front_or_above, p);
+  CHECK(careless[1].after.empty());
+  CHECK(careless[1].crossed > 3e-4);
+  // What cannot become free is picked through the sheet.
+  p.clear_weight = 2.0;
+  const ReachApproach above = [](const ApproachRequest& request, const Joints&) -> ApproachAnswer {
+    if (request.direction.z() > -0.8) return {std::nullopt, PickingReason::out_of_reach};
+    return {ReachableApproach{look_along(request.start, request.direction), std::nullopt}, PickingReason::reachable};
+  };
+  const auto through = plan_picking(fruits, among(sheet), above, p);
+  CHECK(through[1].reachable);
+  CHECK(through[1].order == 2);
+  CHECK(through[1].crossed > 3e-4);
+}
+
 TEST_CASE("surroundings: points on the fruit, its neighbors and far away change nothing") {
   const std::vector<Fruit> fruits{ball(1, {0.0, 0.5, 0.2}), ball(2, {0.09, 0.52, 0.22}), ball(3, {-0.02, 0.59, 0.15})};
   const auto plain = plan_picking(fruits, among({}));

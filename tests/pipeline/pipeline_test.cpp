@@ -149,8 +149,7 @@ TEST_CASE("what was measured beside the fruit counts for the picking") {
     CHECK_FALSE(pieces.empty());
     for (const Fruit& f : result.fruits) pieces = pick::pieces_beyond(pick::kRimReach, pick::occupied(f), pieces);
     for (const Fruit& f : result.fruits) {
-      const auto counting = pick::pieces_beyond(pick::kOwnReach, pick::occupied(f), pieces);
-      const double here = pick::crossed_surface(counting, pick::occupied(f), {f.picking->direction}, p.picking).front();
+      const double here = pick::crossed_surface(pieces, pick::occupied(f), {f.picking->direction}, p.picking).front();
       CHECK(f.picking->crossed == Approx(here));
       CHECK(f.picking->reachable);
       crossed[careful] += here;

@@ -26,7 +26,8 @@ struct PickingParameters {
   double across_weight = 1.0;  ///< preference for approaches across the growth axis, which leave the pedicel free
   double seen_weight = 1.0;    ///< preference for sides of the fruit that were observed
   double away_weight = 1.0;    ///< preference for sides of the fruit without neighbors
-  double clear_weight = 2.0;   ///< preference for approaches that cross little of what was measured beside the fruit
+  double clear_weight = 2.0;   ///< preference for approaches that cross little of what was measured beside the fruit;
+                               ///< 0: it does not matter
   double max_crossed = 10.0;   ///< largest surface of it that an approach may cross (m2); 10 or more: no limit
 
   /// For the stages of [1], which plan no picking: disabled.

@@ -12,11 +12,8 @@
 namespace agrisee::pick {
 
 constexpr double kPieceEdge = 0.005;  ///< edge of the cells in which measured surface is counted (m)
-/// What is nearer than this (m) to a fruit's body does not count for that fruit: its calyx, the end of its pedicel,
-/// what touches it, and points of its own surface that got no label.
-constexpr double kOwnReach = 0.010;
-/// What is nearer than this (m) to any fruit's body does not count at all: it is taken for points of that fruit that
-/// got no label, which are gone once it has been picked.
+/// What is nearer than this (m) to the body of a fruit does not count: most of that is points of the fruit that got no
+/// label, and its calyx.
 constexpr double kRimReach = 0.005;
 
 /// A small piece of measured surface.
