@@ -11,7 +11,8 @@ namespace agrisee::plan {
 
 namespace {
 
-constexpr std::size_t kRefined = 8;  // the best candidates, around which more directions are tried
+constexpr std::size_t kRefined = 8;       // the best candidates, around which more directions are tried
+constexpr std::size_t kRefinedAgain = 4;  // and the best of all, around which closer ones are
 
 /// How long the move from the joints `from` to a view counts (s): the joint-space distance at pi rad/s, the UR3's speed
 /// limit; when the view has no joints, the move time that the arm answered.
@@ -149,19 +150,25 @@ void GainPlanner::refine(const Joints& current, const Reach& reach) {
   const double step = 0.5 * std::sqrt(4.0 * kPi / parameters_.candidates);  // half the candidates' spacing (rad)
   for (std::size_t i = 0, n = std::min(kRefined, ranked_.size()); i < n; ++i) {
     throw_if_cancelled();
-    const ViewRequest middle = ranked_[i].request;
-    if (const auto view = reach(middle, current))
+    if (const auto view = reach(ranked_[i].request, current))
       rate(ranked_[i], *view, current);
     else
       ranked_[i].lost = true;
-    const Eigen::Vector3d a = any_orthogonal<double>(middle.direction), b = middle.direction.cross(a);
-    for (int k = 0; k < 6; ++k) {
-      const double angle = kPi / 3.0 * k;
-      ViewRequest around = middle;
-      around.direction = (middle.direction + step * (std::cos(angle) * a + std::sin(angle) * b)).normalized();
-      if (is_left_out(around)) continue;
-      if (const auto view = reach(around, current)) consider(around, *view, current);
-    }
+    consider_around(ranked_[i].request, step, current, reach);
+  }
+  sort_ranked();
+  for (std::size_t i = 0, n = std::min(kRefinedAgain, ranked_.size()); i < n; ++i)
+    if (!ranked_[i].lost) consider_around(ranked_[i].request, 0.5 * step, current, reach);
+}
+
+void GainPlanner::consider_around(ViewRequest middle, double step, const Joints& current, const Reach& reach) {
+  const Eigen::Vector3d a = any_orthogonal<double>(middle.direction), b = middle.direction.cross(a);
+  for (int k = 0; k < 6; ++k) {
+    const double angle = kPi / 3.0 * k;
+    ViewRequest around = middle;
+    around.direction = (middle.direction + step * (std::cos(angle) * a + std::sin(angle) * b)).normalized();
+    if (is_left_out(around)) continue;
+    if (const auto view = reach(around, current)) consider(around, *view, current);
   }
 }
 

@@ -120,8 +120,9 @@ TEST_CASE("gain planner: candidates are sought once, and again when the extent h
     REQUIRE(planner->next(row.scan.progress(), Joints::Zero(), flight.reach()));
     return flight.asked.size();
   };
-  // The 8 best are asked for again with 6 more around each, and the one that is chosen once more.
-  constexpr std::size_t kAgain = 8 * 7 + 1;
+  // The 8 best are asked for again with 6 more around each, and 6 closer to the 4 best; the one that is chosen once
+  // more.
+  constexpr std::size_t kAgain = 8 * 7 + 4 * 6 + 1;
   CHECK(asked() == 20 + kAgain);
   CHECK(asked() == kAgain);
   row.scan.cloud.points[1].x() -= 0.015f;
@@ -229,7 +230,7 @@ TEST_CASE("gain planner: a cancelled call asks for one more view at most and cha
   for (int i = 0; i < 6; ++i) script.views.push_back(Row::view(0, 4 + i));
   script.other = Row::view(0, 1);
   row.parameters.candidates = 6;
-  const int all = 6 + 6 * 7 + 1;
+  const int all = 6 + 6 * 7 + 4 * 6 + 1;
   const auto fresh = row.planner();
   const auto expected = fresh->next(row.scan.progress(), Joints::Zero(), script.reach());
   CHECK(script.asked.size() == static_cast<std::size_t>(all));

@@ -9,9 +9,10 @@
 /// root of the sum of squares) at pi rad/s, whatever `move_time` says; where they are not, it counts the `move_time`
 /// that the arm last answered for the view, which for most candidates is of an earlier call. The reach of the best
 /// candidates is computed again from the arm's present joints: those that it can no longer take are dropped, and
-/// directions close to theirs are tried as well. The scan ends when the best view promises less than `min_gain` of the
-/// fruit surface known so far, or, while there is none, of that of one fruit of middle size. Promises are scaled by
-/// ExpectedSurface::reliability, because views among leaves show less than they promise. World frame, metres, seconds.
+/// directions close to theirs are tried as well, and then closer ones about the best of all. The scan ends when the
+/// best view promises less than `min_gain` of the fruit surface known so far, or, while there is none, of that of one
+/// fruit of middle size. Promises are scaled by ExpectedSurface::reliability, because views among leaves show less than
+/// they promise. World frame, metres, seconds.
 #pragma once
 
 #include <agrisee/plan/expected_surface.hpp>
@@ -70,8 +71,12 @@ class GainPlanner : public Planner {
   /// Fill `ranked_` with the views worth taking, best first, and set `completeness_`; returns the reason when there is
   /// none.
   std::optional<StopReason> rank(const Joints& current, const Reach& reach);
-  /// Ask again for the best of `ranked_` from the present joints, mark the lost ones, and add directions close to all.
+  /// Ask again for the best of `ranked_` from the present joints, mark the lost ones, and add directions close to all,
+  /// then closer ones to the best of these.
   void refine(const Joints& current, const Reach& reach);
+  /// Add the views like one (a copy, as `ranked_` grows) from six directions around its own.
+  /// @param step how far away they are (rad)
+  void consider_around(ViewRequest middle, double step, const Joints& current, const Reach& reach);
   /// Drop the refused views from `ranked_` and score the others from the present joints.
   void rank_again(const Joints& current);
   /// Drop the views of `left_out_` from `ranked_`.
