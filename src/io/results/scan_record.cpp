@@ -227,7 +227,7 @@ std::optional<ViewRecord> read_view_record(const fs::path& folder, std::size_t v
     damaged();
   }
   const JsonValue top(path, json, "");
-  if (top.at("scan").text() != scan) fail(path, "belongs to another scan");
+  if (top.at("scan").text() != scan) fail(path, "belongs to another scan, or was written by another build of agrisee");
   if (top.at("view").count() != view) fail(path, "is the record of another view");
   ViewRecord record;
   record.world_T_optical_asked = pose_of(top.at("asked"));
