@@ -2,13 +2,14 @@
 #include <agrisee/arm/limits.hpp>
 #include <agrisee/core/cancellation.hpp>
 #include <agrisee/pick/picking.hpp>
-#include <agrisee/plan/directions.hpp>
 
 #include <algorithm>
 #include <cmath>
 #include <numeric>
 #include <set>
 #include <tuple>
+
+#include "pick/ranked_directions.hpp"
 
 namespace agrisee::pick {
 
@@ -24,8 +25,7 @@ struct Candidate {
   bool has_body = false;
   double depth = 0.0;                       // distance from the robot along the front (m)
   std::vector<KeepOut> keep_out;            // that apply to this fruit
-  std::vector<Eigen::Vector3d> directions;  // of approach, best first
-  std::vector<double> crossed;              // surface of the surroundings, one per direction (m2)
+  std::vector<RankedDirection> directions;  // of approach, best first
   std::vector<PickingReason> verdicts;      // one per direction; `not_tested` as long as other fruit may decide
 };
 
@@ -73,80 +73,11 @@ void set_depths(std::vector<Candidate>& all, const Eigen::Vector3d& robot) {
   for (Candidate& c : all) c.depth = front.dot(c.body.center - robot);
 }
 
-/// Another fruit, as seen from the one that is being planned.
-struct Neighbor {
-  Eigen::Vector3d direction;  // unit vector from center to center
-  double weight;              // 1 when they touch, less with distance
-};
-
-/// The neighbors of fruit `f`.
-std::vector<Neighbor> neighbors_of(const std::vector<Candidate>& all, std::size_t f) {
-  const OrientedEllipsoid& body = all[f].body;
-  std::vector<Neighbor> neighbors;
-  const double r = body.radii.mean();
-  for (std::size_t j = 0; j < all.size(); ++j) {
-    const Eigen::Vector3d d = all[j].body.center - body.center;
-    const double away = d.norm(), gap = std::max(away - r - all[j].body.radii.mean(), 0.0);
-    if (j != f && away > 1e-9) neighbors.push_back({d / away, std::exp(-gap / r)});
-  }
-  return neighbors;
-}
-
-/// `weight` times the share of the surface within 45 degrees about the unit vector `side` that was observed.
-double seen_score(const SeenDirections& seen, const Eigen::Vector3d& side, double weight) {
-  static const double cos_cap = std::cos(deg(45));
-  const auto& bins = DirectionBins::directions();
-  double cap = 0.0, covered = 0.0;
-  for (std::size_t b = 0; b < bins.size(); ++b) {
-    if (bins[b].dot(side) < cos_cap) continue;
-    cap += DirectionBins::shares()[b];
-    if (seen[b]) covered += DirectionBins::shares()[b];
-  }
-  return weight * covered / cap;
-}
-
 /// The pieces of the surroundings that count: those on no fruit.
 std::vector<SurfacePiece> pieces_off(const std::vector<Candidate>& all, const Cloud& surroundings) {
   std::vector<SurfacePiece> pieces = surface_pieces(surroundings);
   for (const Candidate& c : all) pieces = pieces_beyond(kRimReach, c.body, pieces);
   return pieces;
-}
-
-/// What the choice of directions needs to know of a fruit, besides its place among the others.
-struct Sides {
-  Eigen::Vector3d growth_axis;              // unit vector
-  const SeenDirections* seen;               // null: not known
-  const std::vector<SurfacePiece>& pieces;  // of the surroundings
-};
-
-/// Sets the directions of approach to fruit `f`, best first, and what each crosses. A direction scores by how far it
-/// comes from the robot's side, across the growth axis, away from the neighbors, towards the observed surface, and
-/// through little of the surroundings; those near the pedicel are left out.
-void rank_directions(std::vector<Candidate>& all, std::size_t f, const Sides& sides, const Eigen::Vector3d& robot,
-                     const PickingParameters& parameters) {
-  Candidate& c = all[f];
-  const Eigen::Vector3d front = plan::level_direction(robot, c.body.center);
-  const std::vector<Neighbor> neighbors = neighbors_of(all, f);
-  const std::vector<Eigen::Vector3d> spread = plan::spread_directions(parameters.directions);
-  const std::vector<double> crossed = crossed_surface(sides.pieces, c.body, spread, parameters);
-  const double section = kPi * std::pow(parameters.gripper_radius, 2), cos_pedicel = std::cos(parameters.pedicel_angle);
-  std::vector<std::pair<double, std::size_t>> scores;
-  for (std::size_t i = 0; i < spread.size(); ++i) {
-    const Eigen::Vector3d &d = spread[i], side = -d;
-    if (parameters.pedicel_angle > 0.0 && side.dot(sides.growth_axis) > cos_pedicel) continue;
-    double score =
-        parameters.front_weight * d.dot(front) - parameters.across_weight * std::pow(d.dot(sides.growth_axis), 2);
-    for (const Neighbor& n : neighbors)
-      score -= parameters.away_weight * n.weight * std::pow(std::max(side.dot(n.direction), 0.0), 2);
-    if (sides.seen) score += seen_score(*sides.seen, side, parameters.seen_weight);
-    if (crossed[i] > 0.0 && section > 0.0) score -= parameters.clear_weight * crossed[i] / section;
-    scores.emplace_back(-score, i);
-  }
-  std::sort(scores.begin(), scores.end());
-  for (const auto& s : scores) {
-    c.directions.push_back(spread[s.second]);
-    c.crossed.push_back(crossed[s.second]);
-  }
 }
 
 /// The request to approach a fruit along `direction`.
@@ -232,7 +163,7 @@ class PickingRounds {
     std::vector<int> after;
     for (std::size_t j : picked_) {
       others.push_back(all_[j].body);
-      const ApproachAnswer with = try_direction(all_[f], out.direction, out.crossed, others);
+      const ApproachAnswer with = try_direction(all_[f], {out.direction, out.crossed}, others);
       if (!with.reached || with.reached->joints != out.joints) after.push_back(all_[j].id);
       others.pop_back();
     }
@@ -240,21 +171,20 @@ class PickingRounds {
     return after;
   }
 
-  /// Whether a fruit can be approached along `direction`, which crosses `crossed` (m2) of the surroundings, while
-  /// `others` are hanging.
-  ApproachAnswer try_direction(const Candidate& c, const Eigen::Vector3d& direction, double crossed,
+  /// Whether a fruit can be approached along a direction while `others` are hanging.
+  ApproachAnswer try_direction(const Candidate& c, const RankedDirection& along,
                                const std::vector<OrientedEllipsoid>& others) const {
-    const Capsule gripper = swept_gripper(c.body, direction, parameters_);
+    const Capsule gripper = swept_gripper(c.body, along.direction, parameters_);
     const Capsule outside = short_of_center(gripper);
     for (const KeepOut& space : c.keep_out)
       if (overlap(outside, space)) return {std::nullopt, PickingReason::blocked_by_keep_out};
-    if (crossed > parameters_.max_crossed && parameters_.max_crossed < kNoLimit)
+    if (along.crossed > parameters_.max_crossed && parameters_.max_crossed < kNoLimit)
       return {std::nullopt, PickingReason::blocked_by_surroundings};
     for (const OrientedEllipsoid& other : others)
       if (meets(gripper, other)) return {std::nullopt, PickingReason::blocked_by_fruit};
-    const ApproachRequest request = request_of(c, direction, others, parameters_);
+    const ApproachRequest request = request_of(c, along.direction, others, parameters_);
     if (reach_) return reach_(request, joints_);
-    return {ReachableApproach{look_along(request.start, direction), std::nullopt}, PickingReason::not_tested};
+    return {ReachableApproach{look_along(request.start, along.direction), std::nullopt}, PickingReason::not_tested};
   }
 
   /// Write the best approach while `others` are hanging to `out`; false, with the reason, when there is none. Verdicts
@@ -264,14 +194,15 @@ class PickingRounds {
     std::size_t farthest = 0;
     out.reason = PickingReason::no_body;
     for (std::size_t i = 0; i < c.directions.size(); ++i) {
-      if (c.crossed[i] > allowed && c.crossed[i] <= parameters_.max_crossed) continue;
+      const RankedDirection& d = c.directions[i];
+      if (d.crossed > allowed && d.crossed <= parameters_.max_crossed) continue;
       PickingReason reason = c.verdicts[i];
       if (reason == PickingReason::not_tested) {
         throw_if_cancelled();
-        const ApproachAnswer answer = try_direction(c, c.directions[i], c.crossed[i], others);
+        const ApproachAnswer answer = try_direction(c, d, others);
         if (answer.reached) {
-          out.direction = c.directions[i];
-          out.crossed = c.crossed[i];
+          out.direction = d.direction;
+          out.crossed = d.crossed;
           out.world_T_pre_grasp = answer.reached->world_T_pre_grasp;
           out.joints = answer.reached->joints;
           out.reachable = static_cast<bool>(reach_);
@@ -288,9 +219,9 @@ class PickingRounds {
       }
     }
     if (c.directions.empty()) return false;
-    const ApproachRequest request = request_of(c, c.directions[farthest], others, parameters_);
+    const ApproachRequest request = request_of(c, c.directions[farthest].direction, others, parameters_);
     out.direction = request.direction;
-    out.crossed = c.crossed[farthest];
+    out.crossed = c.directions[farthest].crossed;
     out.world_T_pre_grasp = look_along(request.start, request.direction);
     return false;
   }
@@ -366,7 +297,11 @@ std::vector<Picking> plan_picking(const std::vector<Fruit>& fruits, const Pickin
     Candidate& c = all[i];
     if (!c.has_body) continue;
     const SeenDirections* seen = scene.seen.empty() ? nullptr : &scene.seen[c.index];
-    rank_directions(all, i, {fruits[c.index].orientation.col(2), seen, pieces}, scene.robot, parameters);
+    std::vector<OrientedEllipsoid> others;
+    for (const Candidate& other : all)
+      if (&other != &c) others.push_back(other.body);
+    c.directions =
+        ranked_directions(c.body, others, {fruits[c.index].orientation.col(2), seen, pieces}, scene.robot, parameters);
     c.verdicts.assign(c.directions.size(), PickingReason::not_tested);
   }
   return PickingRounds(std::move(all), scene.joints, reach, parameters).plan();
