@@ -86,8 +86,8 @@ void require_like(const ScanResult& a, const ScanResult& b, const Pose& motion, 
 Parameters scaled(double by) {
   Parameters p;
   for (double* length : {&p.surfels.separation, &p.normals.radius, &p.split.growing.radius, &p.split.clustering.eps,
-                         &p.split.bodies.radius_min, &p.split.bodies.radius_max, &p.split.bodies.min_tolerance,
-                         &p.split.bodies.fit.noise, &p.free_space.margin})
+                         &p.split.bodies.radius_min, &p.split.bodies.radius_max, &p.split.bodies.usual_radius,
+                         &p.split.bodies.min_tolerance, &p.split.bodies.fit.noise, &p.free_space.margin})
     *length *= by;
   return p;
 }

@@ -242,12 +242,11 @@ inline double fruit_probability(const Verdict& v, const EllipsoidFit& fit, const
   if (v.support == 0 || !(v.coverage > 0.0)) return 0.0;
   constexpr double kMostPoints = 1500.0, kRoundEnough = 0.8, kLarge = 0.5;  // more changes nothing
   constexpr double kSingleView = -0.4, kSeenOn = 2.8, kCornered = 1.5, kWidest = 0.3;
-  constexpr double kUsual = 0.0252;  // radius of a fruit of usual size (m)
   constexpr double kTooLong = 30.0, kBeyond = 100.0, kMostBeyond = 0.01, kClosed = 0.5;
   const double radius = fit.body.mean_radius();
   // The same share of a smaller surface has fewer points. Where several views agree on a body they count as on one of
   // usual size, whatever sizes are expected; in a single view scraps of leaves are small, too.
-  const double larger = v.seen_on ? 1.0 : std::max(1.0, kUsual / radius);
+  const double larger = v.seen_on ? 1.0 : std::max(1.0, parameters.usual_radius / radius);
   const double points = std::min(larger * larger * static_cast<double>(v.support), kMostPoints);
   const double spread =
       std::sqrt(std::max(0.0, v.normal_spread * v.normal_spread - parameters.normal_noise * parameters.normal_noise));

@@ -202,9 +202,10 @@ struct FitParameters {
 
 /// Parameters of find_bodies: which ellipsoids may be fruit, and how they compete for points.
 struct BodyParameters {
-  double radius_min = 0.008;      ///< smallest expected radius of a fruit (m)
-  double radius_max = 0.060;      ///< largest expected radius of a fruit (m)
-  double tolerance = 0.08;        ///< points within this share of the radius from the surface may belong to the body
+  double radius_min = 0.008;     ///< smallest expected radius of a fruit (m)
+  double radius_max = 0.060;     ///< largest expected radius of a fruit (m)
+  double usual_radius = 0.0252;  ///< several views: points of a smaller body count as many as on one of this radius (m)
+  double tolerance = 0.08;       ///< points within this share of the radius from the surface may belong to the body
   double min_tolerance = 0.0014;  ///< on small bodies, points within this distance from the surface (m)
   double max_angle = deg(35);     ///< if their normals are also within this angle of the body's (rad)
   double min_coverage = 0.08;     ///< least share of the surface that is covered by points, minus contradictions
@@ -241,6 +242,7 @@ struct BodyParameters {
     f("radius_min", p.radius_min, Range::positive().up_to(1.0).in_metres());
     f("radius_max", p.radius_max,
       Range::between({p.radius_min, "radius_min"}, {20.0 * p.radius_min, "20 times radius_min"}).in_metres());
+    f("usual_radius", p.usual_radius, Range::positive().up_to(1.0).in_metres());
     f("tolerance", p.tolerance, Range::above(0.0).below(1.0));
     f("min_tolerance", p.min_tolerance, Range::not_negative().in_metres());
     f("max_angle", p.max_angle, Range::above(0.0).below({kPi, "pi"}).in_radians());

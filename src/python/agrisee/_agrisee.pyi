@@ -546,6 +546,7 @@ class SplitBodiesFitParameters:
 class SplitBodiesParameters:
     radius_min: float
     radius_max: float
+    usual_radius: float
     tolerance: float
     min_tolerance: float
     max_angle: float
