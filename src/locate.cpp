@@ -307,8 +307,8 @@ std::vector<Fruit> locate(const Cloud& cloud, const Split& split, const Eigen::V
   std::vector<Fruit> fruits;
   std::vector<std::size_t> source;  // the entry of split.found that each fruit comes from
   for (std::size_t f = 0; f < members.size(); ++f) {
-    if (members[f].empty()) {
-      given_up(&BodyCounts::little_seen);
+    if (members[f].empty()) {  // as a rule its closed surface is that of no fruit
+      given_up(&BodyCounts::too_flat);
       continue;
     }
     Fruit fruit = fruit_of(cloud, with_joined, members[f], split.found[f], surfaces[f] ? &*surfaces[f] : nullptr,

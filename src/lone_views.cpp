@@ -4,8 +4,6 @@
 #include <agrisee/process.hpp>
 
 #include <algorithm>
-#include <functional>
-#include <utility>
 
 namespace agrisee {
 namespace {
