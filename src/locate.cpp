@@ -10,11 +10,11 @@
 #include <agrisee/geometry/direction_bins.hpp>
 #include <agrisee/geometry/pca.hpp>
 #include <agrisee/locate.hpp>
+#include <agrisee/trusses.hpp>
 
 #include <algorithm>
 #include <bitset>
 #include <cmath>
-#include <map>
 #include <numeric>
 #include <tuple>
 #include <utility>
@@ -202,35 +202,34 @@ bool hardly_seen(const Body& body, const BodyParameters& bodies, double least_se
   return body.completeness < least_seen && body.radii.mean() > kLarge * bodies.radius_max;
 }
 
-/// The radius of a fruit (m), roughly where no body was fitted.
-double radius_of(const Fruit& fruit) { return fruit.body ? fruit.body->radii.mean() : fruit.sigma.norm(); }
-
-/// Eigenvalue of the positions' covariance along a truss over that across it, from which on the direction counts.
-constexpr double kStrung = 2.0;
-
-/// The direction along which fruit are strung (unit, upwards); zero where none stands out.
-Eigen::Vector3d strung_along(const std::vector<const Fruit*>& fruits, const Eigen::Vector3d& mean) {
-  if (fruits.size() < 3) return Eigen::Vector3d::Zero();
-  Eigen::Matrix3d spread = Eigen::Matrix3d::Zero();
-  for (const Fruit* f : fruits) spread += (f->position() - mean) * (f->position() - mean).transpose();
-  const auto pca = principal_axes<double>(mean, spread);
-  if (!(pca.variance[2] > kStrung * pca.variance[1])) return Eigen::Vector3d::Zero();
-  const Eigen::Vector3d along = pca.axes.col(2);
-  return along.z() < 0.0 ? Eigen::Vector3d(-along) : along;
-}
-
-/// The growth frame of a truss, see FoundTruss.
-Pose growth_frame(const std::vector<const Fruit*>& fruits) {
-  Eigen::Vector3d mean = Eigen::Vector3d::Zero(), axes = Eigen::Vector3d::Zero();
-  for (const Fruit* f : fruits) {
-    mean += f->position() / static_cast<double>(fruits.size());
-    axes += f->orientation.col(2);
+/// Number fruit truss by truss, each from the top down.
+/// @param fruits located; their ids and trusses are set
+/// @param truss_gap see Parameters
+/// @param source for each fruit the index of its body
+/// @param bodies number of bodies
+/// @param labels one per point: index of the body + 1, or 0; receives the ids of the fruit, or 0
+std::vector<Fruit> numbered_fruits(std::vector<Fruit> fruits, double truss_gap, const std::vector<std::size_t>& source,
+                                   std::size_t bodies, Labels& labels) {
+  std::vector<std::size_t> order(fruits.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::stable_sort(order.begin(), order.end(),
+                   [&](std::size_t a, std::size_t b) { return fruits[a].centroid.z() > fruits[b].centroid.z(); });
+  std::vector<Fruit> sorted;
+  for (const std::size_t i : order) sorted.push_back(std::move(fruits[i]));
+  const std::vector<int> truss = trusses_of(sorted, truss_gap);
+  std::vector<std::size_t> place(sorted.size());
+  std::iota(place.begin(), place.end(), std::size_t{0});
+  std::stable_sort(place.begin(), place.end(), [&](std::size_t a, std::size_t b) { return truss[a] < truss[b]; });
+  std::vector<Fruit> numbered;
+  std::vector<int> id(bodies + 1, 0);
+  for (const std::size_t p : place) {
+    numbered.push_back(std::move(sorted[p]));
+    numbered.back().id = static_cast<int>(numbered.size());
+    numbered.back().truss = truss[p] + 1;
+    id[source[order[p]] + 1] = numbered.back().id;
   }
-  const Eigen::Vector3d along = strung_along(fruits, mean);
-  Pose pose = Pose::Identity();
-  pose.linear() = frame_from_z_and_x(along.isZero() ? axes : along, Eigen::Vector3d::UnitX());
-  pose.translation() = mean;
-  return pose;
+  for (int& l : labels) l = id[static_cast<std::size_t>(l)];
+  return numbered;
 }
 
 }  // namespace
@@ -239,43 +238,6 @@ Ellipsoid ellipsoid_of(const Body& body) {
   Ellipsoid out;
   out.center = body.center;
   out.A = body.axes * body.radii.cwiseInverse().asDiagonal() * body.axes.transpose();
-  return out;
-}
-
-std::vector<int> trusses_of(const std::vector<Fruit>& fruits, double truss_gap) {
-  std::vector<int> truss(fruits.size(), -1);
-  int count = 0;
-  for (std::size_t first = 0; first < fruits.size(); ++first) {
-    if (truss[first] >= 0) continue;
-    std::vector<std::size_t> front{first};
-    truss[first] = count;
-    while (!front.empty()) {
-      const Fruit& a = fruits[front.back()];
-      front.pop_back();
-      for (std::size_t i = 0; i < fruits.size(); ++i) {
-        if (truss[i] >= 0) continue;
-        const double radii = radius_of(a) + radius_of(fruits[i]);
-        if ((a.position() - fruits[i].position()).norm() > radii + truss_gap * 0.5 * radii) continue;
-        truss[i] = count;
-        front.push_back(i);
-      }
-    }
-    ++count;
-  }
-  return truss;
-}
-
-std::vector<FoundTruss> found_trusses(const std::vector<Fruit>& fruits) {
-  std::map<int, std::vector<const Fruit*>> by_truss;
-  for (const Fruit& f : fruits) by_truss[f.truss].push_back(&f);
-  std::vector<FoundTruss> out;
-  for (const auto& [id, members] : by_truss) {
-    FoundTruss truss;
-    truss.id = id;
-    for (const Fruit* f : members) truss.fruits.push_back(f->id);
-    truss.world_T_truss = growth_frame(members);
-    out.push_back(std::move(truss));
-  }
   return out;
 }
 
@@ -325,27 +287,8 @@ std::vector<Fruit> locate(const Cloud& cloud, const Split& split, const Eigen::V
     fruits.push_back(std::move(fruit));
     source.push_back(f);
   }
-  std::vector<std::size_t> order(fruits.size());
-  std::iota(order.begin(), order.end(), std::size_t{0});
-  std::stable_sort(order.begin(), order.end(),
-                   [&](std::size_t a, std::size_t b) { return fruits[a].centroid.z() > fruits[b].centroid.z(); });
-  std::vector<Fruit> sorted;
-  for (const std::size_t i : order) sorted.push_back(fruits[i]);
-  const std::vector<int> truss = trusses_of(sorted, parameters.truss_gap);
-  std::vector<std::size_t> place(sorted.size());
-  std::iota(place.begin(), place.end(), std::size_t{0});
-  std::stable_sort(place.begin(), place.end(), [&](std::size_t a, std::size_t b) { return truss[a] < truss[b]; });
-  std::vector<Fruit> numbered;
-  std::vector<int> id(split.found.size() + 1, 0);
-  for (const std::size_t p : place) {
-    numbered.push_back(std::move(sorted[p]));
-    numbered.back().id = static_cast<int>(numbered.size());
-    numbered.back().truss = truss[p] + 1;
-    id[source[order[p]] + 1] = numbered.back().id;
-  }
   labels = std::move(with_joined);
-  for (int& l : labels) l = id[static_cast<std::size_t>(l)];
-  return numbered;
+  return numbered_fruits(std::move(fruits), parameters.truss_gap, source, split.found.size(), labels);
 }
 
 }  // namespace agrisee

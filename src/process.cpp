@@ -15,6 +15,7 @@
 #include <agrisee/locate.hpp>
 #include <agrisee/neighbors/kdtree.hpp>
 #include <agrisee/process.hpp>
+#include <agrisee/trusses.hpp>
 
 #include <algorithm>
 #include <cmath>

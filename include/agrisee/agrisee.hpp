@@ -20,4 +20,5 @@
 #include <agrisee/planners.hpp>
 #include <agrisee/process.hpp>
 #include <agrisee/sensor/reconstruct_surface.hpp>
+#include <agrisee/trusses.hpp>
 #include <agrisee/version.hpp>

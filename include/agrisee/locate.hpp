@@ -25,16 +25,6 @@ struct Split;
 /// @param robot the robot's base (m, world)
 Eigen::Vector3d cluster_origin(const Aabb& volume, const Eigen::Vector3d& robot);
 
-/// Group fruit into trusses: fruit are on one truss if the gap between their bodies is at most `truss_gap` mean radii,
-/// directly or through other fruit.
-/// @param fruits located; their ids and `truss` are not used
-/// @param truss_gap see Parameters
-/// @return for each fruit the number of its truss, from 0, in the order of the trusses' first fruit
-std::vector<int> trusses_of(const std::vector<Fruit>& fruits, double truss_gap);
-
-/// The trusses named by `truss` of located fruit, with their growth frames.
-std::vector<FoundTruss> found_trusses(const std::vector<Fruit>& fruits);
-
 /// The ellipsoid of a located body.
 Ellipsoid ellipsoid_of(const Body& body);
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Which fruit hang on one truss, how they are numbered, and the frames of their trusses.
-#include <agrisee/locate.hpp>
 #include <agrisee/process.hpp>
+#include <agrisee/trusses.hpp>
 
 #include "catch.hpp"
 #include "spheres.hpp"
