@@ -230,7 +230,9 @@ TEST_CASE("values out of range are named") {
   refuse(kRobot, kRobot + "  start: [0, 0, 0]\n", "robot.start: expected a list of 6 numbers");
   folder.refuse(kScene + "  - {id: 1, class: fruit, mesh: fruit.stl}\n", ":7: objects[1].id: two fruits have the id 1");
   folder.refuse(kScene + "sensor: {model: kinect}\n",
-                "sensor.model: 'kinect' is not known (known are l515, d405, azure_kinect)");
+                "sensor.model: 'kinect' is not known (known are l515, d405, azure)");
+  folder.refuse(kScene + "sensor: kinect\n", "sensor: 'kinect' is not known (known are l515, d405, azure)");
+  folder.refuse(kScene + "sensor: [l515]\n", "sensor: expected keys and values");
   folder.refuse(kScene + "sensor: {width: 0}\n", "sensor.width");
   folder.refuse(kScene + "sensor: {height: 1000000}\n", "sensor.height");
   folder.refuse(kScene + "sensor: {fov_deg: [70, 180]}\n", "sensor.fov_deg");
@@ -257,7 +259,10 @@ TEST_CASE("any pinhole camera can be described, by name, opening angles or focal
   const sensor::DepthCamera small = camera("{model: d405, width: 640, height: 360, range: [0.06, 0.4]}");
   CHECK(small.intrinsics.fx == Approx(0.5 * d405.intrinsics.fx));
   CHECK(small.range_min == 0.06);
-  CHECK(camera("{model: azure_kinect}").intrinsics.height == 576);
+  CHECK(camera("{model: azure}").intrinsics.height == 576);
+  CHECK(camera("{model: azure_kinect}").intrinsics.fx == camera("azure").intrinsics.fx);
+  CHECK(camera("d405").intrinsics.fx == d405.intrinsics.fx);
+  CHECK(camera("d405").range_max == 0.5);
   const sensor::DepthCamera own = camera(
       "{width: 848, height: 480, fx: 421.5, fy: 422.25, cx: 430.125, cy: 238, range: [0.07, 2], "
       "housing: {radius: 0.05, depth: 0.03}}");

@@ -70,7 +70,7 @@ struct CameraModel {
 /// unbinned mode. Depth images of a real camera have the intrinsics of its calibration.
 constexpr std::array<CameraModel, 3> kCameraModels{{{"l515", 1024, 768, 70, 55, 0.25, 9.0, 0.0305, 0.026},
                                                     {"d405", 1280, 720, 84, 58, 0.1, 0.5, 0.03, 0.023},
-                                                    {"azure_kinect", 640, 576, 75, 65, 0.5, 3.86, 0.065, 0.126}}};
+                                                    {"azure", 640, 576, 75, 65, 0.5, 3.86, 0.065, 0.126}}};
 
 /// An Intel RealSense L515: 1024 x 768 pixels over 70 x 55 degrees, 0.25 to 9 m (data sheet), surfaces seen below 80
 /// degrees of incidence.

@@ -29,6 +29,7 @@ class YamlValue {
   void check_keys(std::initializer_list<const char*> known) const;
   bool has(const char* key) const;
   bool is_list() const { return node_.IsSequence(); }
+  bool is_text() const { return node_.IsScalar(); }
   /// The member `key`, which must exist.
   YamlValue at(const char* key) const;
   /// An item of a list.

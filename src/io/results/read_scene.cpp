@@ -42,13 +42,13 @@ void read_robot(const YamlValue& robot, Workcell& cell, std::vector<std::string>
 
 /// The published figures of a camera by its name.
 const sensor::CameraModel& read_model(const YamlValue& value) {
-  const std::string name = value.text();
+  const std::string text = value.text(), name = text == "azure_kinect" ? "azure" : text;  // its name in older files
   std::string known;
   for (const sensor::CameraModel& model : sensor::kCameraModels) {
     if (name == model.name) return model;
     known += (known.empty() ? "" : ", ") + std::string(model.name);
   }
-  value.fail(excerpt(name) + " is not known (known are " + known + "); any other camera by fx, fy, cx, cy or fov_deg");
+  value.fail(excerpt(text) + " is not known (known are " + known + "); any other camera by fx, fy, cx, cy or fov_deg");
 }
 
 /// A pinhole by its focal lengths, or by its opening angles.
@@ -77,7 +77,12 @@ sensor::Intrinsics read_intrinsics(const YamlValue& value, const sensor::CameraM
   return k;
 }
 
+/// A camera by the name of its model alone, or by keys and values.
 void read_sensor(const YamlValue& value, sensor::DepthCamera& sensor) {
+  if (value.is_text()) {
+    sensor = read_model(value).camera();
+    return;
+  }
   value.check_keys({"model", "width", "height", "fov_deg", "fx", "fy", "cx", "cy", "range", "housing"});
   const sensor::CameraModel& model = value.has("model") ? read_model(value.at("model")) : sensor::kCameraModels[0];
   sensor = model.camera();
