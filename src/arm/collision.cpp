@@ -6,7 +6,7 @@ namespace agrisee::arm {
 namespace {
 
 // True if two parts, a before b in the order of Part, have to be tested against each other. Not tested are adjacent
-// parts (the sensor is part of wrist 3) and pairs that cannot meet at any joint angles: upper arm and base, forearm
+// parts (the sensor is fixed to wrist 3) and pairs that cannot meet at any joint angles: upper arm and base, forearm
 // and wrist 2, wrist 1 and wrist 3.
 constexpr bool may_meet(Part a, Part b) {
   switch (a) {
@@ -19,6 +19,7 @@ constexpr bool may_meet(Part a, Part b) {
     case Part::wrist_1:
       return b >= Part::base;
     case Part::wrist_2:
+      return b >= Part::base;
     case Part::wrist_3:
       return b == Part::base;
     case Part::base:

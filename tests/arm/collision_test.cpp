@@ -114,6 +114,18 @@ TEST_CASE("collision: the arm meets itself") {
   CHECK(collisions < 2500);
 }
 
+TEST_CASE("collision: a camera beside the flange may meet the wrist before it") {
+  Mount mount;
+  mount.tool0_T_optical.translation() = Vector3d(0, -0.07, -0.06);
+  int with_wrist_2 = 0;
+  for (int i = 0; i < 64; ++i)
+    with_wrist_2 += contact(joints(0.5, -1.5, 1.2, -0.6, -1.6, 0.1 * i), mount) == "wrist_2/sensor";
+  CHECK(with_wrist_2 > 0);
+  CHECK(with_wrist_2 < 32);
+  mount.tool0_T_optical.translation() = Vector3d(0, -0.08, 0.03);
+  for (int i = 0; i < 64; ++i) CHECK(contact(joints(0.5, -1.5, 1.2, -0.6, 1.0, 0.1 * i), mount) == "free");
+}
+
 TEST_CASE("collision: the pieces stand where the links do") {
   // Each joint's axis passes through its own housing; the elbow's upper-arm housing ends where the forearm's begins.
   const auto pieces = pieces_in_world(kStretched, Mount{});
