@@ -304,7 +304,7 @@ void Pipeline::plan_picking(ScanResult& out) const {
   scene.robot = workcell_.world_T_base.translation();
   scene.joints = known ? *views_.back().joints : workcell_.start;
   scene.seen = pick::seen_directions(out.cloud, out.labels, out.fruits);
-  scene.surroundings = pick::surroundings_of(out.cloud, out.labels);
+  scene.surroundings = pick::surroundings_of(out.cloud, out.labels, out.raw);
   const std::vector<Picking> plan = pick::plan_picking(out.fruits, scene, approach_, parameters_.picking);
   for (std::size_t i = 0; i < plan.size(); ++i) out.fruits[i].picking = plan[i];
 }

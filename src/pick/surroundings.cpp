@@ -7,6 +7,7 @@
 #include <array>
 #include <cmath>
 #include <numeric>
+#include <tuple>
 
 namespace agrisee::pick {
 namespace {
@@ -85,17 +86,38 @@ class BandedDirections {
   std::vector<std::vector<std::pair<double, std::size_t>>> bands_;  // azimuth (rad) and number
 };
 
+bool comes_before(const Eigen::Vector3f& a, const Eigen::Vector3f& b) {
+  return std::tie(a.x(), a.y(), a.z()) < std::tie(b.x(), b.y(), b.z());
+}
+
+/// The finite points, in order.
+std::vector<Eigen::Vector3f> sorted_finite(const std::vector<Eigen::Vector3f>& points) {
+  std::vector<Eigen::Vector3f> out;
+  for (const Eigen::Vector3f& p : points)
+    if (p.allFinite()) out.push_back(p);
+  std::sort(out.begin(), out.end(), comes_before);
+  return out;
+}
+
 }  // namespace
 
-Cloud surroundings_of(const Cloud& cloud, const Labels& labels) {
+Cloud surroundings_of(const Cloud& cloud, const Labels& labels, const Cloud& raw) {
   check_lengths(cloud);
+  check_lengths(raw);
   check_input(labels.size() == cloud.size(), "surroundings_of: there is not one label for each point");
+  const bool with_normals = !cloud.normals.empty() || !raw.normals.empty();
   Cloud out;
-  for (std::size_t i = 0; i < cloud.size(); ++i) {
-    if (labels[i] > 0) continue;
-    out.points.push_back(cloud.points[i]);
-    if (!cloud.normals.empty()) out.normals.push_back(cloud.normals[i]);
-  }
+  const auto add = [&](const Cloud& from, std::size_t i) {
+    out.points.push_back(from.points[i]);
+    if (with_normals) out.normals.push_back(from.normals.empty() ? Eigen::Vector3f::Zero() : from.normals[i]);
+  };
+  for (std::size_t i = 0; i < cloud.size(); ++i)
+    if (labels[i] <= 0) add(cloud, i);
+  if (raw.empty()) return out;
+  const std::vector<Eigen::Vector3f> kept = sorted_finite(cloud.points);
+  for (std::size_t i = 0; i < raw.size(); ++i)
+    if (raw.points[i].allFinite() && !std::binary_search(kept.begin(), kept.end(), raw.points[i], comes_before))
+      add(raw, i);
   return out;
 }
 

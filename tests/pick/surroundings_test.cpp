@@ -109,6 +109,34 @@ TEST_CASE("surroundings: the points of no fruit, with their normals") {
   CHECK(surroundings_of({}, {}).empty());
 }
 
+TEST_CASE("surroundings: points of the raw cloud that were dropped count, those that were kept count once") {
+  Cloud raw;
+  for (int i = 0; i < 5; ++i) {
+    raw.points.emplace_back(static_cast<float>(4 - i), 0.0f, 0.0f);
+    raw.normals.emplace_back(0.0f, i % 2 == 0 ? 1.0f : -1.0f, 0.0f);
+  }
+  raw.points[4].x() = std::numeric_limits<float>::quiet_NaN();
+  Cloud cloud;
+  for (const std::size_t i : {0, 2, 4}) {
+    cloud.points.push_back(raw.points[i]);
+    cloud.normals.push_back(raw.normals[i]);
+  }
+  cloud.points[2].x() = 9.0f;
+  const Cloud rest = surroundings_of(cloud, {1, 0, 2}, raw);
+  REQUIRE(rest.size() == 3);
+  CHECK(rest.points[0] == raw.points[2]);
+  CHECK(rest.points[1] == raw.points[1]);
+  CHECK(rest.points[2] == raw.points[3]);
+  CHECK(rest.normals[2] == raw.normals[3]);
+  // Where one of the clouds has no normals, those of its points are zero: not known.
+  raw.normals.clear();
+  const Cloud mixed = surroundings_of(cloud, {1, 0, 2}, raw);
+  REQUIRE(mixed.normals.size() == 3);
+  CHECK(mixed.normals[0] == cloud.normals[1]);
+  CHECK(mixed.normals[1].isZero());
+  CHECK(surroundings_of(cloud, {0, 0, 0}, cloud).size() == 3);
+}
+
 TEST_CASE("surroundings: patches have their area, however they are turned, and in any order of the points") {
   Rng rng(3);
   for (int turn = 0; turn < 30; ++turn) {

@@ -145,7 +145,7 @@ TEST_CASE("what was measured beside the fruit counts for the picking") {
     }
     const ScanResult result = pipeline.result();
     REQUIRE(result.fruits.size() == 3);
-    auto pieces = pick::surface_pieces(pick::surroundings_of(result.cloud, result.labels));
+    auto pieces = pick::surface_pieces(pick::surroundings_of(result.cloud, result.labels, result.raw));
     CHECK_FALSE(pieces.empty());
     for (const Fruit& f : result.fruits) pieces = pick::pieces_beyond(pick::kRimReach, pick::occupied(f), pieces);
     for (const Fruit& f : result.fruits) {

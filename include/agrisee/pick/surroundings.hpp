@@ -22,11 +22,15 @@ struct SurfacePiece {
   double area = 0.0;                                 ///< m2
 };
 
-/// The points that belong to no fruit, with their normals if these are known.
+/// The points that belong to no fruit, with their normals if these are known (else zero): of a scan's cloud those
+/// without label, and of its raw cloud those that are not in it. Most of the latter were dropped because other views
+/// looked through their places. They are rims of leaves, thin stalks, and leaves that read too deep, differently from
+/// each side; so something is near them. On plants at `l515`, approaches cross half as much true surface with them.
 /// @param cloud points (m, world)
 /// @param labels one per point: the id of its fruit, 0 = none
+/// @param raw the points from which `cloud` was chosen (m, world); may be empty
 /// @throws InputError when the numbers of points, normals and labels differ
-Cloud surroundings_of(const Cloud& cloud, const Labels& labels);
+Cloud surroundings_of(const Cloud& cloud, const Labels& labels, const Cloud& raw = {});
 
 /// The surface that points show: a piece for every cell, of edge kPieceEdge, that holds finite points. A plane with
 /// unit normal n passes through (|n_x| + |n_y| + |n_z|) / edge^2 cells per area, so each stands for edge^2 / (|n_x| +
