@@ -151,6 +151,12 @@ void look_at_frames(const io::SceneFile& file, Findings& out) {
     out.tell(Level::note, looks + ". Is it the pose of the optical frame (z forward, x right, y down), in metres?");
   else
     out.tell(Level::ok, looks);
+  if (cell.tool0_T_tool)
+    out.tell(Level::ok,
+             "robot.gripper: the gripping point is at " + place_text(cell.tool0_T_tool->translation()) + " in tool0");
+  else
+    out.tell(file.scene.objects.empty() ? Level::note : Level::ok,
+             "robot.gripper: not given, so approaches bring the camera itself to the fruit");
   const arm::Mount mount = plan::mount_of(cell);
   if (const auto contact = arm::find_collision(cell.start, mount)) {
     out.tell(Level::wrong, "robot.start: " + std::string(arm::to_string(contact->part)) + " is inside of " +

@@ -163,6 +163,7 @@ def doctor():
     small_truss()
     good = run("doctor", "t")[0]
     assert "0 wrong, 0 to look at" in good and "3 fruit, all inside" in good, good
+    assert re.search("ok +robot.gripper: not given", good), good
     with open("t/scene.yaml", encoding="utf-8") as file:
         scene = file.read()
 
@@ -178,6 +179,9 @@ def doctor():
     judged(r"base: *\{xyz: *" + number, "base: {xyz: [0, -3, 0]", "WRONG reach: the arm takes 0 of .*3.* m from the base", 2)
     judged(r"tool: *\{xyz: *" + number + ", *rpy: *" + number, "tool: {xyz: [0, 0, 0.03], rpy: [3.14159, 0, 0]",
            "WRONG robot.tool: .* back at the arm", 2)
+    judged(r"tool: *\{", "gripper: {xyz: [0, 0.08, 0.16], rpy: [0, 0, 0]}\n  tool: {",
+           r"ok +robot.gripper: the gripping point is at \(0.00, 0.08, 0.16\) in tool0", 0)
+    judged(r"(?s)objects:.*", "objects: []\n", "NOTE  robot.gripper: not given", 0)
     judged(r"scan_volume: *\{min: *" + number + ", *max: *" + number,
            "scan_volume: {min: [-0.2, 0.4, 0.4], max: [0.2, 0.75, 0.45]}\n#", "NOTE  fruit outside of scan_volume.*1", 0)
 

@@ -4,11 +4,12 @@
 ///
 /// Each link is a union of flat-ended cylinders in its link frame. Those of the UR3 were fitted around the collision
 /// meshes of the robot's published description (Universal_Robots_ROS2_Description, BSD-3): they enclose the meshes
-/// completely, but for the connector at the back of the base, and protrude by a few millimetres at most. The shoulder offset (0.1198 m) of the upper arm and the elbow
-/// offset (0.0275 m) of the forearm, both along the joints' axes, are part of the z coordinates. Other arms have the
-/// same cylinders, stretched to their links and UrModel::thickness times as wide; these are not fitted, but on the safe
-/// side. Each cylinder is enclosed by a capsule for a quick test. The cylinders are tested only if the capsules
-/// overlap, since the round ends of a capsule protrude 2 to 3 cm beyond the flat cap of a joint.
+/// completely, but for the connector at the back of the base, and protrude by a few millimetres at most. The shoulder
+/// offset (0.1198 m) of the upper arm and the elbow offset (0.0275 m) of the forearm, both along the joints' axes, are
+/// part of the z coordinates. Other arms have the same cylinders, stretched to their links and UrModel::thickness times
+/// as wide; these are not fitted, but on the safe side. Each cylinder is enclosed by a capsule for a quick test. The
+/// cylinders are tested only if the capsules overlap, since the round ends of a capsule protrude 2 to 3 cm beyond the
+/// flat cap of a joint.
 ///
 /// The links from the shoulder to wrist 3 and the housing of the sensor are tested against the forbidden spaces. The
 /// base is not, since it stands on something. Links are tested against each other unless they are adjacent or can never
