@@ -161,15 +161,15 @@ void check_side(const Cloud& cloud, const Parameters& parameters, const CloudOri
           *convex >= kLeast, origin, warnings);
 }
 
-/// Take the points from bodies that go on beyond the volume; those that a mask shows stay.
+/// Take the points from bodies that go on beyond the volume, so that they become no fruit; those that a mask shows
+/// stay.
 void forget_cut_bodies(const Cloud& cloud, const Aabb& volume, Split& split) {
   std::vector<Indices> members = indices_by_label(split.labels);
   members.resize(split.found.size());
   for (std::size_t b = 0; b < members.size(); ++b) {
     if (split.found[b].by_mask || !goes_on_beyond(cloud, members[b], split.found[b].fit.body, volume)) continue;
     for (const Index i : members[b]) split.labels[static_cast<std::size_t>(i)] = 0;
-    --split.bodies.taken;
-    ++split.bodies.too_flat;
+    ++split.bodies.too_flat;  // locate() takes it off `taken`, as all bodies without points
   }
 }
 

@@ -39,7 +39,8 @@ Ellipsoid ellipsoid_of(const Body& body);
 /// @param least_seen a body above half of the largest expected radius is no fruit if a smaller share (0..1) of its
 ///   surface was seen
 /// @param counts if not null, a body that is no fruit moves from `taken` to the reason: `little_seen`, or `too_flat` if
-///   it is a part of something larger
+///   its closed surface is that of no fruit, or if it is a part of something larger; a body without points is taken off
+///   `taken` only
 std::vector<Fruit> locate(const Cloud& cloud, const Split& split, const Eigen::Vector3d& cluster_origin,
                           const Parameters& parameters, Labels& labels, const IsFree& is_free = {},
                           double least_seen = 0.0, BodyCounts* counts = nullptr);

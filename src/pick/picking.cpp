@@ -17,6 +17,21 @@ namespace {
 
 constexpr double kNoLimit = 10.0;  // m2: a `max_crossed` from which on there is none
 
+/// What became of a direction when it was tested last.
+struct LastAnswer {
+  PickingReason reason = PickingReason::not_tested;
+  std::size_t picked = 0;  // number of fruit that had been picked before
+
+  /// Whether picking fruit may change it.
+  bool is_due_to_fruit() const {
+    return reason == PickingReason::blocked_by_fruit || reason == PickingReason::arm_meets_fruit;
+  }
+  /// Whether the direction has to be tested when so many fruit have been picked.
+  bool is_open(std::size_t now) const {
+    return reason == PickingReason::not_tested || (is_due_to_fruit() && picked != now);
+  }
+};
+
 /// A fruit while its picking is being planned.
 struct Candidate {
   std::size_t index = 0;  // in the caller's list
@@ -26,7 +41,7 @@ struct Candidate {
   double depth = 0.0;                       // distance from the robot along the front (m)
   std::vector<KeepOut> keep_out;            // that apply to this fruit
   std::vector<RankedDirection> directions;  // of approach, best first
-  std::vector<PickingReason> verdicts;      // one per direction; `not_tested` as long as other fruit may decide
+  std::vector<LastAnswer> answers;          // one per direction
 };
 
 /// @throws InputError when fruit or scene cannot be planned with, see plan_picking; ParameterError
@@ -134,7 +149,7 @@ class PickingRounds {
     std::vector<std::size_t> free;
     for (std::size_t f : hanging_) {
       Picking& out = plan_[all_[f].index];
-      if (!first && !may_have_changed(all_[f], out)) continue;
+      if (!first && !may_have_changed(all_[f])) continue;
       std::vector<OrientedEllipsoid> others = others_than(f);
       if (!plan_approach(all_[f], others, allowed, out)) continue;
       free.push_back(f);
@@ -144,10 +159,10 @@ class PickingRounds {
   }
 
   /// Whether a fruit that could not be picked may be free now: only the other fruit can have changed, by being picked.
-  static bool may_have_changed(const Candidate& c, const Picking& out) {
-    return out.reason == PickingReason::blocked_by_fruit || out.reason == PickingReason::arm_meets_fruit ||
-           std::any_of(c.verdicts.begin(), c.verdicts.end(),
-                       [](PickingReason r) { return r == PickingReason::not_tested; });
+  static bool may_have_changed(const Candidate& c) {
+    return std::any_of(c.answers.begin(), c.answers.end(), [](const LastAnswer& v) {
+      return v.reason == PickingReason::not_tested || v.is_due_to_fruit();
+    });
   }
 
   /// The hanging fruit but `f`.
@@ -187,17 +202,17 @@ class PickingRounds {
     return {ReachableApproach{look_along(request.start, along.direction), std::nullopt}, PickingReason::not_tested};
   }
 
-  /// Write the best approach while `others` are hanging to `out`; false, with the reason, when there is none. Verdicts
-  /// that do not depend on other fruit are kept for later rounds.
+  /// Write the best approach while `others` are hanging to `out`; false, with the reason, when there is none. Answers
+  /// are kept for later rounds; those that depend on other fruit until one of them is picked.
   /// @param allowed directions that cross more (m2), but not too much, are left for later rounds
   bool plan_approach(Candidate& c, const std::vector<OrientedEllipsoid>& others, double allowed, Picking& out) const {
     std::size_t farthest = 0;
     out.reason = PickingReason::no_body;
     for (std::size_t i = 0; i < c.directions.size(); ++i) {
       const RankedDirection& d = c.directions[i];
-      if (d.crossed > allowed && d.crossed <= parameters_.max_crossed) continue;
-      PickingReason reason = c.verdicts[i];
-      if (reason == PickingReason::not_tested) {
+      PickingReason reason = c.answers[i].reason;
+      if (c.answers[i].is_open(picked_.size())) {
+        if (d.crossed > allowed && d.crossed <= parameters_.max_crossed) continue;
         throw_if_cancelled();
         const ApproachAnswer answer = try_direction(c, d, others);
         if (answer.reached) {
@@ -210,8 +225,7 @@ class PickingRounds {
           return true;
         }
         reason = std::max(answer.reason, PickingReason::blocked_by_keep_out);
-        if (reason != PickingReason::blocked_by_fruit && reason != PickingReason::arm_meets_fruit)
-          c.verdicts[i] = reason;
+        c.answers[i] = {reason, picked_.size()};
       }
       if (reason > out.reason) {
         out.reason = reason;
@@ -302,7 +316,7 @@ std::vector<Picking> plan_picking(const std::vector<Fruit>& fruits, const Pickin
       if (&other != &c) others.push_back(other.body);
     c.directions =
         ranked_directions(c.body, others, {fruits[c.index].orientation.col(2), seen, pieces}, scene.robot, parameters);
-    c.verdicts.assign(c.directions.size(), PickingReason::not_tested);
+    c.answers.resize(c.directions.size());
   }
   return PickingRounds(std::move(all), scene.joints, reach, parameters).plan();
 }

@@ -347,6 +347,21 @@ TEST_CASE("surroundings: a fruit that would be picked through a tray waits until
   CHECK(through[1].crossed > 3e-4);
 }
 
+TEST_CASE("surroundings: the arm is not asked again before another fruit is picked") {
+  const std::vector<Fruit> fruits{ball(1, {0.0, 0.5, 0.2}), ball(2, {0.0, 0.7, 0.2})};
+  Cloud shell = bowl(fruits[0].body->center, Vector3d::UnitY(), deg(60));
+  std::size_t asked = 0;
+  const ReachApproach never = [&](const ApproachRequest&, const Joints&) -> ApproachAnswer {
+    ++asked;
+    return {std::nullopt, PickingReason::arm_meets_fruit};
+  };
+  PickingParameters p;
+  const auto plan = plan_picking(fruits, among(shell), never, p);
+  CHECK(plan[0].reason == PickingReason::arm_meets_fruit);
+  CHECK(asked > static_cast<std::size_t>(p.directions));
+  CHECK(asked <= 2 * static_cast<std::size_t>(p.directions));
+}
+
 TEST_CASE("surroundings: points on the fruit, its neighbors and far away change nothing") {
   const std::vector<Fruit> fruits{ball(1, {0.0, 0.5, 0.2}), ball(2, {0.09, 0.52, 0.22}), ball(3, {-0.02, 0.59, 0.15})};
   const auto plain = plan_picking(fruits, among({}));

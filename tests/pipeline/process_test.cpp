@@ -535,4 +535,31 @@ TEST_CASE("without bodies the border of the scan volume takes no fruit away") {
     }
 }
 
+TEST_CASE("bodies that the border of the scan volume cuts are counted once") {
+  // Beside the fruit an upright post that ends at the upper face.
+  Cloud cloud = seen();
+  constexpr double kPost = 0.03, kTop = 0.26;
+  const Eigen::Vector3d foot(0.15, 0.5, 0.0);
+  for (int i = 0; i < 6000; ++i) {
+    const double phi = 2.4 * i;
+    const Eigen::Vector3d n(std::cos(phi), std::sin(phi), 0.0);
+    if (n.y() > 0.0) continue;  // not seen
+    cloud.points.push_back((foot + kPost * n + Eigen::Vector3d(0, 0, kTop - 0.06 * i / 6000.0)).cast<float>());
+    cloud.normals.push_back(n.cast<float>());
+  }
+  cloud.views.clear();
+  CloudOrigin origin = from_eye(false);
+  origin.volume = bounding_box(cloud.points);
+  Parameters parameters = all_points();
+  parameters.split.bodies.min_confidence = 0.0;
+  parameters.split.bodies.min_roundness = 0.0;
+  const ScanResult cut = process(cloud, parameters, origin);
+  origin.volume->max.z() = kTop + 0.1;
+  const ScanResult whole = process(cloud, parameters, origin);
+  CHECK(cut.fruits.size() < whole.fruits.size());
+  CHECK(cut.bodies.taken == cut.fruits.size());
+  CHECK(whole.bodies.taken == whole.fruits.size());
+  CHECK(cut.bodies.too_flat > whole.bodies.too_flat);
+}
+
 }  // namespace process_test
