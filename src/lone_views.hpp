@@ -15,7 +15,8 @@ namespace agrisee {
 
 /// Doubt the poses, the calibration or that the plant stood still, where views by themselves show several fruit and all
 /// together hardly any: what is laid down in different places makes no round surface. Only where at most one fruit was
-/// found, as then the views cannot be compared on the fruit. Cost: three times the processing of a view.
+/// found, which tells little about how the views agree, and only for fused surfaces. Cost: three times the processing
+/// of a view.
 /// @param map what each view shows
 /// @param views of the scan
 /// @param parameters of all stages

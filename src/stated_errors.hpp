@@ -18,8 +18,9 @@ namespace agrisee {
 void state_errors(const fuse::Views& map, const Parameters& parameters, std::vector<Fruit>& fruits);
 
 /// Doubt the calibration if the views show the fruit in other places, with the change of it or the motion of the plant
-/// that would make them agree. What the change makes of a fruit counts as an error of it. If the plant moved, so may
-/// any fruit have, and bodies between both places are too small.
+/// that would make them agree. The shift and the change of volume that it would cause are added to each fruit's
+/// stated errors. If the plant moved, the motion is added to every fruit's, as a body fitted to both places may be too
+/// small.
 /// @param fruits as located in the map's cloud
 /// @return the doubt as a sentence, see doubt_of
 std::optional<std::string> doubt_calibration(const fuse::Views& map, const Parameters& parameters,

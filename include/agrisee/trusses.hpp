@@ -16,7 +16,8 @@ namespace agrisee {
 /// @return for each fruit the number of its truss, from 0, in the order of the trusses' first fruit
 std::vector<int> trusses_of(const std::vector<Fruit>& fruits, double truss_gap);
 
-/// The trusses named by `truss` of located fruit, with their growth frames.
+/// The trusses of located fruit, grouped by `Fruit::truss`, ascending, each with its growth frame.
+/// @param fruits as locate() returns them; their ids are listed in this order, from the top down
 std::vector<FoundTruss> found_trusses(const std::vector<Fruit>& fruits);
 
 }  // namespace agrisee

@@ -155,8 +155,10 @@ void look_at_frames(const io::SceneFile& file, Findings& out) {
     out.tell(Level::ok,
              "robot.gripper: the gripping point is at " + place_text(cell.tool0_T_tool->translation()) + " in tool0");
   else
-    out.tell(file.scene.objects.empty() ? Level::note : Level::ok,
-             "robot.gripper: not given, so approaches bring the camera itself to the fruit");
+    out.tell(
+        file.scene.objects.empty() ? Level::note : Level::ok,
+        "robot.gripper: not given, so the gripping point is on the optical axis, picking.tool_length (by default 0) "
+        "ahead of the camera");
   const arm::Mount mount = plan::mount_of(cell);
   if (const auto contact = arm::find_collision(cell.start, mount)) {
     out.tell(Level::wrong, "robot.start: " + std::string(arm::to_string(contact->part)) + " is inside of " +

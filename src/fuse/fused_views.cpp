@@ -29,7 +29,7 @@ void move_image(sensor::SurfaceImage& image, const Pose& to_T_from) {
 }
 
 /// What may belong to bodies: a ball around each (m), wide enough for fuse::body_errors and fuse::check_calibration.
-std::vector<Sphere> surroundings_of(const std::vector<Ellipsoid>& bodies) {
+std::vector<Sphere> balls_around(const std::vector<Ellipsoid>& bodies) {
   std::vector<Sphere> out;
   for (const Ellipsoid& body : bodies)
     out.push_back({body.center, semi_axes(body).first.maxCoeff() + 0.5 * body.mean_radius()});
@@ -192,7 +192,7 @@ sensor::SurfaceImage FusedViews::near_bodies(std::size_t view, std::vector<Spher
 /// @param parts receives what is taken of whole images
 std::vector<RegisteredView> FusedViews::registered_views(const std::vector<Ellipsoid>& bodies,
                                                          std::vector<sensor::SurfaceImage>& parts) const {
-  const std::vector<Sphere> balls = surroundings_of(bodies);
+  const std::vector<Sphere> balls = balls_around(bodies);
   parts.assign(images_.size(), {});
   std::vector<RegisteredView> views;
   for (std::size_t v = 0; v < images_.size(); ++v) {

@@ -15,8 +15,6 @@ namespace agrisee::pick {
 
 namespace {
 
-constexpr double kNoLimit = 10.0;  // m2: a `max_crossed` from which on there is none
-
 /// What became of a direction when it was tested last.
 struct LastAnswer {
   PickingReason reason = PickingReason::not_tested;
@@ -88,10 +86,10 @@ void set_depths(std::vector<Candidate>& all, const Eigen::Vector3d& robot) {
   for (Candidate& c : all) c.depth = front.dot(c.body.center - robot);
 }
 
-/// The pieces of the surroundings that count: those on no fruit.
+/// The pieces of the surroundings that are at least kRim from every fruit.
 std::vector<SurfacePiece> pieces_off(const std::vector<Candidate>& all, const Cloud& surroundings) {
   std::vector<SurfacePiece> pieces = surface_pieces(surroundings);
-  for (const Candidate& c : all) pieces = pieces_beyond(kRimReach, c.body, pieces);
+  for (const Candidate& c : all) pieces = pieces_beyond(kRim, c.body, pieces);
   return pieces;
 }
 
@@ -193,7 +191,7 @@ class PickingRounds {
     const Capsule outside = short_of_center(gripper);
     for (const KeepOut& space : c.keep_out)
       if (overlap(outside, space)) return {std::nullopt, PickingReason::blocked_by_keep_out};
-    if (along.crossed > parameters_.max_crossed && parameters_.max_crossed < kNoLimit)
+    if (along.crossed > parameters_.max_crossed && parameters_.max_crossed < PickingParameters::kNoLimit)
       return {std::nullopt, PickingReason::blocked_by_surroundings};
     for (const OrientedEllipsoid& other : others)
       if (meets(gripper, other)) return {std::nullopt, PickingReason::blocked_by_fruit};

@@ -44,22 +44,22 @@ double seen_score(const SeenDirections& seen, const Eigen::Vector3d& side, doubl
 }  // namespace
 
 std::vector<RankedDirection> ranked_directions(const OrientedEllipsoid& fruit,
-                                               const std::vector<OrientedEllipsoid>& others, const Sides& sides,
+                                               const std::vector<OrientedEllipsoid>& others, const Preferences& by,
                                                const Eigen::Vector3d& robot, const PickingParameters& parameters) {
   const Eigen::Vector3d front = plan::level_direction(robot, fruit.center);
   const std::vector<Neighbor> neighbors = neighbors_of(fruit, others);
   const std::vector<Eigen::Vector3d> spread = plan::spread_directions(parameters.directions);
-  const std::vector<double> crossed = crossed_surface(sides.pieces, fruit, spread, parameters);
+  const std::vector<double> crossed = crossed_surface(by.pieces, fruit, spread, parameters);
   const double section = kPi * std::pow(parameters.gripper_radius, 2), cos_pedicel = std::cos(parameters.pedicel_angle);
   std::vector<std::pair<double, std::size_t>> scores;
   for (std::size_t i = 0; i < spread.size(); ++i) {
     const Eigen::Vector3d &d = spread[i], side = -d;
-    if (parameters.pedicel_angle > 0.0 && side.dot(sides.growth_axis) > cos_pedicel) continue;
+    if (parameters.pedicel_angle > 0.0 && side.dot(by.growth_axis) > cos_pedicel) continue;
     double score =
-        parameters.front_weight * d.dot(front) - parameters.across_weight * std::pow(d.dot(sides.growth_axis), 2);
+        parameters.front_weight * d.dot(front) - parameters.across_weight * std::pow(d.dot(by.growth_axis), 2);
     for (const Neighbor& n : neighbors)
       score -= parameters.away_weight * n.weight * std::pow(std::max(side.dot(n.direction), 0.0), 2);
-    if (sides.seen) score += seen_score(*sides.seen, side, parameters.seen_weight);
+    if (by.seen) score += seen_score(*by.seen, side, parameters.seen_weight);
     if (crossed[i] > 0.0 && section > 0.0) score -= parameters.clear_weight * crossed[i] / section;
     scores.emplace_back(-score, i);
   }

@@ -12,11 +12,11 @@ namespace agrisee::pick {
 /// A direction of approach.
 struct RankedDirection {
   Eigen::Vector3d direction;  // unit vector, along which the gripper moves
-  double crossed = 0.0;       // surface of the surroundings in its way (m2)
+  double crossed = 0.0;       // measured surface that the gripper would cross (m2)
 };
 
-/// What the choice of directions needs to know of a fruit, besides its place among the others.
-struct Sides {
+/// What the directions are scored by, besides the places of the fruit.
+struct Preferences {
   Eigen::Vector3d growth_axis;              // unit vector
   const SeenDirections* seen;               // null: not known
   const std::vector<SurfacePiece>& pieces;  // of the surroundings
@@ -28,7 +28,7 @@ struct Sides {
 /// @param fruit, others the space that they take up
 /// @param robot where the robot's base stands (m)
 std::vector<RankedDirection> ranked_directions(const OrientedEllipsoid& fruit,
-                                               const std::vector<OrientedEllipsoid>& others, const Sides& sides,
+                                               const std::vector<OrientedEllipsoid>& others, const Preferences& by,
                                                const Eigen::Vector3d& robot, const PickingParameters& parameters);
 
 }  // namespace agrisee::pick

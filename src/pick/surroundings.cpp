@@ -146,13 +146,13 @@ std::vector<SurfacePiece> surface_pieces(const Cloud& surroundings) {
   return pieces;
 }
 
-std::vector<SurfacePiece> pieces_beyond(double reach, const OrientedEllipsoid& fruit,
+std::vector<SurfacePiece> pieces_beyond(double least, const OrientedEllipsoid& fruit,
                                         const std::vector<SurfacePiece>& pieces) {
   std::vector<SurfacePiece> out;
-  const double near = fruit.radii.minCoeff() + reach, far = fruit.radii.maxCoeff() + reach;
+  const double near = fruit.radii.minCoeff() + least, far = fruit.radii.maxCoeff() + least;
   for (const SurfacePiece& piece : pieces) {
     const double away = (piece.center - fruit.center).squaredNorm();
-    if (away >= far * far || (away >= near * near && distance(fruit, piece.center) >= reach)) out.push_back(piece);
+    if (away >= far * far || (away >= near * near && distance(fruit, piece.center) >= least)) out.push_back(piece);
   }
   return out;
 }

@@ -46,8 +46,8 @@ std::vector<char> points_since(const Cloud& cloud, std::size_t view) {
   return since;
 }
 
-/// How much a view counts that did not show what was expected of it, 0..1: the share of the surface before it that it
-/// measured, but at least a quarter, so that no view is tried for ever. A view of which nothing was taken counts in
+/// How much a view counts that did not show what was expected of it, 0..1: the share of the surface in front of it that
+/// it measured, but at least a quarter, so that no view is tried for ever. A view of which nothing was taken counts in
 /// full.
 double measured_share(const sensor::SurfaceImage& image, const fuse::FreeSpaceParameters& free_space) {
   constexpr double kLeast = 0.25;

@@ -201,11 +201,11 @@ TEST_CASE("where views alone show fruit that all together do not, a warning doub
   CHECK_THAT(far,
              test::says("view 0 alone shows 3 fruit and view 2 alone shows 3 fruit, but all views together show 0"));
   CHECK_THAT(far, test::says("Are the hand-eye transform and the depth scale right?"));
-  // A single fruit that was found needs no such doubt, and neither does a place without fruit.
-  const auto one_left = [](sensor::DepthFrame& frame, Pose&) {
+  // A place where nothing is seen is no reason for doubt.
+  const auto nothing_seen = [](sensor::DepthFrame& frame, Pose&) {
     std::fill(frame.depth.begin(), frame.depth.end(), 0.0f);
   };
-  CHECK_THAT(warnings_after(8, one_left), !test::says("alone shows"));
+  CHECK_THAT(warnings_after(8, nothing_seen), !test::says("alone shows"));
 }
 
 TEST_CASE("a wrong scale of the depths counts as an error of the fruit") {

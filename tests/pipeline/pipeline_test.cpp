@@ -147,7 +147,7 @@ TEST_CASE("what was measured beside the fruit counts for the picking") {
     REQUIRE(result.fruits.size() == 3);
     auto pieces = pick::surface_pieces(pick::surroundings_of(result.cloud, result.labels, result.raw));
     CHECK_FALSE(pieces.empty());
-    for (const Fruit& f : result.fruits) pieces = pick::pieces_beyond(pick::kRimReach, pick::occupied(f), pieces);
+    for (const Fruit& f : result.fruits) pieces = pick::pieces_beyond(pick::kRim, pick::occupied(f), pieces);
     for (const Fruit& f : result.fruits) {
       const double here = pick::crossed_surface(pieces, pick::occupied(f), {f.picking->direction}, p.picking).front();
       CHECK(f.picking->crossed == Approx(here));

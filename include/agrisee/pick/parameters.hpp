@@ -10,6 +10,8 @@ namespace agrisee::pick {
 
 /// Parameters of plan_picking and of the test whether the arm can follow an approach (arm_approach.hpp).
 struct PickingParameters {
+  static constexpr double kNoLimit = 10.0;  ///< a `max_crossed` from which on there is no limit (m2)
+
   bool enabled = true;             ///< plan the picking at the end of a scan
   double stand_off = 0.12;         ///< distance of the tool from the body's surface at the pre-grasp pose (m)
   double contact = 0.0;            ///< the approach ends this far before the surface (m); negative: inside the body
@@ -28,7 +30,8 @@ struct PickingParameters {
   double away_weight = 1.0;    ///< preference for sides of the fruit without neighbors
   double clear_weight = 2.0;   ///< preference for approaches that cross little of what was measured beside the fruit;
                                ///< 0: it does not matter
-  double max_crossed = 10.0;   ///< largest surface of it that an approach may cross (m2); 10 or more: no limit
+  double max_crossed = kNoLimit;  ///< largest measured surface beside the fruit that an approach may cross (m2);
+                                  ///< kNoLimit or more: no limit
 
   /// For the stages of [1], which plan no picking: disabled.
   static PickingParameters paper() {

@@ -13,7 +13,8 @@
 /// are preferred, and those that cross more than `max_crossed` are not taken. What is crossed is part of the plan.
 ///
 /// Fruit are planned in rounds: first those whose approach is free while all the others are hanging, then those that
-/// are free once these have been picked, and so on. Within a round the fruit nearest to the robot come first; among
+/// are free once these have been picked, and so on. A round admits approaches through more of the surroundings only if
+/// no fruit is free through less. Within a round the fruit nearest to the robot come first; among
 /// fruit whose depths differ by less than `depth_tie` the arm's shortest move decides. The plan does not depend on the
 /// order in which the fruit and the points of the surroundings are given. World frame, metres. Cost: a few ms for nine
 /// fruit with the UR3, and up to 1 ms more per fruit among 20,000 points of leaves; a fruit that no direction reaches

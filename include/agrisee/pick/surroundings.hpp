@@ -14,7 +14,7 @@ namespace agrisee::pick {
 constexpr double kPieceEdge = 0.005;  ///< edge of the cells in which measured surface is counted (m)
 /// What is nearer than this (m) to the body of a fruit does not count: most of that is points of the fruit that got no
 /// label, and its calyx.
-constexpr double kRimReach = 0.005;
+constexpr double kRim = 0.005;
 
 /// A small piece of measured surface.
 struct SurfacePiece {
@@ -24,8 +24,8 @@ struct SurfacePiece {
 
 /// The points that belong to no fruit, with their normals if these are known (else zero): of a scan's cloud those
 /// without label, and of its raw cloud those that are not in it. Most of the latter were dropped because other views
-/// looked through their places. They are rims of leaves, thin stalks, and leaves that read too deep, differently from
-/// each side; so something is near them. On plants at `l515`, approaches cross half as much true surface with them.
+/// looked through them: rims of leaves, thin stalks, and leaves measured too deep, which each view puts elsewhere. So
+/// something is near. Counting them halves the true surface that approaches cross (plants, `l515`).
 /// @param cloud points (m, world)
 /// @param labels one per point: the id of its fruit, 0 = none
 /// @param raw the points from which `cloud` was chosen (m, world); may be empty
@@ -40,12 +40,12 @@ Cloud surroundings_of(const Cloud& cloud, const Labels& labels, const Cloud& raw
 /// @throws InputError as check_lengths
 std::vector<SurfacePiece> surface_pieces(const Cloud& surroundings);
 
-/// The pieces whose centers are at least `reach` (m) from a fruit's body.
-std::vector<SurfacePiece> pieces_beyond(double reach, const OrientedEllipsoid& fruit,
+/// The pieces whose centers are at least `least` (m) from a fruit's body.
+std::vector<SurfacePiece> pieces_beyond(double least, const OrientedEllipsoid& fruit,
                                         const std::vector<SurfacePiece>& pieces);
 
 /// Area (m2) of the pieces whose centers are inside the swept gripper, for each direction of approach to a fruit.
-/// @param pieces that count for this fruit
+/// @param pieces of the surroundings, without those near any fruit
 /// @param fruit the space that the fruit takes up
 /// @param directions unit vectors, along which the gripper moves
 /// @param parameters for the size of the gripper

@@ -11,9 +11,9 @@
 /// ellipsoid or other point of the cloud hides it. The area of a sample shrinks with each view that should have shown
 /// it but did not, because the prediction seems to be wrong there. A body with a fruit probability p below one half
 /// counts with the weight 2 p instead of not at all, so that doubtful bodies are looked at. What stays doubtful, or
-/// little seen, counts half with every view that looked at it: such bodies are leaves more often than fruit. The share
-/// of the expected surface that the last views really showed is the reliability of further expectations. World frame,
-/// metres; gains in m2 of fruit surface.
+/// little seen, counts half as much with every view that looked at it: such bodies are leaves more often than fruit.
+/// The share of the expected surface that the last views really showed is the reliability of further expectations.
+/// World frame, metres; gains in m2 of fruit surface.
 #pragma once
 
 #include <agrisee/cloud/found_body.hpp>
@@ -106,10 +106,10 @@ class ExpectedSurface {
   double weight_of(const FoundBody& body);
   /// Compare what was expected of a view with the cloud and the space that are known since.
   /// @param grid of the cloud's points
-  /// @param measured share (0..1) of the surface before it that the view measured
+  /// @param measured share (0..1) of the surface in front of the camera that the view measured
   void weigh(const std::vector<Promise>& promised, const Grid<float>& grid, double measured);
   /// Mark what the sight lines of new views have reached. Where earlier ones are others than before, as the map has
-  /// started again, everything is forgotten.
+  /// started again, everything but the reliability is forgotten.
   void read_sight_lines(const std::vector<sensor::SurfaceImage>& images, const fuse::FreeSpaceParameters& free_space);
   /// Find the fruit in the merged cloud and set `bodies_`; returns one label per point, 0 = no fruit.
   Labels find_fruit(const Progress& progress, const SplitParameters& split_parameters,

@@ -10,9 +10,9 @@
 /// that the arm last answered for the view, which for most candidates is of an earlier call. The reach of the best
 /// candidates is computed again from the arm's present joints: those that it can no longer take are dropped, and
 /// directions close to theirs are tried as well, and then closer ones about the best of all. The scan ends when the
-/// best view promises less than `min_gain` of the fruit surface known so far, or, while there is none, of that of one
-/// fruit of middle size. Promises are scaled by ExpectedSurface::reliability, because views among leaves show less than
-/// they promise. World frame, metres, seconds.
+/// best view promises less than `min_gain` of the fruit surface known so far, which counts as at least that of one
+/// fruit of middle size (radius sqrt(radius_min radius_max)). Promises are scaled by ExpectedSurface::reliability,
+/// because views among leaves show less than they promise. World frame, metres, seconds.
 #pragma once
 
 #include <agrisee/plan/expected_surface.hpp>
@@ -103,7 +103,7 @@ class GainPlanner : public Planner {
   Aabb extent_;                 // of the fruit when the candidates were made
   std::vector<Scored> ranked_;  // views worth taking after the last frame, best first; empty until they are rated
   std::vector<ViewRequest> left_out_;   // the last one taken, and those refused since
-  std::optional<ViewRequest> last_;     // behind the view last returned, unless it was refused
+  std::optional<ViewRequest> last_;     // the request of the view last returned, unless it was refused
   Joints asked_from_ = Joints::Zero();  // the joints for which it was returned
   std::optional<Completeness> completeness_;
   int refused_ = 0;                   // views refused since the last frame; the front view skips as many

@@ -53,8 +53,8 @@ struct GainPlannerParameters {
   double distance_max = 0.55;       ///< longest distance of a view from its target (m)
   double dwell = 20.0;  ///< what a view costs besides the move (s): the default asks for few views; with a slow arm the
                         ///< true 1 to 3 s for settling, exposure and computing ask for shorter moves and more views
-  double min_gain = 0.0012;  ///< the scan ends when the best view promises less than this share of the known surface,
-                             ///< or, while no fruit is known, of that of a fruit of middle size
+  double min_gain = 0.0012;  ///< the scan ends when the best view promises less than this share of the fruit surface
+                             ///< known, which counts as at least that of one fruit of middle size
   ExpectedSurfaceParameters expected;  ///< what a view is expected to show
 
   /// @throws FieldError for the first field that is out of its range

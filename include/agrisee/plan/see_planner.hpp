@@ -45,7 +45,7 @@ class SeePlanner : public Planner {
   see::Explorer explorer_;
   Indices explored_;  // per point of the map: its index in the explorer; -1 if that has dropped it
   Eigen::Vector3d sensor_ = Eigen::Vector3d::Zero();  // position of the sensor at the last view (m)
-  std::optional<see::ViewProposal> last_;             // behind the view last returned, unless that was taken or refused
+  std::optional<see::ViewProposal> last_;  // the proposal of the view last returned, unless that was taken or refused
   Eigen::Vector3d offered_from_ = Eigen::Vector3d::Zero();  // position of the sensor in that view (m)
   int refused_first_ = 0;                                   // views refused so far; the first view skips as many
   StopReason reason_ = StopReason::not_stopped;
