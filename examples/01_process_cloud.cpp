@@ -8,7 +8,7 @@ std::vector<Eigen::Vector3f> my_points();
 
 int main() {
   agrisee::Cloud cloud;
-  cloud.points = my_points();  // metres, z up
+  cloud.points = my_points();  // std::vector<Eigen::Vector3f>, metres, z up
   agrisee::CloudOrigin origin;
   origin.viewpoint = Eigen::Vector3d(0.0, 0.0, 0.2);  // where they were seen from
   const agrisee::ScanResult result = agrisee::process(cloud, {}, origin);

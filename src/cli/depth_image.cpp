@@ -59,11 +59,12 @@ Cloud points_of(const sensor::DepthFrame& frame) {
   return cloud;
 }
 
-/// That the scale of the depths may be wrong, if no fruit was found and the scale was not given, or most bodies are of
-/// no expected size.
+/// That no pixel has a depth, or that the scale of the depths may be wrong, if no fruit was found and the scale was not
+/// given, or most bodies are of no expected size.
 std::optional<std::string> doubt_of_scale(const ScanResult& result, double median_depth, bool given) {
   const BodyCounts& n = result.bodies;
   if (!result.fruits.empty()) return std::nullopt;
+  if (!(median_depth > 0.0)) return "no pixel of the depth image has a depth";
   const std::string depth = "the median depth is " + metres(median_depth);
   if (2 * (n.too_large + n.too_small) > n.rejected())
     return "most surfaces are too " + std::string(n.too_large > n.too_small ? "large" : "small") + " for fruit, and " +

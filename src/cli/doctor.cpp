@@ -161,8 +161,8 @@ void look_at_frames(const io::SceneFile& file, Findings& out) {
         "ahead of the camera");
   const arm::Mount mount = plan::mount_of(cell);
   if (const auto contact = arm::find_collision(cell.start, mount)) {
-    out.tell(Level::wrong, "robot.start: " + std::string(arm::to_string(contact->part)) + " is inside of " +
-                               std::string(contact->with));
+    out.tell(Level::note, "robot.start: " + std::string(arm::to_string(contact->part)) + " is inside of " +
+                              std::string(contact->with) + ": the first move starts there");
     return;
   }
   const Pose start = optical_pose(cell, cell.start);
@@ -174,8 +174,11 @@ void look_at_camera(const Workcell& cell, Findings& out) {
   const plan::ViewRequest usual;
   const sensor::Intrinsics& k = cell.sensor.intrinsics;
   const double pixel = 1e3 * usual.distance / std::min(k.fx, k.fy);  // mm
-  const std::string text = "sensor: a pixel covers " + rounded(pixel, 1) + " mm at the usual distance of " +
-                           rounded(usual.distance, 2) + " m, range " + rounded(cell.sensor.range_min, 2) + " to " +
+  const auto angle = [](int pixels, double focal) { return rounded(std::atan(0.5 * pixels / focal) * 360.0 / kPi, 0); };
+  const std::string text = "sensor: " + std::to_string(k.width) + " x " + std::to_string(k.height) + " pixels over " +
+                           angle(k.width, k.fx) + " x " + angle(k.height, k.fy) + " degrees, a pixel covers " +
+                           rounded(pixel, 1) + " mm at the usual distance of " + rounded(usual.distance, 2) +
+                           " m, range " + rounded(cell.sensor.range_min, 2) + " to " +
                            rounded(cell.sensor.range_max, 2) + " m";
   if (cell.sensor.range_min > usual.distance_max || cell.sensor.range_max < usual.distance_min)
     out.tell(Level::wrong, text + ": views are taken from " + rounded(usual.distance_min, 2) + " to " +

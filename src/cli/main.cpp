@@ -23,7 +23,7 @@ int main(int argc, char** argv) {
       "  agrisee scan truss/scene.yaml -o result --noise l515 --seed 1\n"
       "  agrisee evaluate truss/scene.yaml result\n"
       "  agrisee limit truss/scene.yaml -o limit --base-search\n"
-      "  agrisee process cloud.ply -o result --views views.csv\n"
+      "  agrisee process cloud_raw.ply -o result --views views.csv\n"
       "  agrisee process recorded/views.yaml -o result\n"
       "Exit codes: 0 success; 1 bad usage: the command line is wrong, whatever its inputs contain; 2 bad input: an\n"
       "input is missing or damaged, or contradicts the command line (such as --viewpoint); 3 a scan failed midway, or\n"

@@ -48,7 +48,7 @@ CloudOrigin origin_of(const ProcessOptions& options, const Cloud& cloud) {
     origin.viewpoint = Eigen::Vector3d(options.viewpoint[0], options.viewpoint[1], options.viewpoint[2]);
   if (options.views.empty()) return origin;
   if (cloud.views.size() != cloud.size())
-    throw FileError(options.cloud + ": has no property 'view', which --views needs");
+    throw FileError(options.cloud + ": has no property 'view', which --views needs (cloud_raw.ply of a scan has it)");
   for (const View& v : io::read_views(options.views)) origin.sensors.push_back(v.world_T_optical.translation());
   for (int v : cloud.views)
     if (v >= static_cast<int>(origin.sensors.size()))

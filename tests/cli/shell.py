@@ -164,6 +164,7 @@ def doctor():
     good = run("doctor", "t")[0]
     assert "0 wrong, 0 to look at" in good and "3 fruit, all inside" in good, good
     assert re.search("ok +robot.gripper: not given", good), good
+    assert re.search(r"ok +sensor: 512 x 384 pixels over 70 x 55 degrees", good), good
     with open("t/scene.yaml", encoding="utf-8") as file:
         scene = file.read()
 
@@ -181,6 +182,7 @@ def doctor():
            "WRONG robot.tool: .* back at the arm", 2)
     judged(r"tool: *\{", "gripper: {xyz: [0, 0.08, 0.16], rpy: [0, 0, 0]}\n  tool: {",
            r"ok +robot.gripper: the gripping point is at \(0.00, 0.08, 0.16\) in tool0", 0)
+    judged(r"model: l515", "model: d405", "NOTE .*sensor.range: 0.25 to 9 m is not what the d405 measures", 0)
     judged(r"(?s)objects:.*", "objects: []\n", "NOTE  robot.gripper: not given", 0)
     judged(r"scan_volume: *\{min: *" + number + ", *max: *" + number,
            "scan_volume: {min: [-0.2, 0.4, 0.4], max: [0.2, 0.75, 0.45]}\n#", "NOTE  fruit outside of scan_volume.*1", 0)

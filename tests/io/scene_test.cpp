@@ -263,6 +263,14 @@ TEST_CASE("any pinhole camera can be described, by name, opening angles or focal
   CHECK(camera("{model: azure_kinect}").intrinsics.fx == camera("azure").intrinsics.fx);
   CHECK(camera("d405").intrinsics.fx == d405.intrinsics.fx);
   CHECK(camera("d405").range_max == 0.5);
+  const auto doubts = [&](const std::string& sensor) {
+    return folder.read(kScene + "sensor: " + sensor + "\n").warnings;
+  };
+  CHECK(doubts("{model: d405, range: [0.07, 0.8]}").empty());
+  CHECK(doubts("{range: [0.01, 100]}").empty());
+  REQUIRE(doubts("{model: d405, range: [0.25, 9]}").size() == 1);
+  CHECK_THAT(doubts("{model: d405, range: [0.25, 9]}")[0],
+             test::says("sensor.range: 0.25 to 9 m is not what the d405 measures, 0.1 to 0.5 m"));
   const sensor::DepthCamera own = camera(
       "{width: 848, height: 480, fx: 421.5, fy: 422.25, cx: 430.125, cy: 238, range: [0.07, 2], "
       "housing: {radius: 0.05, depth: 0.03}}");

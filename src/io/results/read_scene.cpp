@@ -78,7 +78,8 @@ sensor::Intrinsics read_intrinsics(const YamlValue& value, const sensor::CameraM
 }
 
 /// A camera by the name of its model alone, or by keys and values.
-void read_sensor(const YamlValue& value, sensor::DepthCamera& sensor) {
+/// @param warnings receives doubt about a range that is not that of the model
+void read_sensor(const YamlValue& value, sensor::DepthCamera& sensor, std::vector<std::string>& warnings) {
   if (value.is_text()) {
     sensor = read_model(value).camera();
     return;
@@ -91,6 +92,11 @@ void read_sensor(const YamlValue& value, sensor::DepthCamera& sensor) {
     const Eigen::Vector2d range = read_range(value.at("range"));
     sensor.range_min = range[0];
     sensor.range_max = range[1];
+    constexpr double kTimes = 3.0;  // cameras see somewhat beyond their data sheets
+    if (value.has("model") && (range[0] * kTimes < model.range_min || range[1] > kTimes * model.range_max))
+      warnings.push_back(value.at("range").place() + ": " + format(range[0]) + " to " + format(range[1]) +
+                         " m is not what the " + model.name + " measures, " + format(model.range_min) + " to " +
+                         format(model.range_max) + " m; the keys beside 'model' replace its figures");
   }
   if (value.has("housing")) {
     const YamlValue housing = value.at("housing");
@@ -224,7 +230,7 @@ SceneFile scene_of(const YAML::Node& document, const fs::path& path) {
   SceneFile file;
   file.workcell.name = top.at("name").text();
   read_robot(top.at("robot"), file.workcell, file.warnings);
-  if (top.has("sensor")) read_sensor(top.at("sensor"), file.workcell.sensor);
+  if (top.has("sensor")) read_sensor(top.at("sensor"), file.workcell.sensor, file.warnings);
   file.workcell.scan_volume = read_volume(top.at("scan_volume"));
   if (top.has("keep_out")) {
     const YamlValue solids = top.at("keep_out");
