@@ -91,7 +91,7 @@ std::string why_no_fruit(const ScanResult& result) {
     if (result.views.empty() && result.stop_reason == StopReason::no_reachable_view)
       return "no view was taken: the arm can reach no view of the scan volume, or refused every one. Are the scan "
              "volume, the arm's base, the hand-eye transform and the range of the camera right, in metres?";
-    if (result.views.empty()) return "there are no points: no view was taken, or the cloud has none";
+    if (result.views.empty()) return "there are no points: no view was taken, or the cloud has none that are finite";
     if (std::none_of(result.views.begin(), result.views.end(), saw)) return nothing_seen(result.views);
     return "every view with points inside the scan volume was discarded";
   }

@@ -230,8 +230,10 @@ TEST_CASE("values out of range are named") {
   refuse(kRobot, kRobot + "  start: [0, 0, 0]\n", "robot.start: expected a list of 6 numbers");
   folder.refuse(kScene + "  - {id: 1, class: fruit, mesh: fruit.stl}\n", ":7: objects[1].id: two fruits have the id 1");
   folder.refuse(kScene + "sensor: {model: kinect}\n",
-                "sensor.model: 'kinect' is not known (known are l515, d405, azure)");
-  folder.refuse(kScene + "sensor: kinect\n", "sensor: 'kinect' is not known (known are l515, d405, azure)");
+                "sensor.model: 'kinect' is not known (known are l515, d405, azure; any other camera");
+  folder.refuse(kScene + "sensor: kinect\n",
+                "sensor: 'kinect' is not known (known are l515, d405, azure; any other camera");
+  folder.refuse(kScene + "sensor: D405\n", "; did you mean 'd405'?");
   folder.refuse(kScene + "sensor: [l515]\n", "sensor: expected keys and values");
   folder.refuse(kScene + "sensor: {width: 0}\n", "sensor.width");
   folder.refuse(kScene + "sensor: {height: 1000000}\n", "sensor.height");

@@ -215,7 +215,7 @@ TEST_CASE("one viewpoint for points of several views is refused") {
 }
 
 TEST_CASE("a result without fruit says why") {
-  CHECK(why_no_fruit(ScanResult()) == "there are no points: no view was taken, or the cloud has none");
+  CHECK(why_no_fruit(ScanResult()) == "there are no points: no view was taken, or the cloud has none that are finite");
   const ScanResult found = process(seen());
   CHECK(why_no_fruit(found).empty());
   CHECK(found.bodies.taken == 2);

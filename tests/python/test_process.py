@@ -114,7 +114,7 @@ def test_rows_that_are_not_finite_are_dropped(points, result):
 
 def test_a_cloud_without_finite_rows_is_told():
     result = agrisee.process(np.full((5, 3), np.nan))
-    assert result.why_no_fruit == "there are no points: no view was taken, or the cloud has none"
+    assert result.why_no_fruit == "there are no points: no view was taken, or the cloud has none that are finite"
     assert result.warnings == ["all 5 points were dropped: they are not finite"]
     assert agrisee.process([]).warnings == []
 

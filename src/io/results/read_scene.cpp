@@ -44,11 +44,14 @@ void read_robot(const YamlValue& robot, Workcell& cell, std::vector<std::string>
 const sensor::CameraModel& read_model(const YamlValue& value) {
   const std::string text = value.text(), name = text == "azure_kinect" ? "azure" : text;  // its name in older files
   std::string known;
+  std::vector<std::string> names;
   for (const sensor::CameraModel& model : sensor::kCameraModels) {
     if (name == model.name) return model;
-    known += (known.empty() ? "" : ", ") + std::string(model.name);
+    names.emplace_back(model.name);
+    known += (known.empty() ? "" : ", ") + names.back();
   }
-  value.fail(excerpt(text) + " is not known (known are " + known + "); any other camera by fx, fy, cx, cy or fov_deg");
+  value.fail(excerpt(text) + " is not known (known are " + known +
+             "; any other camera is described by fx, fy, cx, cy or fov_deg)" + did_you_mean(text, names));
 }
 
 /// A pinhole by its focal lengths, or by its opening angles.
