@@ -259,8 +259,6 @@ std::vector<Fruit> locate(const Cloud& cloud, const Split& split, const Eigen::V
                           BodyCounts* counts) {
   auto members = indices_by_label(split.labels);
   members.resize(split.found.size());
-  std::vector<char> had_points(members.size());
-  for (std::size_t f = 0; f < members.size(); ++f) had_points[f] = !members[f].empty();
   Labels with_joined = split.labels;
   const auto surfaces = closed_surfaces(cloud, split, parameters, is_free, members, with_joined);
   std::optional<Grid<float>> grid;
@@ -272,8 +270,8 @@ std::vector<Fruit> locate(const Cloud& cloud, const Split& split, const Eigen::V
   std::vector<std::size_t> source;  // the entry of split.found that each fruit comes from
   for (std::size_t f = 0; f < members.size(); ++f) {
     if (members[f].empty()) {
-      if (had_points[f])
-        given_up(&BodyCounts::too_flat);  // its closed surface is that of no fruit
+      if (surfaces[f])  // that of no fruit
+        given_up(&BodyCounts::too_flat);
       else if (counts)
         --counts->taken;
       continue;

@@ -18,16 +18,15 @@ namespace {
 /// What became of a direction when it was tested last.
 struct LastAnswer {
   PickingReason reason = PickingReason::not_tested;
-  std::size_t picked = 0;  // number of fruit that had been picked before
+  std::optional<std::size_t> picked;  // number of fruit that had been picked before; empty before the first test
 
-  /// Whether picking fruit may change it.
-  bool is_due_to_fruit() const {
-    return reason == PickingReason::blocked_by_fruit || reason == PickingReason::arm_meets_fruit;
+  /// Whether a further test may answer something else: only the other fruit can have changed, by being picked.
+  bool may_change() const {
+    return reason == PickingReason::not_tested || reason == PickingReason::blocked_by_fruit ||
+           reason == PickingReason::arm_meets_fruit;
   }
   /// Whether the direction has to be tested when so many fruit have been picked.
-  bool is_open(std::size_t now) const {
-    return reason == PickingReason::not_tested || (is_due_to_fruit() && picked != now);
-  }
+  bool is_open(std::size_t now) const { return may_change() && picked != now; }
 };
 
 /// A fruit while its picking is being planned.
@@ -156,11 +155,9 @@ class PickingRounds {
     return free;
   }
 
-  /// Whether a fruit that could not be picked may be free now: only the other fruit can have changed, by being picked.
+  /// Whether a fruit that could not be picked may be free now.
   static bool may_have_changed(const Candidate& c) {
-    return std::any_of(c.answers.begin(), c.answers.end(), [](const LastAnswer& v) {
-      return v.reason == PickingReason::not_tested || v.is_due_to_fruit();
-    });
+    return std::any_of(c.answers.begin(), c.answers.end(), [](const LastAnswer& a) { return a.may_change(); });
   }
 
   /// The hanging fruit but `f`.

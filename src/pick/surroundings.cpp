@@ -94,7 +94,7 @@ bool comes_before(const Eigen::Vector3f& a, const Eigen::Vector3f& b) {
 std::vector<Eigen::Vector3f> sorted_finite(const std::vector<Eigen::Vector3f>& points) {
   std::vector<Eigen::Vector3f> out;
   for (const Eigen::Vector3f& p : points)
-    if (p.allFinite()) out.push_back(p);
+    if (is_finite(p)) out.push_back(p);
   std::sort(out.begin(), out.end(), comes_before);
   return out;
 }
@@ -116,7 +116,7 @@ Cloud surroundings_of(const Cloud& cloud, const Labels& labels, const Cloud& raw
   if (raw.empty()) return out;
   const std::vector<Eigen::Vector3f> kept = sorted_finite(cloud.points);
   for (std::size_t i = 0; i < raw.size(); ++i)
-    if (raw.points[i].allFinite() && !std::binary_search(kept.begin(), kept.end(), raw.points[i], comes_before))
+    if (is_finite(raw.points[i]) && !std::binary_search(kept.begin(), kept.end(), raw.points[i], comes_before))
       add(raw, i);
   return out;
 }

@@ -2,9 +2,8 @@
 // When single views that show more fruit than all together are told.
 #include "lone_views.hpp"
 
-#include <cmath>
-
 #include "catch.hpp"
+#include "spheres.hpp"
 #include "support/says.hpp"
 
 using namespace agrisee;
@@ -16,16 +15,12 @@ const Eigen::Vector3d kSensor(0.0, 0.1, 0.2);
 /// What the sensor sees of `count` balls of 3 cm beside each other, with normals.
 Cloud balls(int count) {
   Cloud cloud;
-  constexpr double kRadius = 0.03;
-  for (int b = 0; b < count; ++b)
-    for (int i = 0; i < 2000; ++i) {
-      const double z = 1.0 - (2.0 * i + 1.0) / 2000, phi = 2.399963229728653 * i, q = std::sqrt(1.0 - z * z);
-      const Eigen::Vector3d d(q * std::cos(phi), q * std::sin(phi), z),
-          p = Eigen::Vector3d(0.08 * b - 0.08, 0.5, 0.2) + kRadius * d;
-      if (d.dot((kSensor - p).normalized()) < 0.2) continue;
-      cloud.points.push_back(p.cast<float>());
-      cloud.normals.push_back(d.cast<float>());
-    }
+  for (int b = 0; b < count; ++b) {
+    const Sphere ball{{0.08 * b - 0.08, 0.5, 0.2}, 0.03};
+    test::add_sphere(cloud, ball, 0.0024, [&](const Eigen::Vector3d& d) {
+      return d.dot((kSensor - (ball.center + ball.radius * d)).normalized()) >= 0.2;
+    });
+  }
   return cloud;
 }
 
