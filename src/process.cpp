@@ -24,6 +24,7 @@
 
 #include "cloud/searches.hpp"
 #include "cloud_normals.hpp"
+#include "cloud_origin.hpp"
 #include "fruit_ripeness.hpp"
 #include "input_checks.hpp"
 
@@ -47,21 +48,6 @@ std::vector<SightLines> sight_lines(const Cloud& cloud, const CloudOrigin& origi
 
 /// Sight lines that end within this share of a body's radius from its surface end there.
 constexpr double kSightMargin = 0.12;
-
-/// Whether one viewpoint is given for all points.
-bool has_one_viewpoint(const CloudOrigin& origin) { return origin.viewpoint && origin.sensors.empty(); }
-
-/// Whether nothing is known of where the points were seen from.
-bool is_unknown(const CloudOrigin& origin) { return !origin.viewpoint && origin.sensors.empty(); }
-
-/// Whether all points are known to be seen from one place.
-bool is_one_view(const CloudOrigin& origin) { return has_one_viewpoint(origin) || origin.sensors.size() == 1; }
-
-/// Whether views from several sides show each fruit. A cloud of which nothing is known counts as merged from many.
-bool is_several_views(const CloudOrigin& origin) {
-  constexpr std::size_t kSeveral = 3;
-  return is_unknown(origin) || origin.sensors.size() >= kSeveral;
-}
 
 /// Evidence of free space from the points of a cloud; empty where no body asks for it, or no sensor's place is known.
 /// @param noise standard deviation (m) of the points about their own surface
