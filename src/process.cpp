@@ -3,13 +3,11 @@
 #include <agrisee/cloud/cut_bodies.hpp>
 #include <agrisee/cloud/hidden_points.hpp>
 #include <agrisee/cloud/labels.hpp>
-#include <agrisee/cloud/sight_lines.hpp>
 #include <agrisee/cloud/sor.hpp>
 #include <agrisee/cloud/spacing.hpp>
 #include <agrisee/cloud/split.hpp>
 #include <agrisee/cloud/voxel.hpp>
 #include <agrisee/core/stopwatch.hpp>
-#include <agrisee/fuse/color_prior.hpp>
 #include <agrisee/fuse/paint.hpp>
 #include <agrisee/geometry/aabb.hpp>
 #include <agrisee/locate.hpp>
@@ -22,6 +20,7 @@
 #include <string>
 #include <utility>
 
+#include "body_evidence.hpp"
 #include "cloud/searches.hpp"
 #include "cloud_normals.hpp"
 #include "cloud_origin.hpp"
@@ -30,48 +29,6 @@
 
 namespace agrisee {
 namespace {
-
-/// The sight lines of each sensor whose position is known.
-std::vector<SightLines> sight_lines(const Cloud& cloud, const CloudOrigin& origin) {
-  std::vector<SightLines> lines;
-  if (!origin.sensors.empty() && cloud.views.size() == cloud.size()) {
-    std::vector<Indices> seen(origin.sensors.size());
-    for (std::size_t i = 0; i < cloud.size(); ++i)
-      if (cloud.views[i] >= 0) seen[static_cast<std::size_t>(cloud.views[i])].push_back(static_cast<Index>(i));
-    for (std::size_t v = 0; v < seen.size(); ++v)
-      if (!seen[v].empty()) lines.emplace_back(select(cloud, seen[v]), origin.sensors[v]);
-  } else if (origin.viewpoint) {
-    lines.emplace_back(cloud, *origin.viewpoint);
-  }
-  return lines;
-}
-
-/// Sight lines that end within this share of a body's radius from its surface end there.
-constexpr double kSightMargin = 0.12;
-
-/// Evidence of free space from the points of a cloud; empty where no body asks for it, or no sensor's place is known.
-/// @param noise standard deviation (m) of the points about their own surface
-SeenThrough free_space_of(const Cloud& cloud, const Parameters& parameters, const CloudOrigin& origin, double noise) {
-  if (!parameters.split.fit_bodies) return {};
-  std::vector<SightLines> lines = sight_lines(cloud, origin);
-  if (lines.empty()) return {};
-  const double least = std::max(parameters.free_space.margin, 3.0 * noise);
-  return [lines = std::move(lines), least](const Ellipsoid& body) {
-    constexpr double kMaxIncidence = deg(70);  // a single view sees much at a slant
-    return seen_through(lines, body, kMaxIncidence, std::max(least, kSightMargin * body.mean_radius()));
-  };
-}
-
-/// Evidence of what one sensor saw where a body should be; empty where no body asks for it, or several sensors saw the
-/// cloud.
-/// @param cloud all points, outliers too: they occlude
-/// @param noise standard deviation (m) of the points about their own surface
-SeenOn seen_on_of(const Cloud& cloud, const Parameters& parameters, const CloudOrigin& origin, double noise) {
-  if (!parameters.split.fit_bodies || !has_one_viewpoint(origin) || cloud.empty()) return {};
-  return [lines = SightLines(cloud, *origin.viewpoint), noise](const Ellipsoid& body) {
-    return seen_on(lines, body, std::max(3.0 * noise, kSightMargin * body.mean_radius()));
-  };
-}
 
 /// The points that were measured: not those whose coordinates are not finite, nor those at a sensor or, if there are
 /// several, at the origin, where cameras put pixels without return.
@@ -194,23 +151,6 @@ Parameters with_noise(const Parameters& parameters, const CloudNoise& noise, con
   return out;
 }
 
-/// Split the cloud of a result, with the evidence of sight lines and masks.
-/// @param parameters with the noise of the cloud
-/// @param noise of its points (m)
-Split split_by_all(const ScanResult& result, const Parameters& parameters, const CloudOrigin& origin,
-                   const SeenThrough& seen_through, double noise, int threads) {
-  const BodyParameters& bodies = parameters.split.bodies;
-  std::vector<fuse::DetectedView> views = origin.detected;
-  if (parameters.color_prior.enabled)
-    for (fuse::DetectedView& v : views)
-      if (!v.frame->detected && !v.frame->color.empty())
-        v = {fuse::detected_by_color(*v.frame, bodies, parameters.color_prior), v.world_T_optical};
-  const MaskEvidence masks = fuse::mask_evidence(views, bodies, parameters.masks, origin.mask_order);
-  return split(result.cloud, parameters.split,
-               seen_through ? seen_through : free_space_of(result.cloud, parameters, origin, noise), threads, masks,
-               seen_through ? SeenOn() : seen_on_of(result.raw, parameters, origin, noise));
-}
-
 }  // namespace
 
 void check_origin(const Cloud& cloud, const CloudOrigin& origin) {
@@ -298,8 +238,10 @@ ScanResult process(Cloud&& cloud, const Parameters& parameters, const CloudOrigi
     result.cloud = without_flying_pixels(std::move(result.cloud), parameters.max_incidence, origin);
   });
   const Parameters fitted = with_noise(parameters, noise, result.cloud, origin, sides_guessed);
-  Split found =
-      timed(t.segment, [&] { return split_by_all(result, fitted, origin, seen_through, noise.points, threads); });
+  Split found = timed(t.segment, [&] {
+    const BodyEvidence evidence = evidence_for(result, fitted, origin, seen_through, noise.points);
+    return split(result.cloud, fitted.split, evidence.seen_through, threads, evidence.masks, evidence.seen_on);
+  });
   if (origin.volume && parameters.split.fit_bodies)
     timed(t.segment, [&] { forget_cut_bodies(result.cloud, *origin.volume, found); });
   result.bodies = found.bodies;
