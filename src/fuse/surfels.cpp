@@ -8,6 +8,7 @@ namespace agrisee::fuse {
 SurfelMap::SurfelMap(const SurfelParameters& parameters) : parameters_(parameters) {
   parameters_.check();
   inverse_cell_ = 1.0 / parameters_.separation;
+  cos_max_ = static_cast<float>(std::cos(parameters_.max_angle));
 }
 
 /// The surfel that a sample belongs to, -1 for none: the nearest, across the surface, in the cells around the sample;
@@ -16,40 +17,35 @@ SurfelMap::SurfelMap(const SurfelParameters& parameters) : parameters_(parameter
 Index SurfelMap::surfel_of(const Eigen::Vector3f& p, const Eigen::Vector3f& n, float sigma) const {
   const auto separation = static_cast<float>(parameters_.separation);
   const auto agreement = static_cast<float>(parameters_.agreement);
-  const auto cos_max = static_cast<float>(std::cos(parameters_.max_angle));
   Index best = -1;
   float best_sq = separation * separation;
-  const auto visit = [&](const CellIndex& c) {
-    for (Index i = table_.find(c); i >= 0; i = next_[static_cast<std::size_t>(i)]) {
-      const Surfel& s = surfels_[static_cast<std::size_t>(i)];
-      if (s.normal.dot(n) < cos_max) continue;
-      const Eigen::Vector3f d = p - s.position;
-      const float along = s.normal.dot(d);
-      const float across_sq = d.squaredNorm() - along * along;
-      if (std::abs(along) > agreement + 3.0f * std::sqrt(sigma * sigma + 1.0f / s.weight)) continue;
-      if (across_sq < best_sq || (across_sq == best_sq && i < best)) {
+  const auto visit = [&](const CellIndex& lo, const CellIndex& hi) {
+    cells_.visit(lo, hi, [&](Index i) {
+      for (; i >= 0; i = next_[static_cast<std::size_t>(i)]) {
+        const Surfel& s = surfels_[static_cast<std::size_t>(i)];
+        const Eigen::Vector3f d = p - s.position;
+        const float along = s.normal.dot(d);
+        const float across_sq = d.squaredNorm() - along * along;
+        if (!(across_sq < best_sq || (across_sq == best_sq && i < best)) || s.normal.dot(n) < cos_max_) continue;
+        if (std::abs(along) > agreement + 3.0f * std::sqrt(sigma * sigma + 1.0f / s.weight)) continue;
         best = i;
         best_sq = across_sq;
       }
-    }
+    });
   };
-  const CellIndex center = CellTable::cell(p, inverse_cell_);
-  CellIndex c;
-  for (c.z() = center.z() - 1; c.z() <= center.z() + 1; ++c.z())
-    for (c.y() = center.y() - 1; c.y() <= center.y() + 1; ++c.y())
-      for (c.x() = center.x() - 1; c.x() <= center.x() + 1; ++c.x()) visit(c);
+  const CellIndex center = CellTable::cell(p, inverse_cell_), one = CellIndex::Ones();
+  visit(center - one, center + one);
 
   int axis;  // the cells in layers across the axis that is nearest to the normal, outwards
   const float slope = n.cwiseAbs().maxCoeff(&axis);
   const auto layers = static_cast<int>(std::ceil(agreement * slope / separation));
-  const int u = (axis + 1) % 3, v = (axis + 2) % 3;
   for (int layer = 2; best < 0 && layer <= layers; ++layer)
     for (const int k : {-layer, layer}) {
       const float t = static_cast<float>(k) * separation / n[axis];
       const CellIndex middle = CellTable::cell(Eigen::Vector3f(p + t * n), inverse_cell_);
-      c[axis] = center[axis] + k;
-      for (c[u] = middle[u] - 1; c[u] <= middle[u] + 1; ++c[u])
-        for (c[v] = middle[v] - 1; c[v] <= middle[v] + 1; ++c[v]) visit(c);
+      CellIndex lo = middle - one, hi = middle + one;
+      lo[axis] = hi[axis] = center[axis] + k;
+      visit(lo, hi);
     }
   return best;
 }
@@ -75,7 +71,7 @@ bool SurfelMap::add(const Eigen::Vector3f& p, const Eigen::Vector3f& n, float si
   s.seen_by = 1;
   const auto id = static_cast<Index>(surfels_.size());
   surfels_.push_back(s);
-  next_.push_back(table_.exchange(CellTable::cell(p, inverse_cell_), id));
+  next_.push_back(cells_.exchange(CellTable::cell(p, inverse_cell_), id));
   return true;
 }
 

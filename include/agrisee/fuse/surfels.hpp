@@ -13,7 +13,7 @@
 
 #include <agrisee/core/cloud.hpp>
 #include <agrisee/fuse/parameters.hpp>
-#include <agrisee/neighbors/hash_grid.hpp>
+#include <agrisee/neighbors/cell_blocks.hpp>
 
 #include <vector>
 
@@ -57,8 +57,9 @@ class SurfelMap {
 
   SurfelParameters parameters_;
   double inverse_cell_ = 1.0;
+  float cos_max_ = 1.0f;  // of the angle between the normals of a surfel and its samples
   std::vector<Surfel> surfels_;
-  CellTable table_;          // the last surfel created in each cell
+  CellBlocks cells_;         // the last surfel created in each cell
   std::vector<Index> next_;  // the one created there before, or -1
 };
 
