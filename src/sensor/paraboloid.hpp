@@ -70,11 +70,13 @@ class ParaboloidSums {
     static constexpr std::size_t kMonomial[6][6] = {{0, 1, 2, 3, 4, 5},    {1, 3, 4, 6, 7, 8},
                                                     {2, 4, 5, 7, 8, 9},    {3, 6, 7, 10, 11, 12},
                                                     {4, 7, 8, 11, 12, 13}, {5, 8, 9, 12, 13, 14}};
+    std::array<double, 15> m;
+    for (std::size_t i = 0; i < m.size(); ++i) m[i] = sum(m_[i]);
     Eigen::Matrix<double, 6, 6> a;
     Eigen::Matrix<double, 6, 1> b;
     for (int i = 0; i < 6; ++i) {
       b[i] = sum(rhs_[static_cast<std::size_t>(i)]);
-      for (int j = 0; j < 6; ++j) a(i, j) = sum(m_[kMonomial[i][j]]);
+      for (int j = 0; j < 6; ++j) a(i, j) = m[kMonomial[i][j]];
     }
     constexpr double kRounding = 1e-6;  // of sums in single precision, as a share, with room
     a.diagonal() += kRounding * (a.diagonal() + Eigen::Matrix<double, 6, 1>::Constant(weight()));

@@ -102,7 +102,7 @@ class Competition {
     for (Entry& e : entries_) {
       throw_if_cancelled();
       e.prior = prior_of(e.fit.body);
-      assess(e);
+      rate(e);  // the verdict of when nothing was taken still holds
     }
     decide(found);
     constexpr double kLikely = 0.5;                                 // a fruit, rather than not
@@ -276,8 +276,13 @@ class Competition {
   /// Judge an entry by the free points; it is alive while it may win.
   /// @return the count of the first test that it fails; null when it is alive
   std::size_t BodyCounts::*assess(Entry& e) const {
-    const bool right_size = plausible(e.fit.body, parameters_);
     e.verdict = free_.judge(e.fit.body, seen_through_, seen_on_);
+    return rate(e);
+  }
+
+  /// As assess(), by the last verdict.
+  std::size_t BodyCounts::*rate(Entry& e) const {
+    const bool right_size = plausible(e.fit.body, parameters_);
     e.confidence = fruit_probability(e.verdict, e.fit, parameters_, e.prior);
     if (e.mask_log_odds) {  // little of it may show: the depths under the masks have decided
       e.confidence = from_log_odds(*e.mask_log_odds - against_masks(e.fit.body, e.verdict));
