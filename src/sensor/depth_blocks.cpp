@@ -49,8 +49,11 @@ float make_block(const DepthFrame& frame, const std::vector<float>& inside, int 
   std::nth_element(any, any + n_any / 2, any + n_any);
   any_depth = any[n_any / 2];
   if (n_in == 0) return fill;
-  std::nth_element(in, in + n_in / 2, in + n_in);
-  const float middle = in[n_in / 2];
+  float middle = any_depth;
+  if (n_in < n_any) {
+    std::nth_element(in, in + n_in / 2, in + n_in);
+    middle = in[n_in / 2];
+  }
   double su = 0.0, sv = 0.0, sz = 0.0, s1 = 0.0;
   for (int v = v0; v < v1; ++v)
     for (int u = u0; u < u1; ++u) {
@@ -132,6 +135,8 @@ Blocks make_blocks(const DepthFrame& frame, const std::vector<float>& inside, in
     fill[c] = make_block(frame, inside, out.cells.width, b, agree, c, out.blocks[c], out.depth[c]);
   };
   parallel_for(n, threads, make, 1024);
+  for (std::size_t c = 0; c < n; ++c)
+    if (out.blocks[c].z > 0.0f) out.filled.push_back(c);
   std::vector<float> some;
   for (const float share : fill)
     if (share > 0.0f) some.push_back(share);

@@ -93,16 +93,15 @@ class PatchFitter {
         bend_(pitch * pitch / (2.0 * parameters.smallest_radius)),
         tilt_(1.0 / (1.0 + std::pow(noise / (0.5 * pitch), 4))),
         taps_(detail::window_taps(window_)) {
-    rays_.reserve(blocks.blocks.size());
-    for (const Block& b : blocks.blocks) {
-      const Eigen::Vector3d ray = blocks.cells.ray(double(b.u), double(b.v));
-      rays_.emplace_back(ray.head<2>().cast<float>());
+    rays_.resize(blocks.blocks.size(), Eigen::Vector2f::Zero());
+    for (const std::size_t c : blocks.filled) {
+      const Block& b = blocks.blocks[c];
+      rays_[c] = blocks.cells.ray(double(b.u), double(b.v)).head<2>().cast<float>();
     }
   }
 
-  /// Fit the paraboloid around cell c; `patch` is left as it is if there is none.
+  /// Fit the paraboloid around the filled cell c; `patch` is left as it is if there is none.
   void fit(std::size_t c, Scratch& scratch, Patch& patch) const {
-    if (!(blocks_.blocks[c].z > 0.0f)) return;
     const auto across = static_cast<std::size_t>(blocks_.cells.width);
     const int cu = static_cast<int>(c % across), cv = static_cast<int>(c / across);
     Patch found = first_guess(c, first_slope(cu, cv, scratch.differences));
@@ -223,13 +222,15 @@ class PatchFitter {
       const Lanes steepness = root.max(0.0f).sqrt();
       Lanes along = 2.0f * at_plane / (rise + steepness), residual = (measured - along) * steepness;
       Lanes seen = along + residual, weight = near;
-      for (int i = 0; i < kLanes; ++i) {
-        if (rise[i] > 0.0f && root[i] > 0.0f) continue;  // else the ray misses the paraboloid
-        along[i] = seen[i] = measured[i];
-        residual[i] = measured[i] - height_of(x, a[i] + measured[i] * da[i], b[i] + measured[i] * db[i]);
-      }
+      if (!(rise.min(root).minCoeff() > 0.0f))
+        for (int i = 0; i < kLanes; ++i) {
+          if (rise[i] > 0.0f && root[i] > 0.0f) continue;  // else the ray misses the paraboloid
+          along[i] = seen[i] = measured[i];
+          residual[i] = measured[i] - height_of(x, a[i] + measured[i] * da[i], b[i] + measured[i] * db[i]);
+        }
       Lanes at_a = a + along * da, at_b = b + along * db;
-      if (!(at_a + at_b + seen + residual).allFinite())  // a ray along the plane
+      const Lanes all = at_a + at_b + seen + residual;
+      if (!((all - all).sum() == 0.0f))  // a ray along the plane
         for (int i = 0; i < kLanes; ++i)
           if (!std::isfinite(at_a[i] + at_b[i] + seen[i] + residual[i]))
             at_a[i] = at_b[i] = seen[i] = residual[i] = weight[i] = 0.0f;
@@ -249,11 +250,12 @@ class PatchFitter {
   std::vector<Eigen::Vector2f> rays_;  // of the blocks: x and y where z is 1
 };
 
-std::vector<Patch> fit_patches(const PatchFitter& fitter, std::size_t n, int threads) {
-  std::vector<Patch> patches(n);
-  parallel_chunks(n, threads, 256, [&](std::size_t begin, std::size_t end) {
+/// The patches of some cells.
+std::vector<Patch> fit_patches(const PatchFitter& fitter, const std::vector<std::size_t>& cells, int threads) {
+  std::vector<Patch> patches(cells.size());
+  parallel_chunks(cells.size(), threads, 256, [&](std::size_t begin, std::size_t end) {
     PatchFitter::Scratch scratch;
-    for (std::size_t c = begin; c < end; ++c) fitter.fit(c, scratch, patches[c]);
+    for (std::size_t i = begin; i < end; ++i) fitter.fit(cells[i], scratch, patches[i]);
   });
   return patches;
 }
@@ -330,7 +332,7 @@ SurfaceImage reconstruct_surface(const DepthFrame& frame, const Pose& world_T_op
   const double block_noise = std::max(detail::noise_of(blocks), kLeastNoise);
   const double pitch = inside.typical / blocks.cells.fx;
   const PatchFitter fitter(blocks, pitch, block_noise, parameters);
-  const std::vector<Patch> patches = fit_patches(fitter, blocks.blocks.size(), threads);
+  const std::vector<Patch> patches = fit_patches(fitter, blocks.filled, threads);
 
   SurfaceImage out;
   out.intrinsics = blocks.cells;
