@@ -67,8 +67,8 @@ class Competition {
         continue;
       }
       Outgrown* const wider = outgrow(e, outgrown);
-      if (!wider || wider->entry->confidence < e.confidence) entries_.push_back(std::move(e));
-      if (wider && !std::exchange(wider->entered, true)) entries_.push_back(*wider->entry);
+      if (!wider || wider->entry->confidence < e.confidence) keep(std::move(e));
+      if (wider && !std::exchange(wider->entered, true)) keep(*wider->entry);
     }
   }
 
@@ -202,6 +202,32 @@ class Competition {
     return (a.center - b.center).norm() < gate && std::abs(b.mean_radius() - r) < gate;
   }
 
+  /// Add an entry that may win. Of nearly equal bodies only the better one is kept: most proposals for a fruit end up
+  /// at the same fit.
+  void keep(Entry e) {
+    const auto same = [&](const Entry& other) {
+      return other.alive && !other.mask_log_odds && nearly_equal(other.fit.body, e.fit.body);
+    };
+    const auto other = e.mask_log_odds ? entries_.end() : std::find_if(entries_.begin(), entries_.end(), same);
+    if (other == entries_.end())
+      entries_.push_back(std::move(e));
+    else if (area(e) > area(*other))
+      *other = std::move(e);
+  }
+
+  /// Whether the centers and the semi-axes of two bodies are within 1 or 2 % of the radius.
+  static bool nearly_equal(const Ellipsoid& a, const Ellipsoid& b) {
+    constexpr double kSameCenter = 0.01, kSameShape = 0.02;
+    const double r = a.mean_radius();
+    return (a.center - b.center).norm() < kSameCenter * r && r * (a.A - b.A).norm() < kSameShape;
+  }
+
+  /// How much a body explains: its score times radius squared (m2) times confidence.
+  static double area(const Entry& e) {
+    const double r = e.fit.body.mean_radius();
+    return e.verdict.score() * r * r * e.confidence;
+  }
+
   /// Fit a candidate, first roughly to see where it ends up.
   /// @param known where others ended up; receives this one's place
   /// @return empty if it ends up where another did, or is not worth a better fit, or has none
@@ -304,10 +330,6 @@ class Competition {
   /// radius squared times confidence, the first of equals; null if there is none. Entries that masks proposed come
   /// before all others, in the order of their confidence.
   Entry* best_entry() {
-    const auto area = [](const Entry& e) {
-      const double r = e.fit.body.mean_radius();
-      return e.verdict.score() * r * r * e.confidence;
-    };
     Entry* best = nullptr;
     for (Entry& e : entries_)
       if (e.alive && e.mask_log_odds && (!best || e.confidence > best->confidence)) best = &e;
@@ -333,7 +355,7 @@ class Competition {
       const double gap = (e.fit.body.center - body.center).norm() - e.fit.body.mean_radius() - body.mean_radius();
       if (gap > 0.5 * body.mean_radius()) continue;
       const std::size_t support = e.verdict.support;
-      assess(e);  // most end here: their points are taken
+      assess(e);
       if (!e.alive || e.mask_log_odds || e.verdict.support == support) continue;
       if (const auto again = free_.fit(e.fit.body, parameters_.fit)) {
         e.fit = *again;

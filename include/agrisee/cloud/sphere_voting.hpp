@@ -223,11 +223,7 @@ inline std::vector<VotedCenter> thin_out(const std::vector<VoteSum>& sums, doubl
   for (const VoteSum& s : sums) {
     if (((&s - sums.data()) & 0xFFF) == 0) throw_if_cancelled();
     if (out.size() >= most) break;
-    bool free = true;
-    kept.visit(s.center, 1.01 * apart, [&](Index i, double) {
-      if ((at(out, i).center - s.center).norm() < apart) free = false;
-    });
-    if (!free) continue;
+    if (kept.nearer(s.center, apart)) continue;
     kept.insert(s.center);
     out.push_back({s.center, s.votes});
   }
