@@ -18,7 +18,7 @@ std::unique_ptr<plan::Planner> make_planner(const Workcell& workcell, const Para
   band.distance_max = parameters.gain.distance_max;
   if (parameters.planner == "gain")
     return std::make_unique<plan::GainPlanner>(workcell.sensor, volume, robot, parameters.scan_split(),
-                                               parameters.free_space, parameters.gain);
+                                               parameters.free_space, parameters.gain, threads);
   if (parameters.planner == "see") {
     see::Parameters see = parameters.see;
     see.max_views = parameters.max_views;

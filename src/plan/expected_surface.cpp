@@ -3,6 +3,7 @@
 #include <agrisee/cloud/spacing.hpp>
 #include <agrisee/cloud/split.hpp>
 #include <agrisee/cloud/voxel.hpp>
+#include <agrisee/core/parallel.hpp>
 #include <agrisee/fuse/free_space.hpp>
 #include <agrisee/neighbors/grid.hpp>
 #include <agrisee/plan/directions.hpp>
@@ -76,8 +77,12 @@ const ExpectedSurfaceParameters& checked(const ExpectedSurfaceParameters& parame
 }  // namespace
 
 ExpectedSurface::ExpectedSurface(const sensor::DepthCamera& sensor, const Aabb& volume,
-                                 const ExpectedSurfaceParameters& parameters)
-    : sensor_(sensor), volume_(volume), parameters_(checked(parameters)), known_(volume, parameters.voxel) {}
+                                 const ExpectedSurfaceParameters& parameters, int threads)
+    : sensor_(sensor),
+      volume_(volume),
+      parameters_(checked(parameters)),
+      threads_(threads),
+      known_(volume, parameters.voxel) {}
 
 void ExpectedSurface::update(const Progress& progress, const SplitParameters& split_parameters,
                              const fuse::FreeSpaceParameters& free_space) {
@@ -85,7 +90,7 @@ void ExpectedSurface::update(const Progress& progress, const SplitParameters& sp
   if (shows_anything(progress)) count_looks(promised);
   read_sight_lines(progress.images, free_space);
   const Labels labels = find_fruit(progress, split_parameters, free_space);
-  const Grid<float> grid(progress.cloud, static_cast<float>(parameters_.cover_radius));
+  const Grid<float> grid(progress.cloud, static_cast<float>(parameters_.cover_radius), threads_);
   collect_samples(progress, grid, free_space);
   if (shows_anything(progress))
     weigh(promised, grid, progress.images.empty() ? 1.0 : measured_share(progress.images.back(), free_space));
@@ -98,13 +103,17 @@ void ExpectedSurface::update(const Progress& progress, const SplitParameters& sp
     for (const Eigen::Vector3f& p : thinned) obstacles_.push_back(p[axis]);
   // Samples that earlier views should have shown count less.
   observable_ = areas_;
-  for (const auto& image : progress.images) {
+  std::vector<std::vector<std::uint32_t>> shown_in(progress.images.size());
+  parallel_for(
+      shown_in.size(), threads_, [&](std::size_t v) { shown_in[v] = shown(progress.images[v].world_T_optical); }, 1);
+  for (std::size_t v = 0; v < shown_in.size(); ++v) {
+    const sensor::SurfaceImage& image = progress.images[v];
     const auto factor = static_cast<float>(1.0 - (1.0 - parameters_.missed_factor) * measured_share(image, free_space));
     const bool tells = has_returns(image);
-    for_each_shown(image.world_T_optical, [&](std::size_t i) {
+    for (const std::uint32_t i : shown_in[v]) {
       areas_[i] *= factor;
       if (tells) observable_[i] *= factor;
-    });
+    }
   }
 }
 
@@ -193,7 +202,7 @@ Labels ExpectedSurface::find_fruit(const Progress& progress, const SplitParamete
   // Segment from scratch while the cloud grows fast; later only bring the known fruit up to date.
   const bool anew = bodies_.empty() || static_cast<double>(cloud.size()) > kGrowth * static_cast<double>(segmented_at_);
   const MaskEvidence masks = progress.masks ? *progress.masks : MaskEvidence{};
-  Split found = anew ? split(cloud, with_bodies, through, 1, masks)
+  Split found = anew ? split(cloud, with_bodies, through, threads_, masks)
                      : track(cloud, bodies_, with_bodies, through, points_since(cloud, tracked_views_), masks);
   tracked_views_ = progress.views.size();
   if (anew) segmented_at_ = cloud.size();
@@ -296,6 +305,7 @@ void ExpectedSurface::for_each_shown(const Pose& world_T_optical, F&& f) const {
   const auto far_sq = static_cast<float>(sensor_.range_max * sensor_.range_max);
   const Coordinates obstacles(obstacles_.data(), static_cast<Eigen::Index>(obstacles_.size() / 3), 3);
   const ObstacleImage image(sensor_.intrinsics, optical_T_world, obstacles);
+  const std::vector<FacedOccluder> occluders = faced(camera);
   for (std::size_t i = 0; i < samples_.size(); ++i) {
     const Sample& s = samples_[i];
     const Eigen::Vector3f d = s.point - camera;
@@ -304,19 +314,30 @@ void ExpectedSurface::for_each_shown(const Pose& world_T_optical, F&& f) const {
     const float distance = std::sqrt(distance_sq);
     if (s.body >= 0 && -d.dot(s.normal) < cos_max * distance) continue;
     if (!image.shows(optical_T_world * s.point)) continue;
-    if (!hidden(camera, d / distance, distance, s.body)) f(i);
+    if (!hidden(occluders, d / distance, distance, s.body)) f(i);
   }
 }
 
-bool ExpectedSurface::hidden(const Eigen::Vector3f& camera, const Eigen::Vector3f& u, float distance, int own) const {
+std::vector<ExpectedSurface::FacedOccluder> ExpectedSurface::faced(const Eigen::Vector3f& camera) const {
+  std::vector<FacedOccluder> out;
+  out.reserve(occluders_.size());
   for (const Occluder& o : occluders_) {
+    const Eigen::Vector3f center = o.center - camera, unit = o.to_unit * center;
+    out.push_back({center, unit, center.squaredNorm(), unit.squaredNorm() - 1.0f, &o});
+  }
+  return out;
+}
+
+bool ExpectedSurface::hidden(const std::vector<FacedOccluder>& occluders, const Eigen::Vector3f& u, float distance,
+                             int own) {
+  for (const FacedOccluder& f : occluders) {
+    const Occluder& o = *f.occluder;
     if (o.body == own) continue;
-    const Eigen::Vector3f c = o.center - camera;
-    const float r_sq = o.radius * o.radius, along = c.dot(u);
-    if (along < 0.0f || c.squaredNorm() - along * along >= r_sq) continue;
+    const float along = f.center.dot(u);
+    if (along < 0.0f || f.center_sq - along * along >= o.radius * o.radius) continue;
     // Where the ray enters the unit sphere that the ellipsoid becomes.
-    const Eigen::Vector3f q = o.to_unit * c, w = o.to_unit * u;
-    const float a = w.squaredNorm(), b = q.dot(w), off = b * b - a * (q.squaredNorm() - 1.0f);
+    const Eigen::Vector3f w = o.to_unit * u;
+    const float a = w.squaredNorm(), b = f.unit.dot(w), off = b * b - a * f.outside;
     if (off > 0.0f && b - std::sqrt(off) < a * (distance - 1e-3f)) return true;
   }
   return false;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <agrisee/core/cancellation.hpp>
+#include <agrisee/core/parallel.hpp>
 #include <agrisee/plan/directions.hpp>
 #include <agrisee/plan/gain_planner.hpp>
 
@@ -24,13 +25,14 @@ double time_to_move(const ReachableView& view, const Joints& from) {
 
 GainPlanner::GainPlanner(const sensor::DepthCamera& sensor, const Aabb& volume, const Eigen::Vector3d& robot,
                          const SplitParameters& split, const fuse::FreeSpaceParameters& free_space,
-                         const GainPlannerParameters& parameters)
+                         const GainPlannerParameters& parameters, int threads)
     : parameters_(parameters),
       split_(split),
       free_space_(free_space),
       volume_(volume),
       robot_(robot),
-      model_(sensor, volume, parameters.expected) {
+      model_(sensor, volume, parameters.expected, threads),
+      threads_(threads) {
   parameters_.check();
 }
 
@@ -123,7 +125,8 @@ bool GainPlanner::first_within_reach(const Joints& current, const Reach& reach) 
 }
 
 std::optional<StopReason> GainPlanner::rank(const Joints& current, const Reach& reach) {
-  for (const Candidate& c : candidates_) consider(c.request, c.view, current);
+  for (const Candidate& c : candidates_) consider(c.request, c.view);
+  rate_from(0, current);
   std::vector<char> can_be_seen(model_.areas().size(), 0);
   for (const Scored& s : ranked_)
     for (std::uint32_t i : s.shown) can_be_seen[i] = 1;
@@ -148,6 +151,7 @@ std::optional<StopReason> GainPlanner::rank(const Joints& current, const Reach& 
 
 void GainPlanner::refine(const Joints& current, const Reach& reach) {
   const double step = 0.5 * std::sqrt(4.0 * kPi / parameters_.candidates);  // half the candidates' spacing (rad)
+  std::size_t rated = ranked_.size();
   for (std::size_t i = 0, n = std::min(kRefined, ranked_.size()); i < n; ++i) {
     throw_if_cancelled();
     if (const auto view = reach(ranked_[i].request, current))
@@ -156,9 +160,12 @@ void GainPlanner::refine(const Joints& current, const Reach& reach) {
       ranked_[i].lost = true;
     consider_around(ranked_[i].request, step, current, reach);
   }
+  rate_from(rated, current);
   sort_ranked();
+  rated = ranked_.size();
   for (std::size_t i = 0, n = std::min(kRefinedAgain, ranked_.size()); i < n; ++i)
     if (!ranked_[i].lost) consider_around(ranked_[i].request, 0.5 * step, current, reach);
+  rate_from(rated, current);
 }
 
 void GainPlanner::consider_around(ViewRequest middle, double step, const Joints& current, const Reach& reach) {
@@ -168,7 +175,7 @@ void GainPlanner::consider_around(ViewRequest middle, double step, const Joints&
     ViewRequest around = middle;
     around.direction = (middle.direction + step * (std::cos(angle) * a + std::sin(angle) * b)).normalized();
     if (is_left_out(around)) continue;
-    if (const auto view = reach(around, current)) consider(around, *view, current);
+    if (const auto view = reach(around, current)) consider(around, *view);
   }
 }
 
@@ -187,11 +194,18 @@ void GainPlanner::sort_ranked() {
   std::stable_sort(ranked_.begin(), ranked_.end(), [](const Scored& a, const Scored& b) { return a.score > b.score; });
 }
 
-void GainPlanner::consider(const ViewRequest& request, const ReachableView& view, const Joints& current) {
-  throw_if_cancelled();
+void GainPlanner::consider(const ViewRequest& request, const ReachableView& view) {
   ranked_.emplace_back();
   ranked_.back().request = request;
-  rate(ranked_.back(), view, current);
+  ranked_.back().view = view;
+}
+
+void GainPlanner::rate_from(std::size_t first, const Joints& current) {
+  const auto rate_one = [&](std::size_t i) {
+    Scored& scored = ranked_[first + i];
+    rate(scored, scored.view, current);
+  };
+  parallel_for(ranked_.size() - first, threads_, rate_one, 8);
 }
 
 void GainPlanner::rate(Scored& scored, const ReachableView& view, const Joints& current) const {

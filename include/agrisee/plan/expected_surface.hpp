@@ -34,8 +34,10 @@ class ExpectedSurface {
   /// @param sensor intrinsics and range of the camera
   /// @param volume to be scanned (world)
   /// @param parameters see their struct
+  /// @param threads the model does not depend on it
   /// @throws ParameterError
-  ExpectedSurface(const sensor::DepthCamera& sensor, const Aabb& volume, const ExpectedSurfaceParameters& parameters);
+  ExpectedSurface(const sensor::DepthCamera& sensor, const Aabb& volume, const ExpectedSurfaceParameters& parameters,
+                  int threads = 1);
 
   /// Update the model after a view. Bodies are fitted whatever stages `split_parameters` selects.
   /// @throws ParameterError
@@ -81,6 +83,15 @@ class ExpectedSurface {
     Eigen::Matrix3f to_unit;  // takes the ellipsoid about its center to the unit sphere (1/m)
     float radius;             // of a sphere around the ellipsoid (m)
     int body;                 // index of its fruit
+  };
+
+  /// An occluder as seen from a camera.
+  struct FacedOccluder {
+    Eigen::Vector3f center;  // from the camera (m)
+    Eigen::Vector3f unit;    // the same where the ellipsoid is the unit sphere
+    float center_sq;         // squared length of `center` (m2)
+    float outside;           // squared length of `unit`, less 1
+    const Occluder* occluder;
   };
 
   /// A sample that a view was expected to show.
@@ -133,12 +144,15 @@ class ExpectedSurface {
   /// Calls f(i) for every sample that a view shows, in ascending order.
   template <typename F>
   void for_each_shown(const Pose& world_T_optical, F&& f) const;
-  /// Whether a fruit other than `own` hides what lies at `distance` (m) along the unit vector `u` from `camera` (m).
-  bool hidden(const Eigen::Vector3f& camera, const Eigen::Vector3f& u, float distance, int own) const;
+  /// All occluders as seen from a camera (m, world).
+  std::vector<FacedOccluder> faced(const Eigen::Vector3f& camera) const;
+  /// Whether a fruit other than `own` hides what lies at `distance` (m) along the unit vector `u` from the camera.
+  static bool hidden(const std::vector<FacedOccluder>& occluders, const Eigen::Vector3f& u, float distance, int own);
 
   sensor::DepthCamera sensor_;
   Aabb volume_;
   ExpectedSurfaceParameters parameters_;
+  int threads_;
   KnownSpace known_;               // what sight lines have reached
   std::vector<char> images_read_;  // views whose sight lines are marked in `known_`: whether they have some
   std::vector<FoundBody> bodies_;

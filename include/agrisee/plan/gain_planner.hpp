@@ -29,10 +29,11 @@ class GainPlanner : public Planner {
   /// @param split how the cloud is segmented into fruit
   /// @param free_space how sight lines are interpreted
   /// @param parameters see their struct
+  /// @param threads the choice does not depend on it
   /// @throws ParameterError
   GainPlanner(const sensor::DepthCamera& sensor, const Aabb& volume, const Eigen::Vector3d& robot,
               const SplitParameters& split, const fuse::FreeSpaceParameters& free_space,
-              const GainPlannerParameters& parameters = {});
+              const GainPlannerParameters& parameters = {}, int threads = 1);
 
   void observe(const Progress& progress) override;
   std::optional<ReachableView> next(const Progress& progress, const Joints& current, const Reach& reach) override;
@@ -82,8 +83,10 @@ class GainPlanner : public Planner {
   /// Drop the views of `left_out_` from `ranked_`.
   void leave_out();
   void sort_ranked();
-  /// Add a view to `ranked_`.
-  void consider(const ViewRequest& request, const ReachableView& view, const Joints& current);
+  /// Add a view to `ranked_`, to be rated by rate_from.
+  void consider(const ViewRequest& request, const ReachableView& view);
+  /// Rate the views of `ranked_` from this number on.
+  void rate_from(std::size_t first, const Joints& current);
   /// Set a view and compute what it shows, its gain and its score.
   void rate(Scored& scored, const ReachableView& view, const Joints& current) const;
   bool is_left_out(const ViewRequest& request) const;
@@ -99,6 +102,7 @@ class GainPlanner : public Planner {
   Aabb volume_;
   Eigen::Vector3d robot_;
   ExpectedSurface model_;
+  int threads_;
   std::vector<Candidate> candidates_;
   Aabb extent_;                 // of the fruit when the candidates were made
   std::vector<Scored> ranked_;  // views worth taking after the last frame, best first; empty until they are rated
