@@ -18,11 +18,12 @@ std::string listed(const std::vector<std::string>& parts) {
   return out;
 }
 
-/// A question about the unit of a ready cloud that is larger than a plant; empty for others.
+/// A question about the unit of a ready cloud that is larger than a plant or smaller than a fruit; empty for others.
 std::string doubt_of_unit(const ScanResult& result) {
-  constexpr double kPlant = 3.0;  // m
+  constexpr double kPlant = 3.0, kFruit = 0.01;  // m
   if (!result.views.empty()) return "";
   const double across = bounding_box(result.raw.points).size().norm();
+  if (across < kFruit) return ". All points lie within " + metres(across) + ": are their coordinates right, in metres?";
   return across > kPlant ? ". The cloud is " + metres(across) + " across: are its coordinates in metres?" : "";
 }
 
@@ -98,7 +99,8 @@ std::string why_no_fruit(const ScanResult& result) {
   if (result.cloud.empty()) return "cleaning left none of " + std::to_string(result.raw.size()) + " points";
   const BodyCounts& n = result.bodies;
   if (n.taken == 0 && n.rejected() == 0)
-    return "no round surface was found in " + std::to_string(result.cloud.size()) + " points" + doubt_of_unit(result);
+    return "no round surface was found in " + std::to_string(result.cloud.size()) +
+           (result.cloud.size() == 1 ? " point" : " points") + doubt_of_unit(result);
   std::vector<std::string> parts;
   const auto add = [&](std::size_t count, const char* what) {
     if (count > 0) parts.push_back(std::to_string(count) + " " + what);

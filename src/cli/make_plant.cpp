@@ -4,12 +4,14 @@
 #include <agrisee/io/scene.hpp>
 #include <agrisee/study/plant.hpp>
 
+#include <algorithm>
 #include <filesystem>
 #include <iomanip>
 #include <iostream>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <tuple>
 
 #include "commands.hpp"
 #include "words.hpp"
@@ -20,7 +22,7 @@ namespace {
 struct PlantOptions {
   study::PlantParameters plant;
   std::optional<int> total;    // else as usual for the kind
-  std::vector<double> radius;  // shoulder and tip, or empty
+  std::vector<double> radius;  // of the smallest and the largest fruit in any order, or empty
   std::string output;
   bool force = false, json = false;
 };
@@ -29,11 +31,10 @@ struct PlantOptions {
 study::PlantParameters parameters_of(const PlantOptions& options) {
   study::PlantParameters parameters = options.plant;
   const study::PlantParameters usual = study::PlantParameters::of(parameters.kind);
-  if (!options.radius.empty() && options.radius[0] < options.radius[1])
-    throw UsageError("--radius: takes the half width of the largest fruit first, then that of the smallest");
   parameters.total = options.total.value_or(usual.total);
-  parameters.radius_shoulder = options.radius.empty() ? usual.radius_shoulder : options.radius[0];
-  parameters.radius_tip = options.radius.empty() ? usual.radius_tip : options.radius[1];
+  const std::vector<double> radii =
+      options.radius.empty() ? std::vector<double>{usual.radius_shoulder, usual.radius_tip} : options.radius;
+  std::tie(parameters.radius_tip, parameters.radius_shoulder) = std::minmax(radii[0], radii[1]);
   return parameters;
 }
 
@@ -85,8 +86,8 @@ void add_make_plant(CLI::App& app, Run& run) {
       ->capture_default_str();
   command
       ->add_option("--radius", options->radius,
-                   "half width of the LARGEST,SMALLEST fruit, the first and the last of a truss (m, from 0.06 to "
-                   "0.008; default: usual for the kind)")
+                   "half width of the smallest,largest fruit, the last and the first of a truss (m, from 0.008 to "
+                   "0.06; default: usual for the kind)")
       ->delimiter(',')
       ->expected(2);
   command->add_option("--foliage", plant.foliage, "share of the fruit surface, seen from the front, that leaves hide")

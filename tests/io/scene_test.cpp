@@ -235,6 +235,7 @@ TEST_CASE("values out of range are named") {
                 "sensor: 'kinect' is not known (known are l515, d405, azure; any other camera");
   folder.refuse(kScene + "sensor: D405\n", "; did you mean 'd405'?");
   folder.refuse(kScene + "sensor: [l515]\n", "sensor: expected keys and values");
+  folder.refuse(kScene + "sensor:\n", "sensor: is empty: expected keys and values");
   folder.refuse(kScene + "sensor: {width: 0}\n", "sensor.width");
   folder.refuse(kScene + "sensor: {height: 1000000}\n", "sensor.height");
   folder.refuse(kScene + "sensor: {fov_deg: [70, 180]}\n", "sensor.fov_deg");

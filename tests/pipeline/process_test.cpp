@@ -255,6 +255,10 @@ TEST_CASE("a result without fruit says why") {
   for (auto& p : stem.points) p *= 39.37f;
   CHECK(why_no_fruit(process(stem)).find("The cloud is 6.17 m across: are its coordinates in metres?") !=
         std::string::npos);
+  Cloud same;
+  same.points.assign(500, Eigen::Vector3f(0.1f, 0.2f, 0.3f));
+  CHECK(why_no_fruit(process(same)).find("All points lie within 0 m: are their coordinates right") !=
+        std::string::npos);
 }
 
 TEST_CASE("where no view saw the scan volume, the depths and distances say why") {

@@ -75,8 +75,13 @@ std::string YamlValue::place() const {
 
 void YamlValue::fail(const std::string& message) const { throw FileError(place() + ": " + message); }
 
-void YamlValue::check_keys(std::initializer_list<const char*> known) const {
+void YamlValue::expect_map() const {
+  if (node_.IsNull()) fail("is empty: expected keys and values");
   if (!node_.IsMap()) fail("expected keys and values");
+}
+
+void YamlValue::check_keys(std::initializer_list<const char*> known) const {
+  expect_map();
   std::set<std::string> seen;
   for (const auto& member : node_) {
     const YamlValue key(path_, member.first, key_);
@@ -93,7 +98,7 @@ bool YamlValue::has(const char* key) const {
 }
 
 YamlValue YamlValue::at(const char* key) const {
-  if (!node_.IsMap()) fail("expected keys and values");
+  expect_map();
   const YAML::Node node = node_;
   const YAML::Node member = node[key];
   if (!member.IsDefined()) fail("missing key '" + std::string(key) + "'");

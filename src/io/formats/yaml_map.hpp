@@ -56,6 +56,8 @@ class YamlValue {
   [[noreturn]] void fail(const std::string& message) const;
 
  private:
+  /// @throws FileError if the value is not a map
+  void expect_map() const;
   std::filesystem::path path_;
   YAML::Node node_;
   std::string key_;  // path of keys from the document, separated by dots; empty for the document itself
