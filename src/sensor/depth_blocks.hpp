@@ -43,7 +43,7 @@ struct Blocks {
   Intrinsics cells;                 ///< of the blocks
   std::vector<Block> blocks;        ///< row by row
   std::vector<std::size_t> filled;  ///< the numbers of those with pixels that agree
-  std::vector<float> depth;         ///< median depth (m) of all valid pixels of a block, inside the volume or not; 0: none
+  std::vector<float> depth;         ///< median (m) of all valid pixels of a block, inside the volume or not; 0: none
   double fill = 0.0;                ///< median share of valid pixels in blocks with any
 
   const Block& at(int u, int v) const { return blocks[cells.index(u, v)]; }
