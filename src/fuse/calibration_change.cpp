@@ -5,7 +5,7 @@
 #include <optional>
 #include <utility>
 
-namespace agrisee::fuse::detail {
+namespace agrisee::fuse {
 namespace {
 
 /// What all views show of each body after a change.
@@ -129,4 +129,4 @@ std::vector<Misplacement> misplaced(const std::vector<FruitSample>& samples,
   return out;
 }
 
-}  // namespace agrisee::fuse::detail
+}  // namespace agrisee::fuse

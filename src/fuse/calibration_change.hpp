@@ -10,7 +10,7 @@
 #include <limits>
 #include <vector>
 
-namespace agrisee::fuse::detail {
+namespace agrisee::fuse {
 
 /// A change that may make the views agree: of the calibration, or of where later views are.
 struct CalibrationChange {
@@ -58,4 +58,4 @@ std::vector<Misplacement> misplaced(const std::vector<FruitSample>& samples,
                                     const std::vector<CalibrationChange>& changes, const std::vector<Ellipsoid>& bodies,
                                     const std::vector<RegisteredView>& views);
 
-}  // namespace agrisee::fuse::detail
+}  // namespace agrisee::fuse

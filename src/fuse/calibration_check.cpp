@@ -16,11 +16,6 @@
 namespace agrisee::fuse {
 namespace {
 
-using detail::CalibrationChange;
-using detail::FruitSample;
-using detail::placed;
-using detail::PlacedSample;
-
 constexpr double kDoubt = 0.0015;  // m; views of a calibrated camera on a plant at rest are not as far apart
 constexpr double kBetter = 0.5;    // share of the distance that may be left after a change
 
@@ -295,7 +290,7 @@ CalibrationCheck check_calibration(const std::vector<RegisteredView>& views, con
     out.mistake += (out.mistake.empty() ? "" : ", or if ") + in_words(t.change, samples);
     likely.push_back(t.change);
   }
-  if (!likely.empty()) out.misplaced = detail::misplaced(samples, likely, bodies, views);
+  if (!likely.empty()) out.misplaced = misplaced(samples, likely, bodies, views);
   if (!motion) return out;
   if (out.mistake.empty()) return of_motion();
   out.mistake += ", or if " + in_words(motion->change, samples);
