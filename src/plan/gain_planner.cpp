@@ -195,6 +195,7 @@ void GainPlanner::sort_ranked() {
 }
 
 void GainPlanner::consider(const ViewRequest& request, const ReachableView& view) {
+  throw_if_cancelled();
   ranked_.emplace_back();
   ranked_.back().request = request;
   ranked_.back().view = view;
