@@ -33,6 +33,32 @@ Eigen::Vector3d frontal_direction(const Aabb& volume, const Eigen::Vector3d& rob
   return level_direction(robot, volume.center());
 }
 
+std::vector<Aabb> parts_to_look_at(const Aabb& volume, double width) {
+  constexpr double kMost = 27.0;
+  const Eigen::Vector3d size = volume.size();
+  Eigen::Array3d counts;
+  do {
+    counts = (size.array() / width).ceil().max(1.0);
+    width *= 1.1;
+  } while (counts.prod() > kMost);
+  std::vector<Aabb> parts;
+  const Eigen::Vector3d each = size.array() / counts;
+  for (int z = 0; z < counts.z(); ++z)
+    for (int y = 0; y < counts.y(); ++y)
+      for (int x = 0; x < counts.x(); ++x) {
+        const Eigen::Vector3d low = volume.min + each.cwiseProduct(Eigen::Vector3d(x, y, z));
+        parts.push_back({low, low + each});
+      }
+  if (parts.size() == 1) return {volume};
+  // In micrometres, so that rounding does not order parts that are equally near.
+  const auto off = [middle = volume.center()](const Aabb& part) {
+    return std::round(1e6 * (part.center() - middle).norm());
+  };
+  std::stable_sort(parts.begin(), parts.end(), [&](const Aabb& a, const Aabb& b) { return off(a) < off(b); });
+  parts.insert(parts.begin(), volume);
+  return parts;
+}
+
 std::optional<ReachableView> first_view(const Aabb& volume, const Eigen::Vector3d& robot, const Joints& current,
                                         const Reach& reach, ViewRequest band, int skip) {
   const Eigen::Vector3d frontal = frontal_direction(volume, robot);

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <utility>
 
 namespace agrisee::plan {
@@ -21,6 +22,13 @@ double time_to_move(const ReachableView& view, const Joints& from) {
   return view.joints ? (*view.joints - from).norm() / kPi : view.move_time;
 }
 
+/// How wide a part of the volume may be (m) that one view at this distance shows well enough to tell whether it is
+/// empty.
+double width_of_a_look(const sensor::Intrinsics& k, double distance) {
+  constexpr double kMore = 1.25;  // what is at the border is seen from the next part, or a little in part
+  return kMore * distance * std::min(k.width / k.fx, k.height / k.fy);
+}
+
 }  // namespace
 
 GainPlanner::GainPlanner(const sensor::DepthCamera& sensor, const Aabb& volume, const Eigen::Vector3d& robot,
@@ -34,6 +42,8 @@ GainPlanner::GainPlanner(const sensor::DepthCamera& sensor, const Aabb& volume, 
       model_(sensor, volume, parameters.expected, threads),
       threads_(threads) {
   parameters_.check();
+  look_ = width_of_a_look(sensor.intrinsics, parameters_.distance);
+  divide(1.0);
 }
 
 void GainPlanner::observe(const Progress& progress) {
@@ -42,6 +52,8 @@ void GainPlanner::observe(const Progress& progress) {
   left_out_.clear();
   refused_ = 0;
   if (last_) left_out_.push_back(*last_);  // taken just now: from the same place it shows the same
+  if (part_) ++looks_[*part_];
+  part_.reset();
   last_.reset();
   stopped_at_.reset();
 }
@@ -86,11 +98,35 @@ std::vector<ReachableView> GainPlanner::candidates() const {
 }
 
 std::optional<ReachableView> GainPlanner::front_view(int taken, const Joints& current, const Reach& reach) {
-  // Four views near the front that show nothing end the scan.
-  if (taken >= 4) return stop(StopReason::nothing_seen, current);
-  auto view = first_view(volume_, robot_, current, reach, request(Eigen::Vector3d::UnitY()), refused_ + 12 * taken);
-  if (!view) return stop(taken > 0 ? StopReason::nothing_seen : StopReason::no_reachable_view, current);
-  return view;
+  part_.reset();
+  auto view = view_of_part(taken, current, reach);
+  if (!view && taken == 0) {
+    // Even the middles of the parts are out of reach; those of smaller ones may be nearer.
+    divide(0.5);
+    view = view_of_part(taken, current, reach);
+  }
+  return view ? view : stop(taken > 0 ? StopReason::nothing_seen : StopReason::no_reachable_view, current);
+}
+
+std::optional<ReachableView> GainPlanner::view_of_part(int taken, const Joints& current, const Reach& reach) {
+  constexpr int kFew = 4;  // views near the front that show nothing, and one of every part, end the scan
+  std::vector<std::size_t> order(parts_.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return looks_[a] < looks_[b]; });
+  for (const std::size_t part : order) {
+    if (taken >= kFew && (looks_[part] > 0 || parts_.size() == 1)) break;
+    const int skip = refused_ + 12 * looks_[part];
+    if (auto view = first_view(parts_[part], robot_, current, reach, request(Eigen::Vector3d::UnitY()), skip)) {
+      part_ = part;
+      return view;
+    }
+  }
+  return std::nullopt;
+}
+
+void GainPlanner::divide(double factor) {
+  parts_ = parts_to_look_at(volume_, factor * look_);
+  looks_.assign(parts_.size(), 0);
 }
 
 void GainPlanner::update_candidates(const Joints& current, const Reach& reach) {

@@ -64,6 +64,29 @@ TEST_CASE("directions: many directions are unit vectors that leave no gap") {
   }
 }
 
+TEST_CASE("directions: a volume is looked at as a whole, then, if it is wide, part by part, from its middle outwards") {
+  const Aabb whole{{0, 0, 0}, {0.4, 0.5, 0.3}};
+  REQUIRE(parts_to_look_at(whole, 0.5).size() == 1);
+  CHECK(parts_to_look_at(whole, 0.5)[0].max == whole.max);
+  const Aabb row{{-1.5, 0, 0}, {1.5, 0.5, 0.3}};
+  const auto parts = parts_to_look_at(row, 0.6);
+  REQUIRE(parts.size() == 6);
+  CHECK(parts[0].size() == row.size());
+  const double middles[] = {0.0, 0.0, -0.6, 0.6, -1.2, 1.2};
+  for (std::size_t i = 0; i < parts.size(); ++i) {
+    CHECK((parts[i].center() - Vector3d(middles[i], 0.25, 0.15)).norm() < 1e-12);
+    if (i > 0) CHECK((parts[i].size() - Vector3d(0.6, 0.5, 0.3)).norm() < 1e-12);
+  }
+  // However large, no more than 27 parts, which fill it.
+  for (const double size : {1.0, 7.0, 50.0}) {
+    const auto many = parts_to_look_at(box({1, 2, 3}, 0.5 * size), 0.3);
+    REQUIRE(many.size() <= 28);
+    double sum = 0.0;
+    for (std::size_t i = 1; i < many.size(); ++i) sum += many[i].size().prod();
+    CHECK(sum == Approx(size * size * size));
+  }
+}
+
 TEST_CASE("directions: a level direction ignores heights") {
   CHECK((level_direction({1, 1, 7}, {4, 5, -2}) - kFrontal).norm() < 1e-15);
   CHECK((level_direction({4, 5, -2}, {1, 1, 7}) + kFrontal).norm() < 1e-15);

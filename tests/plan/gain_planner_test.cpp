@@ -39,6 +39,23 @@ Row open_row() {
   return row;
 }
 
+/// Where a planner aims while views show nothing, until it stops.
+std::vector<Vector3d> empty_looks(const Aabb& volume, const std::function<bool(const ViewRequest&)>& passes) {
+  GainPlanner planner(camera(), volume, kRobot, SplitParameters(), fuse::FreeSpaceParameters(), parameters());
+  Scan scan;
+  std::vector<Vector3d> aims;
+  for (int i = 0; i < 100; ++i) {
+    Flight flight;
+    flight.passes = passes;
+    if (!planner.next(scan.progress(), Joints::Zero(), flight.reach())) break;
+    aims.push_back(flight.asked.back().target);
+    scan.views.emplace_back();
+    planner.observe(scan.progress());
+  }
+  CHECK(planner.stop_reason() == (aims.empty() ? StopReason::no_reachable_view : StopReason::nothing_seen));
+  return aims;
+}
+
 }  // namespace
 
 TEST_CASE("gain planner: while nothing is seen, four views near the front are tried") {
@@ -81,6 +98,36 @@ TEST_CASE("gain planner: without a view near the front, nothing can be reached o
   planner->observe(scan.progress());
   CHECK_FALSE(planner->next(scan.progress(), Joints::Zero(), flight.reach()));
   CHECK(planner->stop_reason() == StopReason::nothing_seen);
+}
+
+TEST_CASE("gain planner: while nothing is seen, every part of a wide volume is looked at") {
+  const Aabb row{kFruit - Vector3d(1.0, 0.1, 0.1), kFruit + Vector3d(1.0, 0.1, 0.1)};
+  const auto anywhere = [](const ViewRequest&) { return true; };
+  const std::vector<Vector3d> aims = empty_looks(row, anywhere);
+  REQUIRE(aims.size() >= 4);
+  CHECK(aims[0] == row.center());
+  double left = 0.0, right = 0.0;
+  for (const Vector3d& aim : aims) {
+    left = std::max(left, row.center().x() - aim.x());
+    right = std::max(right, aim.x() - row.center().x());
+  }
+  CHECK(left > 0.7);
+  CHECK(right > 0.7);
+  // Only what is to the left of the middle can be reached: each part there is looked at, then the scan ends.
+  const auto left_of = [&](const ViewRequest& r) { return r.target.x() < row.center().x() - 0.01; };
+  const std::vector<Vector3d> reached = empty_looks(row, left_of);
+  REQUIRE_FALSE(reached.empty());
+  CHECK(reached.size() < aims.size());
+  for (const Vector3d& aim : reached) CHECK(aim.x() < row.center().x());
+}
+
+TEST_CASE("gain planner: where the middle of the volume is out of reach, it looks at what is nearer") {
+  const Aabb volume = box(kFruit, 0.2);
+  const auto front = [](const ViewRequest& r) { return r.target.y() < kFruit.y() - 0.05; };
+  const std::vector<Vector3d> aims = empty_looks(volume, front);
+  REQUIRE_FALSE(aims.empty());
+  for (const Vector3d& aim : aims) CHECK(volume.contains(aim));
+  CHECK(empty_looks(volume, nowhere).empty());
 }
 
 TEST_CASE("gain planner: candidates aim and stand back by Roberts' sequence, in directions all over the sphere") {

@@ -26,6 +26,12 @@ Eigen::Vector3d level_direction(const Eigen::Vector3d& from, const Eigen::Vector
 /// @param robot where the robot's base stands (m, world)
 Eigen::Vector3d frontal_direction(const Aabb& volume, const Eigen::Vector3d& robot);
 
+/// The parts in which to look at a volume: all of it first and, if it is wider than `width`, boxes of at most this
+/// width that fill it, at most 27, those nearest to its center first.
+/// @param volume to be scanned (world)
+/// @param width how wide a part may be (m, positive); more if there were too many
+std::vector<Aabb> parts_to_look_at(const Aabb& volume, double width);
+
 /// The reachable view of the volume's center whose direction is nearest to frontal; nothing when there is none.
 /// @param volume to be scanned (world)
 /// @param robot where the robot's base stands (m, world)

@@ -3,6 +3,10 @@
 /// The default planner: of the views that the arm can take, it chooses the one that promises the most new fruit surface
 /// for the time it costs.
 ///
+/// The first view looks at the middle of the scan volume, from the front. While views show nothing, others follow, of
+/// each part of a volume that is larger than the image, and four at least; if the arm can look at the middle of none,
+/// the parts are halved.
+///
 /// Candidate views look at points spread over the extent of the fruit, from directions spread over the sphere and from
 /// various distances; those out of reach are dropped. A candidate's score is its ExpectedSurface::gain divided by the
 /// time for dwelling and moving. Where joints are reported, a move counts the distance from the present joints (the
@@ -61,6 +65,10 @@ class GainPlanner : public Planner {
 
   /// A view near the front, while nothing has been seen.
   std::optional<ReachableView> front_view(int taken, const Joints& current, const Reach& reach);
+  /// A view of the part of the volume that was looked at least, of those whose middle the arm can look at.
+  std::optional<ReachableView> view_of_part(int taken, const Joints& current, const Reach& reach);
+  /// Divide the volume into parts that are as wide as a view shows, times a factor.
+  void divide(double factor);
   /// Find the candidates anew when the extent of the fruit has changed by more than 2 cm.
   void update_candidates(const Joints& current, const Reach& reach);
   /// Request for a view of the model's center along `direction`.
@@ -103,6 +111,10 @@ class GainPlanner : public Planner {
   Eigen::Vector3d robot_;
   ExpectedSurface model_;
   int threads_;
+  double look_ = 0.0;                // width that a view shows (m)
+  std::vector<Aabb> parts_;          // of the volume, to look at while nothing has been seen
+  std::vector<int> looks_;           // how many views looked at each of them
+  std::optional<std::size_t> part_;  // at which the view last returned looks
   std::vector<Candidate> candidates_;
   Aabb extent_;                 // of the fruit when the candidates were made
   std::vector<Scored> ranked_;  // views worth taking after the last frame, best first; empty until they are rated
