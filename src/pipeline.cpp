@@ -165,6 +165,7 @@ ScanResult Pipeline::result() const {
     if (auto doubt = doubt_calibration(*map_, parameters_, out.fruits)) out.warnings.push_back(std::move(*doubt));
     if (auto doubt = doubt_of_agreement(*map_, views_, parameters_, workcell_.scan_volume, out.fruits.size(), threads_))
       out.warnings.push_back(std::move(*doubt));
+    if (auto doubt = doubt_of_volume(out.fruits, workcell_.scan_volume)) out.warnings.push_back(std::move(*doubt));
   });
   out.completeness = completeness();
   center_on_reported_poses(out);

@@ -147,4 +147,20 @@ std::vector<std::string> doubts_of(const Workcell& workcell, double distance_min
   return all;
 }
 
+std::optional<std::string> doubt_of_volume(const std::vector<Fruit>& fruits, const Aabb& volume) {
+  constexpr double kCut = 0.2;  // of the mean radius; bodies of fruit with a little room are not off by as much
+  std::string cut;
+  std::size_t n = 0;
+  for (const Fruit& fruit : fruits) {
+    if (!fruit.body) continue;
+    const Eigen::Vector3d half = (fruit.body->axes * fruit.body->radii.asDiagonal()).rowwise().norm();
+    const Eigen::Vector3d low = fruit.body->center - half, high = fruit.body->center + half;
+    if ((volume.min - low).cwiseMax(high - volume.max).maxCoeff() < kCut * fruit.body->radii.mean()) continue;
+    cut += (n++ ? ", " : "") + std::to_string(fruit.id);
+  }
+  if (n == 0) return std::nullopt;
+  return "fruit " + cut + (n == 1 ? " reaches" : " reach") +
+         " out of the scan volume, where nothing is measured: place and size may be wrong. Is the volume large enough?";
+}
+
 }  // namespace agrisee

@@ -55,4 +55,7 @@ std::optional<std::string> doubt_of(const fuse::CalibrationCheck& check);
 /// @param distance_min, distance_max from a view to its target (m)
 std::vector<std::string> doubts_of(const Workcell& workcell, double distance_min, double distance_max);
 
+/// What speaks against a scan volume: fruit that it cuts through.
+std::optional<std::string> doubt_of_volume(const std::vector<Fruit>& fruits, const Aabb& volume);
+
 }  // namespace agrisee

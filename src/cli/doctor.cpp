@@ -113,7 +113,7 @@ void look_at_units(const io::SceneFile& file, Findings& out) {
   else
     out.tell(Level::ok, "scan_volume: " + size_text(size) + " about " + place_text(file.workcell.scan_volume.center()));
   std::size_t fruit = 0;
-  std::string odd, outside;
+  std::string odd, outside, cut;
   for (const study::Object& object : file.scene.objects) {
     if (object.cls != study::ObjectClass::fruit) continue;
     ++fruit;
@@ -121,12 +121,18 @@ void look_at_units(const io::SceneFile& file, Findings& out) {
     const double radius = 0.5 * box.size().maxCoeff();
     const std::string id = std::to_string(object.id);
     if (radius < kTiny || radius > kHuge) odd += (odd.empty() ? "" : ", ") + id + " (" + rounded(radius, 3) + " m)";
-    if (!file.workcell.scan_volume.contains(box.center())) outside += (outside.empty() ? "" : ", ") + id;
+    const Aabb& volume = file.workcell.scan_volume;
+    if (!volume.contains(box.center()))
+      outside += (outside.empty() ? "" : ", ") + id;
+    else if (!volume.contains(box.min) || !volume.contains(box.max))
+      cut += (cut.empty() ? "" : ", ") + id;
   }
   if (!odd.empty())
     out.tell(Level::note, "fruit with an odd radius: " + odd + ". Is its mesh in metres (scale: 0.001)?");
   if (!outside.empty()) out.tell(Level::note, "fruit outside of scan_volume, which will not be found: " + outside);
-  if (odd.empty() && outside.empty()) out.tell(Level::ok, std::to_string(fruit) + " fruit, all inside the scan volume");
+  if (!cut.empty()) out.tell(Level::note, "fruit that reach out of scan_volume, where nothing is measured: " + cut);
+  if (odd.empty() && outside.empty() && cut.empty())
+    out.tell(Level::ok, std::to_string(fruit) + " fruit, all inside the scan volume");
 }
 
 void look_at_frames(const io::SceneFile& file, Findings& out) {

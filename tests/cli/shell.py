@@ -186,6 +186,8 @@ def doctor():
     judged(r"(?s)objects:.*", "objects: []\n", "NOTE  robot.gripper: not given", 0)
     judged(r"scan_volume: *\{min: *" + number + ", *max: *" + number,
            "scan_volume: {min: [-0.2, 0.4, 0.4], max: [0.2, 0.75, 0.45]}\n#", "NOTE  fruit outside of scan_volume.*1", 0)
+    judged(r"scan_volume: *\{min: *" + number + ", *max: *" + number,
+           "scan_volume: {min: [-0.2, 0.55, 0], max: [0.2, 0.75, 0.45]}\n#", "NOTE  fruit that reach out of scan_volume.*3", 0)
 
 
 @case

@@ -191,6 +191,22 @@ TEST_CASE("a wrong scale of the depths, and a hand-eye transform that is left ou
   CHECK_THAT(aside, test::says("if the camera were 8 mm further left in its own frame"));
 }
 
+TEST_CASE("fruit that reach out of the scan volume are named") {
+  const auto told = [](double right) {
+    Workcell w = cell();
+    w.scan_volume.max.x() = right;
+    Pipeline pipeline(w);
+    for (int v = 0; v < 4; ++v) pipeline.observe(frame_at(pose_around(v, 4), v), pose_around(v, 4));
+    std::string all;
+    for (const std::string& warning : pipeline.result().warnings) all += warning + "\n";
+    return all;
+  };
+  double right = 0.0;
+  for (const auto& fruit : test::kThreeFruit) right = std::max(right, fruit.center.x() + fruit.radius);
+  CHECK(told(right + 0.01).empty());
+  CHECK_THAT(told(right - 0.02), test::says("reaches out of the scan volume, where nothing is measured"));
+}
+
 TEST_CASE("where views alone show fruit that all together do not, a warning doubts poses and calibration") {
   const auto after = [](double ahead) {
     return warnings_after(8,
