@@ -5,6 +5,7 @@
 #include <agrisee/cloud/voxel.hpp>
 #include <agrisee/core/parallel.hpp>
 #include <agrisee/fuse/free_space.hpp>
+#include <agrisee/geometry/angle.hpp>
 #include <agrisee/neighbors/grid.hpp>
 #include <agrisee/plan/directions.hpp>
 #include <agrisee/plan/expected_surface.hpp>
@@ -94,6 +95,8 @@ void ExpectedSurface::update(const Progress& progress, const SplitParameters& sp
   collect_samples(progress, grid, free_space);
   if (shows_anything(progress))
     weigh(promised, grid, progress.images.empty() ? 1.0 : measured_share(progress.images.back(), free_space));
+  if (!progress.views.empty() && !progress.views.back().discarded && was_blind(promised, grid))
+    blind_.push_back(progress.views.back().world_T_optical);
   PointCloud<float> rest;
   for (std::size_t i = 0; i < progress.cloud.size(); ++i)
     if (labels[i] == 0) rest.points.push_back(progress.cloud.points[i]);
@@ -172,13 +175,37 @@ double ExpectedSurface::weight_of(const FoundBody& body) {
 void ExpectedSurface::weigh(const std::vector<Promise>& promised, const Grid<float>& grid, double measured) {
   constexpr double kForget = 0.5;
   if (promised.empty()) return;
-  const auto cover = static_cast<float>(parameters_.cover_radius);
   promised_ *= kForget;
   kept_ *= kForget;
   for (const Promise& p : promised) {
     promised_ += measured * double(p.area);
-    if (p.body < 0 ? known_.has(p.point.cast<double>()) : grid.count(p.point, cover, 1) > 0) kept_ += double(p.area);
+    if (is_kept(p, grid)) kept_ += double(p.area);
   }
+}
+
+bool ExpectedSurface::is_kept(const Promise& promise, const Grid<float>& grid) const {
+  return promise.body < 0 ? known_.has(promise.point.cast<double>())
+                          : grid.count(promise.point, static_cast<float>(parameters_.cover_radius), 1) > 0;
+}
+
+bool ExpectedSurface::was_blind(const std::vector<Promise>& promised, const Grid<float>& grid) const {
+  constexpr double kHardly = 0.1;
+  double all = 0.0, kept = 0.0;
+  for (const Promise& p : promised) {
+    all += double(p.area);
+    if (is_kept(p, grid)) kept += double(p.area);
+  }
+  return kept < kHardly * all;
+}
+
+double ExpectedSurface::clearness(const Pose& world_T_optical) const {
+  constexpr double kClose = 0.08, kTurned = deg(30.0), kLess = 0.3;  // m, rad, factor
+  double clear = 1.0;
+  for (const Pose& blind : blind_)
+    if ((blind.translation() - world_T_optical.translation()).norm() < kClose &&
+        angle_between(blind.linear().col(2), world_T_optical.linear().col(2)) < kTurned)
+      clear *= kLess;
+  return clear;
 }
 
 double ExpectedSurface::reliability() const {

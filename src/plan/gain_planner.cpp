@@ -251,7 +251,7 @@ void GainPlanner::rate(Scored& scored, const ReachableView& view, const Joints& 
   if (!rated) scored.shown = model_.shown(view.world_T_optical);
   scored.rated = true;
   scored.view = view;
-  scored.view.gain = model_.gain(scored.shown);
+  scored.view.gain = model_.clearness(view.world_T_optical) * model_.gain(scored.shown);
   scored.score = scored.view.gain / (parameters_.dwell + time_to_move(view, current));
 }
 

@@ -39,6 +39,37 @@ TEST_CASE("expected surface: how far it can be relied on follows from what views
   CHECK(half < 0.65);
 }
 
+TEST_CASE("expected surface: less can be expected close to a view that showed hardly any of what it promised") {
+  ExpectedSurfaceParameters p = bare();
+  p.cover_radius = 0.005;
+  const Vector3d eye(0, 0.885, 0.2);
+  const auto clearness_after = [&](auto&& shown, const Pose& of, bool discarded = false) {
+    Scan scan;
+    add_fruit(
+        scan, kFruit, [](const Vector3d& d) { return d.y() < 0.0; }, 0.002);
+    ExpectedSurface model = model_of(scan, p);
+    CHECK(model.clearness(of) == 1.0);
+    add_fruit(scan, kFruit, shown, 0.002);
+    View behind;
+    behind.world_T_optical = look_at(kFruit, eye);
+    behind.discarded = discarded;
+    for (int again = 0; again < 2; ++again) {
+      scan.views.push_back(behind);
+      model.update(scan.progress(), {}, {});
+    }
+    return model.clearness(of);
+  };
+  const auto nothing = [](const Vector3d&) { return false; };
+  const auto half = [](const Vector3d& d) { return d.y() >= 0.0 && d.x() > 0.0; };
+  const Pose there = look_at(kFruit, eye), beside = look_at(kFruit, eye + Vector3d(0.05, 0, 0));
+  CHECK(clearness_after(nothing, there) < 0.1);
+  CHECK(clearness_after(nothing, beside) < 0.1);
+  CHECK(clearness_after(nothing, look_at(kFruit, eye + Vector3d(0.15, 0, 0))) == 1.0);  // elsewhere
+  CHECK(clearness_after(nothing, look_at(eye + Vector3d(0.3, 0, 0), eye)) == 1.0);      // turned away
+  CHECK(clearness_after(nothing, there, true) == 1.0);  // a discarded view says nothing of what can be seen
+  CHECK(clearness_after(half, there) > 0.2);            // the first showed half, the second nothing more
+}
+
 TEST_CASE("expected surface: older views count less for how far it can be relied on") {
   // The fronts of two fruit are known. Of two views from behind one shows all of its fruit, the other nothing.
   const Vector3d fruit[] = {kFruit, kFruit + Vector3d(0.6, 0.0, 0.0)};

@@ -54,6 +54,11 @@ class ExpectedSurface {
   /// Share (0..1) of the surface expected of the last views that they did show; older views count less.
   double reliability() const;
 
+  /// How much a view can be expected to show (above 0, up to 1) of what the model promises: less close to views that
+  /// showed hardly any of it, as something stands in the way that the model does not know. It may be outside the scan
+  /// volume, as pots and posts are, or nearer than the camera measures.
+  double clearness(const Pose& world_T_optical) const;
+
   /// How complete the scan is. A view without returns, or of which nothing was taken, lowers areas() and gain(), so
   /// that others are tried, but not what can be observed.
   /// @param can_be_seen one per sample: not zero when some reachable view shows it
@@ -119,6 +124,10 @@ class ExpectedSurface {
   /// @param grid of the cloud's points
   /// @param measured share (0..1) of the surface in front of the camera that the view measured
   void weigh(const std::vector<Promise>& promised, const Grid<float>& grid, double measured);
+  /// Whether a view showed hardly any of what it was expected to show.
+  bool was_blind(const std::vector<Promise>& promised, const Grid<float>& grid) const;
+  /// Whether the cloud now tells of what a view was expected to show.
+  bool is_kept(const Promise& promise, const Grid<float>& grid) const;
   /// Mark what the sight lines of new views have reached. Where earlier ones are others than before, as the map has
   /// started again, everything but the reliability is forgotten.
   void read_sight_lines(const std::vector<sensor::SurfaceImage>& images, const fuse::FreeSpaceParameters& free_space);
@@ -166,6 +175,7 @@ class ExpectedSurface {
   std::vector<Occluder> occluders_;  // ellipsoids a little smaller than the fruit
   std::vector<float> obstacles_;     // points that belong to no fruit, thinned: all x, then all y, then all z (m)
   double area_ = 0.0, covered_ = 0.0;
+  std::vector<Pose> blind_;             // views that showed hardly any of what they were expected to show
   double promised_ = 0.0, kept_ = 0.0;  // what the last views were expected to show, and what they showed of it (m2)
   std::vector<double> area_of_, covered_of_;  // one per body (m2)
   std::vector<double> weight_of_;             // how much its surface counts

@@ -16,7 +16,8 @@
 /// directions close to theirs are tried as well, and then closer ones about the best of all. The scan ends when the
 /// best view promises less than `min_gain` of the fruit surface known so far, which counts as at least that of one
 /// fruit of middle size (radius sqrt(radius_min radius_max)). Promises are scaled by ExpectedSurface::reliability,
-/// because views among leaves show less than they promise. World frame, metres, seconds.
+/// because views among leaves show less than they promise, and by ExpectedSurface::clearness, because close to a view
+/// that something unknown blocked others are blocked, too. World frame, metres, seconds.
 #pragma once
 
 #include <agrisee/plan/expected_surface.hpp>
