@@ -59,7 +59,7 @@ std::optional<std::string> doubt_of_aim(const std::vector<View>& views) {
   }
   if (beside == 0 || 3 * beside < with_points || beside == with_points) return std::nullopt;
   return std::to_string(beside) + " of " + std::to_string(views.size()) + " views show nothing of the scan volume (" +
-         numbers + "): are their poses right? " + fuse::kRuleOfPoses;
+         numbers + "): are their poses right? " + fuse::kRuleOfPoses + ". Or does something stand in the way?";
 }
 
 /// A sentence if many views contradict the others, or none shows the volume: with the mistake, if changed poses agree.
