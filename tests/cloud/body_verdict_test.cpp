@@ -116,9 +116,32 @@ TEST_CASE("fewer points on a smaller body count as much in several views, but no
     return std::log(p / (1.0 - p)) -
            1.7 * std::min(radius / BodyParameters().radius_max, 0.5);  // without the size itself
   };
-  CHECK(believed(0.5 * usual, 50, {}) == Approx(believed(usual, 200, {})));
-  CHECK(believed(0.5 * usual, 50, 1.0) < believed(usual, 200, 1.0) - 1.0);
+  CHECK(believed(0.6 * usual, 72, {}) == Approx(believed(usual, 200, {})));
+  CHECK(believed(0.6 * usual, 72, 1.0) < believed(usual, 200, 1.0) - 1.0);
   CHECK(believed(2.0 * usual, 200, {}) == Approx(believed(usual, 200, {})));
+}
+
+TEST_CASE("of small bodies in several views roundness counts more, and spread normals count less") {
+  const auto log_odds_of = [](double radius, double roundness, double spread, std::optional<double> seen_on = {}) {
+    Verdict v = verdict_of(cap(kPi / 2));
+    v.roundness = roundness;
+    v.normal_spread = spread;
+    v.seen_on = seen_on;
+    EllipsoidFit fit;
+    fit.body = Ellipsoid(Sphere{Eigen::Vector3d::Zero(), radius});
+    return log_odds(fruit_probability(v, fit, BodyParameters()));
+  };
+  const auto by_roundness = [&](double radius, std::optional<double> seen_on = {}) {
+    return log_odds_of(radius, 0.75, 0.2, seen_on) - log_odds_of(radius, 0.55, 0.2, seen_on);
+  };
+  const auto by_spread = [&](double radius, std::optional<double> seen_on = {}) {
+    return log_odds_of(radius, 0.6, 0.1, seen_on) - log_odds_of(radius, 0.6, 0.22, seen_on);
+  };
+  CHECK(by_roundness(0.010) > 2.0 * by_roundness(0.015));
+  CHECK(by_spread(0.015) > 1.0);
+  CHECK(by_spread(0.008) == Approx(0.0).margin(1e-9));  // patches explain it
+  CHECK(by_roundness(0.010, 1.0) == Approx(by_roundness(0.015, 1.0)));
+  CHECK(by_spread(0.010, 1.0) == Approx(by_spread(0.015, 1.0)));
 }
 
 TEST_CASE("a small fruit is not less likely where only small ones are expected") {
