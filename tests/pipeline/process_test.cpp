@@ -380,7 +380,7 @@ TEST_CASE("where the side of the normals is a guess, only sure bodies are fruit"
       const Eigen::Vector3d tilt(rng.normal(), rng.normal(), rng.normal());
       if (n.y() > 0.0) continue;
       cloud.points.push_back((Eigen::Vector3d(0.0, 0.5, 0.2) + 0.009 * n + 0.0006 * noise).cast<float>());
-      cloud.normals.push_back((n + 0.25 * tilt).normalized().cast<float>());
+      cloud.normals.push_back((n + 0.4 * tilt).normalized().cast<float>());
     }
     bare.points = cloud.points;
     const ScanResult known = process(cloud), guessed = process(bare);
