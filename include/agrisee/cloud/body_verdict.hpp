@@ -236,7 +236,7 @@ constexpr double kMostMisfit = 0.08;
 /// is between those of the real frames; frames in the sun would need a larger one. What roundness below 0.5 and normals
 /// that spread more than those of all fruit count in several views was found in 240 scans of 80 plants: of 1,700 fruit
 /// 8 are less round, and 5 spread more; stumps, trunks and pipes have 0.35 to 0.5, and boxes spread by 0.33 to 0.4. The
-/// terms of bodies below 0.55 usual radii in several views were chosen in 136 scans with 706 such fruit.
+/// terms of bodies below half the usual radius in several views were chosen in 136 scans with 706 such fruit.
 /// @param prior log-odds from elsewhere, which are added (MaskEvidence::log_odds)
 inline double fruit_probability(const Verdict& v, const EllipsoidFit& fit, const BodyParameters& parameters,
                                 double prior = 0.0) {
@@ -251,8 +251,8 @@ inline double fruit_probability(const Verdict& v, const EllipsoidFit& fit, const
   const double points = std::min(larger * larger * static_cast<double>(v.support), kMostPoints);
   // The patches that normals are fitted to are wide against small bodies, so their normals spread more. How round such
   // a body is counts more instead.
-  constexpr double kSmall = 1.8, kRounder = 4.2;  // usual radii over the body's; weight
-  constexpr double kPatch = 0.087;                // of the usual radius
+  constexpr double kSmall = 2.0, kRounder = 5.5;  // usual radii over the body's; weight
+  constexpr double kPatch = 0.12;                 // of the usual radius
   const double blurred = kPatch * kPatch * std::max(0.0, larger * larger - kSmall * kSmall);
   const double spread = std::sqrt(
       std::max(0.0, v.normal_spread * v.normal_spread - parameters.normal_noise * parameters.normal_noise - blurred));
