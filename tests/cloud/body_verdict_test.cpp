@@ -135,10 +135,10 @@ TEST_CASE("of small bodies in several views roundness counts more, and spread no
     return log_odds_of(radius, 0.75, 0.2, seen_on) - log_odds_of(radius, 0.55, 0.2, seen_on);
   };
   const auto by_spread = [&](double radius, std::optional<double> seen_on = {}) {
-    return log_odds_of(radius, 0.6, 0.1, seen_on) - log_odds_of(radius, 0.6, 0.22, seen_on);
+    return log_odds_of(radius, 0.6, 0.1, seen_on) - log_odds_of(radius, 0.6, 0.16, seen_on);
   };
   CHECK(by_roundness(0.010) > 2.0 * by_roundness(0.015));
-  CHECK(by_spread(0.015) > 1.0);
+  CHECK(by_spread(0.015) > 0.5);
   CHECK(by_spread(0.008) == Approx(0.0).margin(1e-9));  // patches explain it
   CHECK(by_roundness(0.010, 1.0) == Approx(by_roundness(0.015, 1.0)));
   CHECK(by_spread(0.010, 1.0) == Approx(by_spread(0.015, 1.0)));

@@ -251,12 +251,13 @@ inline double fruit_probability(const Verdict& v, const EllipsoidFit& fit, const
   const double points = std::min(larger * larger * static_cast<double>(v.support), kMostPoints);
   // The patches that normals are fitted to are wide against small bodies, so their normals spread more. How round such
   // a body is counts more instead.
-  constexpr double kSmall = 2.0, kRounder = 5.5;  // usual radii over the body's; weight
-  constexpr double kPatch = 0.12;                 // of the usual radius
-  const double blurred = kPatch * kPatch * std::max(0.0, larger * larger - kSmall * kSmall);
+  constexpr double kSmall = 2.0, kSmallest = 2.5;  // usual radii over the body's; smaller ones count as these
+  constexpr double kPatch = 0.11, kRounder = 5.5;  // of the usual radius; weight
+  const double smaller = std::clamp(larger, kSmall, kSmallest);
+  const double blurred = kPatch * kPatch * (smaller * smaller - kSmall * kSmall);
   const double spread = std::sqrt(
       std::max(0.0, v.normal_spread * v.normal_spread - parameters.normal_noise * parameters.normal_noise - blurred));
-  const double rounder = kRounder * std::max(0.0, larger - kSmall) * (std::min(v.roundness, kRoundEnough) - 0.5);
+  const double rounder = kRounder * (smaller - kSmall) * (std::min(v.roundness, kRoundEnough) - 0.5);
   const double evidence = 3.95 - 14.4 * spread - 2.32 * std::log1p(v.clutter) -
                           29.4 * std::min(fit.rms / radius, kMostMisfit) + 1.05 * std::log(points / 50.0) +
                           1.55 * std::min(v.roundness, kRoundEnough) - 3.69 * v.through_share() -
