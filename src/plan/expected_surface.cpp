@@ -93,9 +93,10 @@ void ExpectedSurface::update(const Progress& progress, const SplitParameters& sp
   const Labels labels = find_fruit(progress, split_parameters, free_space);
   const Grid<float> grid(progress.cloud, static_cast<float>(parameters_.cover_radius), threads_);
   collect_samples(progress, grid, free_space);
-  if (shows_anything(progress))
-    weigh(promised, grid, progress.images.empty() ? 1.0 : measured_share(progress.images.back(), free_space));
-  if (!progress.views.empty() && !progress.views.back().discarded && was_blind(promised, grid))
+  const Outcome outcome = outcome_of(promised, grid);
+  if (shows_anything(progress) && !promised.empty())
+    weigh(outcome, progress.images.empty() ? 1.0 : measured_share(progress.images.back(), free_space));
+  if (!progress.views.empty() && !progress.views.back().discarded && outcome.blind())
     blind_.push_back(progress.views.back().world_T_optical);
   PointCloud<float> rest;
   for (std::size_t i = 0; i < progress.cloud.size(); ++i)
@@ -172,30 +173,21 @@ double ExpectedSurface::weight_of(const FoundBody& body) {
   return doubt ? weight * std::pow(kPatience, doubt->looks) : weight;
 }
 
-void ExpectedSurface::weigh(const std::vector<Promise>& promised, const Grid<float>& grid, double measured) {
+ExpectedSurface::Outcome ExpectedSurface::outcome_of(const std::vector<Promise>& promised,
+                                                     const Grid<float>& grid) const {
+  const auto cover = static_cast<float>(parameters_.cover_radius);
+  Outcome out;
+  for (const Promise& p : promised) {
+    out.promised += double(p.area);
+    if (p.body < 0 ? known_.has(p.point.cast<double>()) : grid.count(p.point, cover, 1) > 0) out.kept += double(p.area);
+  }
+  return out;
+}
+
+void ExpectedSurface::weigh(const Outcome& outcome, double measured) {
   constexpr double kForget = 0.5;
-  if (promised.empty()) return;
-  promised_ *= kForget;
-  kept_ *= kForget;
-  for (const Promise& p : promised) {
-    promised_ += measured * double(p.area);
-    if (is_kept(p, grid)) kept_ += double(p.area);
-  }
-}
-
-bool ExpectedSurface::is_kept(const Promise& promise, const Grid<float>& grid) const {
-  return promise.body < 0 ? known_.has(promise.point.cast<double>())
-                          : grid.count(promise.point, static_cast<float>(parameters_.cover_radius), 1) > 0;
-}
-
-bool ExpectedSurface::was_blind(const std::vector<Promise>& promised, const Grid<float>& grid) const {
-  constexpr double kHardly = 0.1;
-  double all = 0.0, kept = 0.0;
-  for (const Promise& p : promised) {
-    all += double(p.area);
-    if (is_kept(p, grid)) kept += double(p.area);
-  }
-  return kept < kHardly * all;
+  promised_ = kForget * promised_ + measured * outcome.promised;
+  kept_ = kForget * kept_ + outcome.kept;
 }
 
 double ExpectedSurface::clearness(const Pose& world_T_optical) const {

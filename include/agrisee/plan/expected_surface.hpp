@@ -106,6 +106,13 @@ class ExpectedSurface {
     float area;             // m2
   };
 
+  /// What a view was expected to show (m2), and what it showed of that.
+  struct Outcome {
+    double promised = 0.0, kept = 0.0;
+    /// Whether it showed hardly any.
+    bool blind() const { return kept < 0.1 * promised; }
+  };
+
   /// A place where a body was looked at that is not surely one.
   struct Doubt {
     Eigen::Vector3d center;  // of the body (m, world)
@@ -122,12 +129,10 @@ class ExpectedSurface {
   double weight_of(const FoundBody& body);
   /// Compare what was expected of a view with the cloud and the space that are known since.
   /// @param grid of the cloud's points
+  Outcome outcome_of(const std::vector<Promise>& promised, const Grid<float>& grid) const;
+  /// Let the outcome of a view count for the reliability.
   /// @param measured share (0..1) of the surface in front of the camera that the view measured
-  void weigh(const std::vector<Promise>& promised, const Grid<float>& grid, double measured);
-  /// Whether a view showed hardly any of what it was expected to show.
-  bool was_blind(const std::vector<Promise>& promised, const Grid<float>& grid) const;
-  /// Whether the cloud now tells of what a view was expected to show.
-  bool is_kept(const Promise& promise, const Grid<float>& grid) const;
+  void weigh(const Outcome& outcome, double measured);
   /// Mark what the sight lines of new views have reached. Where earlier ones are others than before, as the map has
   /// started again, everything but the reliability is forgotten.
   void read_sight_lines(const std::vector<sensor::SurfaceImage>& images, const fuse::FreeSpaceParameters& free_space);
