@@ -1,12 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <agrisee/io/parameters.hpp>
 
-#include <filesystem>
-#include <fstream>
 #include <nlohmann/json.hpp>
-#include <unistd.h>
 
 #include "catch.hpp"
+#include "io/io_support.hpp"
 #include "support/says.hpp"
 
 using namespace agrisee;
@@ -14,11 +12,8 @@ using namespace agrisee;
 namespace {
 
 std::string write(const std::string& text) {
-  // Test cases run side by side, each in a process of its own.
-  const std::string path =
-      (std::filesystem::temp_directory_path() / ("parameters_test_" + std::to_string(::getpid()) + ".yaml")).string();
-  std::ofstream(path) << text;
-  return path;
+  static const test::TempFolder folder;
+  return folder.file("parameters.yaml", text).string();
 }
 
 std::string error_of(const std::string& text) {
