@@ -17,6 +17,7 @@
 
 #include "cloud/searches.hpp"
 #include "plan/body_surface.hpp"
+#include "plan/fruit_occlusion.hpp"
 #include "plan/obstacle_image.hpp"
 
 namespace agrisee::plan {
@@ -324,7 +325,7 @@ void ExpectedSurface::for_each_shown(const Pose& world_T_optical, F&& f) const {
   const auto far_sq = static_cast<float>(sensor_.range_max * sensor_.range_max);
   const Coordinates obstacles(obstacles_.data(), static_cast<Eigen::Index>(obstacles_.size() / 3), 3);
   const ObstacleImage image(sensor_.intrinsics, optical_T_world, obstacles);
-  const std::vector<FacedOccluder> occluders = faced(camera);
+  const FruitOcclusion fruit(occluders_, camera);
   for (std::size_t i = 0; i < samples_.size(); ++i) {
     const Sample& s = samples_[i];
     const Eigen::Vector3f d = s.point - camera;
@@ -333,33 +334,8 @@ void ExpectedSurface::for_each_shown(const Pose& world_T_optical, F&& f) const {
     const float distance = std::sqrt(distance_sq);
     if (s.body >= 0 && -d.dot(s.normal) < cos_max * distance) continue;
     if (!image.shows(optical_T_world * s.point)) continue;
-    if (!hidden(occluders, d / distance, distance, s.body)) f(i);
+    if (!fruit.hides(d / distance, distance, s.body)) f(i);
   }
-}
-
-std::vector<ExpectedSurface::FacedOccluder> ExpectedSurface::faced(const Eigen::Vector3f& camera) const {
-  std::vector<FacedOccluder> out;
-  out.reserve(occluders_.size());
-  for (const Occluder& o : occluders_) {
-    const Eigen::Vector3f center = o.center - camera, unit = o.to_unit * center;
-    out.push_back({center, unit, center.squaredNorm(), unit.squaredNorm() - 1.0f, &o});
-  }
-  return out;
-}
-
-bool ExpectedSurface::hidden(const std::vector<FacedOccluder>& occluders, const Eigen::Vector3f& u, float distance,
-                             int own) {
-  for (const FacedOccluder& f : occluders) {
-    const Occluder& o = *f.occluder;
-    if (o.body == own) continue;
-    const float along = f.center.dot(u);
-    if (along < 0.0f || f.center_sq - along * along >= o.radius * o.radius) continue;
-    // Where the ray enters the unit sphere that the ellipsoid becomes.
-    const Eigen::Vector3f w = o.to_unit * u;
-    const float a = w.squaredNorm(), b = f.unit.dot(w), off = b * b - a * f.outside;
-    if (off > 0.0f && b - std::sqrt(off) < a * (distance - 1e-3f)) return true;
-  }
-  return false;
 }
 
 std::vector<std::uint32_t> ExpectedSurface::shown(const Pose& world_T_optical) const {

@@ -22,6 +22,7 @@
 #include <agrisee/geometry/aabb.hpp>
 #include <agrisee/neighbors/grid.hpp>
 #include <agrisee/plan/known_space.hpp>
+#include <agrisee/plan/occluder.hpp>
 #include <agrisee/plan/parameters.hpp>
 #include <agrisee/plan/planner.hpp>
 #include <agrisee/sensor/depth_camera.hpp>
@@ -83,21 +84,6 @@ class ExpectedSurface {
     Eigen::Vector3f point, normal;  // m, world; a zero normal marks a voxel, which can be seen from any side
     int body;                       // index of its fruit; -1 for a voxel
   };
-  struct Occluder {
-    Eigen::Vector3f center;   // m, world
-    Eigen::Matrix3f to_unit;  // takes the ellipsoid about its center to the unit sphere (1/m)
-    float radius;             // of a sphere around the ellipsoid (m)
-    int body;                 // index of its fruit
-  };
-
-  /// An occluder as seen from a camera.
-  struct FacedOccluder {
-    Eigen::Vector3f center;  // from the camera (m)
-    Eigen::Vector3f unit;    // the same where the ellipsoid is the unit sphere
-    float center_sq;         // squared length of `center` (m2)
-    float outside;           // squared length of `unit`, less 1
-    const Occluder* occluder;
-  };
 
   /// A sample that a view was expected to show.
   struct Promise {
@@ -158,10 +144,6 @@ class ExpectedSurface {
   /// Calls f(i) for every sample that a view shows, in ascending order.
   template <typename F>
   void for_each_shown(const Pose& world_T_optical, F&& f) const;
-  /// All occluders as seen from a camera (m, world).
-  std::vector<FacedOccluder> faced(const Eigen::Vector3f& camera) const;
-  /// Whether a fruit other than `own` hides what lies at `distance` (m) along the unit vector `u` from the camera.
-  static bool hidden(const std::vector<FacedOccluder>& occluders, const Eigen::Vector3f& u, float distance, int own);
 
   sensor::DepthCamera sensor_;
   Aabb volume_;
