@@ -5,7 +5,6 @@
 #include <agrisee/cloud/voxel.hpp>
 #include <agrisee/core/parallel.hpp>
 #include <agrisee/fuse/free_space.hpp>
-#include <agrisee/geometry/angle.hpp>
 #include <agrisee/neighbors/grid.hpp>
 #include <agrisee/plan/directions.hpp>
 #include <agrisee/plan/expected_surface.hpp>
@@ -28,7 +27,6 @@ constexpr double kObstacle = 0.003;  // points that may hide fruit are thinned t
 constexpr double kGrowth = 1.25;     // segment the cloud from scratch when it has grown by this factor
 constexpr double kSmaller = 0.97;    // a fruit hides and contains what an ellipsoid smaller by this factor does
 constexpr double kPatience = 0.5;    // what is not surely a fruit counts so much after each view that looked at it
-constexpr double kTrusted = 0.003;   // share of the fruit surface that is taken to have been promised and kept before
 
 /// The merged cloud with estimated normals, each turned towards the view that saw its point: for views that are merged
 /// as raw points.
@@ -94,32 +92,9 @@ void ExpectedSurface::update(const Progress& progress, const SplitParameters& sp
   const Labels labels = find_fruit(progress, split_parameters, free_space);
   const Grid<float> grid(progress.cloud, static_cast<float>(parameters_.cover_radius), threads_);
   collect_samples(progress, grid, free_space);
-  const Outcome outcome = outcome_of(promised, grid);
-  if (shows_anything(progress) && !promised.empty())
-    weigh(outcome, progress.images.empty() ? 1.0 : measured_share(progress.images.back(), free_space));
-  if (!progress.views.empty() && !progress.views.back().discarded && outcome.blind())
-    blind_.push_back(progress.views.back().world_T_optical);
-  PointCloud<float> rest;
-  for (std::size_t i = 0; i < progress.cloud.size(); ++i)
-    if (labels[i] == 0) rest.points.push_back(progress.cloud.points[i]);
-  const std::vector<Eigen::Vector3f> thinned = average_in_voxels(rest, kObstacle).points;
-  obstacles_.clear();
-  for (const int axis : {0, 1, 2})
-    for (const Eigen::Vector3f& p : thinned) obstacles_.push_back(p[axis]);
-  // Samples that earlier views should have shown count less.
-  observable_ = areas_;
-  std::vector<std::vector<std::uint32_t>> shown_in(progress.images.size());
-  parallel_for(
-      shown_in.size(), threads_, [&](std::size_t v) { shown_in[v] = shown(progress.images[v].world_T_optical); }, 1);
-  for (std::size_t v = 0; v < shown_in.size(); ++v) {
-    const sensor::SurfaceImage& image = progress.images[v];
-    const auto factor = static_cast<float>(1.0 - (1.0 - parameters_.missed_factor) * measured_share(image, free_space));
-    const bool tells = has_returns(image);
-    for (const std::uint32_t i : shown_in[v]) {
-      areas_[i] *= factor;
-      if (tells) observable_[i] *= factor;
-    }
-  }
+  record_outcome(progress, promised, grid, free_space);
+  collect_obstacles(progress.cloud, labels);
+  lower_missed(progress.images, free_space);
 }
 
 void ExpectedSurface::read_sight_lines(const std::vector<sensor::SurfaceImage>& images,
@@ -174,10 +149,10 @@ double ExpectedSurface::weight_of(const FoundBody& body) {
   return doubt ? weight * std::pow(kPatience, doubt->looks) : weight;
 }
 
-ExpectedSurface::Outcome ExpectedSurface::outcome_of(const std::vector<Promise>& promised,
-                                                     const Grid<float>& grid) const {
+PromiseRecord::Outcome ExpectedSurface::outcome_of(const std::vector<Promise>& promised,
+                                                   const Grid<float>& grid) const {
   const auto cover = static_cast<float>(parameters_.cover_radius);
-  Outcome out;
+  PromiseRecord::Outcome out;
   for (const Promise& p : promised) {
     out.promised += double(p.area);
     if (p.body < 0 ? known_.has(p.point.cast<double>()) : grid.count(p.point, cover, 1) > 0) out.kept += double(p.area);
@@ -185,25 +160,14 @@ ExpectedSurface::Outcome ExpectedSurface::outcome_of(const std::vector<Promise>&
   return out;
 }
 
-void ExpectedSurface::weigh(const Outcome& outcome, double measured) {
-  constexpr double kForget = 0.5;
-  promised_ = kForget * promised_ + measured * outcome.promised;
-  kept_ = kForget * kept_ + outcome.kept;
-}
-
-double ExpectedSurface::clearness(const Pose& world_T_optical) const {
-  constexpr double kClose = 0.08, kTurned = deg(30.0), kLess = 0.3;  // m, rad, factor
-  double clear = 1.0;
-  for (const Pose& blind : blind_)
-    if ((blind.translation() - world_T_optical.translation()).norm() < kClose &&
-        angle_between(blind.linear().col(2), world_T_optical.linear().col(2)) < kTurned)
-      clear *= kLess;
-  return clear;
-}
-
-double ExpectedSurface::reliability() const {
-  const double before = kTrusted * area_;
-  return promised_ > 0.0 ? std::min(1.0, (kept_ + before) / (promised_ + before)) : 1.0;
+void ExpectedSurface::record_outcome(const Progress& progress, const std::vector<Promise>& promised,
+                                     const Grid<float>& grid, const fuse::FreeSpaceParameters& free_space) {
+  if (promised.empty()) return;
+  const PromiseRecord::Outcome outcome = outcome_of(promised, grid);
+  if (shows_anything(progress))
+    record_.weigh(outcome, progress.images.empty() ? 1.0 : measured_share(progress.images.back(), free_space));
+  const View& view = progress.views.back();
+  if (!view.discarded && outcome.blind()) record_.add_blind(view.world_T_optical);
 }
 
 Labels ExpectedSurface::find_fruit(const Progress& progress, const SplitParameters& split_parameters,
@@ -314,6 +278,33 @@ bool ExpectedSurface::inside_other(const Eigen::Vector3d& point, int own) const 
         (bodies_[b].fit.body.A * (point - bodies_[b].fit.body.center)).squaredNorm() < kSmaller * kSmaller)
       return true;
   return false;
+}
+
+void ExpectedSurface::collect_obstacles(const Cloud& cloud, const Labels& labels) {
+  PointCloud<float> rest;
+  for (std::size_t i = 0; i < cloud.size(); ++i)
+    if (labels[i] == 0) rest.points.push_back(cloud.points[i]);
+  const std::vector<Eigen::Vector3f> thinned = average_in_voxels(rest, kObstacle).points;
+  obstacles_.clear();
+  for (const int axis : {0, 1, 2})
+    for (const Eigen::Vector3f& p : thinned) obstacles_.push_back(p[axis]);
+}
+
+void ExpectedSurface::lower_missed(const std::vector<sensor::SurfaceImage>& images,
+                                   const fuse::FreeSpaceParameters& free_space) {
+  observable_ = areas_;
+  std::vector<std::vector<std::uint32_t>> shown_in(images.size());
+  parallel_for(
+      shown_in.size(), threads_, [&](std::size_t v) { shown_in[v] = shown(images[v].world_T_optical); }, 1);
+  for (std::size_t v = 0; v < shown_in.size(); ++v) {
+    const auto factor =
+        static_cast<float>(1.0 - (1.0 - parameters_.missed_factor) * measured_share(images[v], free_space));
+    const bool tells = has_returns(images[v]);
+    for (const std::uint32_t i : shown_in[v]) {
+      areas_[i] *= factor;
+      if (tells) observable_[i] *= factor;
+    }
+  }
 }
 
 template <typename F>

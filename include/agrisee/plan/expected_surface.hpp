@@ -25,6 +25,7 @@
 #include <agrisee/plan/occluder.hpp>
 #include <agrisee/plan/parameters.hpp>
 #include <agrisee/plan/planner.hpp>
+#include <agrisee/plan/promise_record.hpp>
 #include <agrisee/sensor/depth_camera.hpp>
 
 namespace agrisee::plan {
@@ -53,12 +54,12 @@ class ExpectedSurface {
   double gain(const std::vector<std::uint32_t>& shown) const;
 
   /// Share (0..1) of the surface expected of the last views that they did show; older views count less.
-  double reliability() const;
+  double reliability() const { return record_.reliability(area_); }
 
   /// How much a view can be expected to show (above 0, up to 1) of what the model promises: less close to views that
   /// showed hardly any of it, as something stands in the way that the model does not know. It may be outside the scan
   /// volume, as pots and posts are, or nearer than the camera measures.
-  double clearness(const Pose& world_T_optical) const;
+  double clearness(const Pose& world_T_optical) const { return record_.clearness(world_T_optical); }
 
   /// How complete the scan is. A view without returns, or of which nothing was taken, lowers areas() and gain(), so
   /// that others are tried, but not what can be observed.
@@ -92,13 +93,6 @@ class ExpectedSurface {
     float area;             // m2
   };
 
-  /// What a view was expected to show (m2), and what it showed of that.
-  struct Outcome {
-    double promised = 0.0, kept = 0.0;
-    /// Whether it showed hardly any.
-    bool blind() const { return kept < 0.1 * promised; }
-  };
-
   /// A place where a body was looked at that is not surely one.
   struct Doubt {
     Eigen::Vector3d center;  // of the body (m, world)
@@ -115,12 +109,13 @@ class ExpectedSurface {
   double weight_of(const FoundBody& body);
   /// Compare what was expected of a view with the cloud and the space that are known since.
   /// @param grid of the cloud's points
-  Outcome outcome_of(const std::vector<Promise>& promised, const Grid<float>& grid) const;
-  /// Let the outcome of a view count for the reliability.
-  /// @param measured share (0..1) of the surface in front of the camera that the view measured
-  void weigh(const Outcome& outcome, double measured);
+  PromiseRecord::Outcome outcome_of(const std::vector<Promise>& promised, const Grid<float>& grid) const;
+  /// Let what the last view showed of its promises count for further expectations.
+  /// @param grid of the cloud's points
+  void record_outcome(const Progress& progress, const std::vector<Promise>& promised, const Grid<float>& grid,
+                      const fuse::FreeSpaceParameters& free_space);
   /// Mark what the sight lines of new views have reached. Where earlier ones are others than before, as the map has
-  /// started again, everything but the reliability is forgotten.
+  /// started again, everything but the record of promises is forgotten.
   void read_sight_lines(const std::vector<sensor::SurfaceImage>& images, const fuse::FreeSpaceParameters& free_space);
   /// Find the fruit in the merged cloud and set `bodies_`; returns one label per point, 0 = no fruit.
   Labels find_fruit(const Progress& progress, const SplitParameters& split_parameters,
@@ -128,6 +123,11 @@ class ExpectedSurface {
   /// Replace all samples, and the areas and boxes that go with them.
   /// @param grid of the cloud's points
   void collect_samples(const Progress& progress, const Grid<float>& grid, const fuse::FreeSpaceParameters& free_space);
+  /// Keep the points of no fruit that may hide samples.
+  /// @param labels one per point of the cloud, 0 = no fruit
+  void collect_obstacles(const Cloud& cloud, const Labels& labels);
+  /// Let samples that earlier views should have shown count less.
+  void lower_missed(const std::vector<sensor::SurfaceImage>& images, const fuse::FreeSpaceParameters& free_space);
   /// Add samples of each fruit's unseen surface; counts the covered surface.
   void sample_bodies(const Progress& progress, const Grid<float>& grid, const fuse::FreeSpaceParameters& free_space);
   /// Add a sample for each unknown voxel near the fruit, or near the cloud when no fruit has been found, and for some
@@ -162,8 +162,7 @@ class ExpectedSurface {
   std::vector<Occluder> occluders_;  // ellipsoids a little smaller than the fruit
   std::vector<float> obstacles_;     // points that belong to no fruit, thinned: all x, then all y, then all z (m)
   double area_ = 0.0, covered_ = 0.0;
-  std::vector<Pose> blind_;             // views that showed hardly any of what they were expected to show
-  double promised_ = 0.0, kept_ = 0.0;  // what the last views were expected to show, and what they showed of it (m2)
+  PromiseRecord record_;
   std::vector<double> area_of_, covered_of_;  // one per body (m2)
   std::vector<double> weight_of_;             // how much its surface counts
   Eigen::Vector3d center_ = Eigen::Vector3d::Zero();
