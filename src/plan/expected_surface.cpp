@@ -97,22 +97,6 @@ void ExpectedSurface::update(const Progress& progress, const SplitParameters& sp
   lower_missed(progress.images, free_space);
 }
 
-void ExpectedSurface::read_sight_lines(const std::vector<sensor::SurfaceImage>& images,
-                                       const fuse::FreeSpaceParameters& free_space) {
-  std::vector<char> show;
-  for (const sensor::SurfaceImage& image : images) show.push_back(!image.depth.empty());
-  if (!std::equal(images_read_.begin(), images_read_.end(), show.begin(),
-                  show.begin() + static_cast<std::ptrdiff_t>(std::min(images_read_.size(), show.size())))) {
-    known_ = KnownSpace(volume_, parameters_.voxel);
-    images_read_.clear();
-    bodies_.clear();
-    doubts_.clear();
-    tracked_views_ = segmented_at_ = 0;
-  }
-  for (std::size_t v = images_read_.size(); v < images.size(); ++v) known_.add(images[v], free_space);
-  images_read_ = std::move(show);
-}
-
 std::vector<ExpectedSurface::Promise> ExpectedSurface::promises(const Progress& progress) const {
   std::vector<Promise> out;
   if (progress.views.empty()) return out;
@@ -127,47 +111,24 @@ void ExpectedSurface::count_looks(const std::vector<Promise>& promised) {
   std::vector<int> shown(bodies_.size(), 0);
   for (const Promise& p : promised)
     if (p.body >= 0) ++shown[static_cast<std::size_t>(p.body)];
-  for (std::size_t b = 0; b < bodies_.size(); ++b) {
-    if (is_sure(bodies_[b]) || shown[b] < kLook * parameters_.samples) continue;
-    const Ellipsoid& body = bodies_[b].fit.body;
-    if (Doubt* const known = doubt_about(body))
-      ++known->looks;
-    else
-      doubts_.push_back({body.center, 1});
+  for (std::size_t b = 0; b < bodies_.size(); ++b)
+    if (!is_sure(bodies_[b]) && shown[b] >= kLook * parameters_.samples) vain_looks_.add(bodies_[b].fit.body);
+}
+
+void ExpectedSurface::read_sight_lines(const std::vector<sensor::SurfaceImage>& images,
+                                       const fuse::FreeSpaceParameters& free_space) {
+  std::vector<char> show;
+  for (const sensor::SurfaceImage& image : images) show.push_back(!image.depth.empty());
+  if (!std::equal(images_read_.begin(), images_read_.end(), show.begin(),
+                  show.begin() + static_cast<std::ptrdiff_t>(std::min(images_read_.size(), show.size())))) {
+    known_ = KnownSpace(volume_, parameters_.voxel);
+    images_read_.clear();
+    bodies_.clear();
+    vain_looks_.clear();
+    tracked_views_ = segmented_at_ = 0;
   }
-}
-
-ExpectedSurface::Doubt* ExpectedSurface::doubt_about(const Ellipsoid& body) {
-  const auto same = [&](const Doubt& d) { return (d.center - body.center).norm() < 0.5 * body.mean_radius(); };
-  const auto found = std::find_if(doubts_.begin(), doubts_.end(), same);
-  return found == doubts_.end() ? nullptr : &*found;
-}
-
-double ExpectedSurface::weight_of(const FoundBody& body) {
-  const double weight = std::min(1.0, 2.0 * body.confidence);  // a fruit, if it is more likely one than not
-  const Doubt* const doubt = is_sure(body) ? nullptr : doubt_about(body.fit.body);
-  return doubt ? weight * std::pow(kPatience, doubt->looks) : weight;
-}
-
-PromiseRecord::Outcome ExpectedSurface::outcome_of(const std::vector<Promise>& promised,
-                                                   const Grid<float>& grid) const {
-  const auto cover = static_cast<float>(parameters_.cover_radius);
-  PromiseRecord::Outcome out;
-  for (const Promise& p : promised) {
-    out.promised += double(p.area);
-    if (p.body < 0 ? known_.has(p.point.cast<double>()) : grid.count(p.point, cover, 1) > 0) out.kept += double(p.area);
-  }
-  return out;
-}
-
-void ExpectedSurface::record_outcome(const Progress& progress, const std::vector<Promise>& promised,
-                                     const Grid<float>& grid, const fuse::FreeSpaceParameters& free_space) {
-  if (promised.empty()) return;
-  const PromiseRecord::Outcome outcome = outcome_of(promised, grid);
-  if (shows_anything(progress))
-    record_.weigh(outcome, progress.images.empty() ? 1.0 : measured_share(progress.images.back(), free_space));
-  const View& view = progress.views.back();
-  if (!view.discarded && outcome.blind()) record_.add_blind(view.world_T_optical);
+  for (std::size_t v = images_read_.size(); v < images.size(); ++v) known_.add(images[v], free_space);
+  images_read_ = std::move(show);
 }
 
 Labels ExpectedSurface::find_fruit(const Progress& progress, const SplitParameters& split_parameters,
@@ -272,12 +233,38 @@ void ExpectedSurface::add_sample(const Eigen::Vector3d& point, const Eigen::Vect
   areas_.push_back(static_cast<float>(area));
 }
 
+double ExpectedSurface::weight_of(const FoundBody& body) const {
+  const double weight = std::min(1.0, 2.0 * body.confidence);  // a fruit, if it is more likely one than not
+  return is_sure(body) ? weight : weight * std::pow(kPatience, vain_looks_.count(body.fit.body));
+}
+
 bool ExpectedSurface::inside_other(const Eigen::Vector3d& point, int own) const {
   for (std::size_t b = 0; b < bodies_.size(); ++b)
     if (static_cast<int>(b) != own && believed(bodies_[b]) &&
         (bodies_[b].fit.body.A * (point - bodies_[b].fit.body.center)).squaredNorm() < kSmaller * kSmaller)
       return true;
   return false;
+}
+
+PromiseRecord::Outcome ExpectedSurface::outcome_of(const std::vector<Promise>& promised,
+                                                   const Grid<float>& grid) const {
+  const auto cover = static_cast<float>(parameters_.cover_radius);
+  PromiseRecord::Outcome out;
+  for (const Promise& p : promised) {
+    out.promised += double(p.area);
+    if (p.body < 0 ? known_.has(p.point.cast<double>()) : grid.count(p.point, cover, 1) > 0) out.kept += double(p.area);
+  }
+  return out;
+}
+
+void ExpectedSurface::record_outcome(const Progress& progress, const std::vector<Promise>& promised,
+                                     const Grid<float>& grid, const fuse::FreeSpaceParameters& free_space) {
+  if (promised.empty()) return;
+  const PromiseRecord::Outcome outcome = outcome_of(promised, grid);
+  if (shows_anything(progress))
+    record_.weigh(outcome, progress.images.empty() ? 1.0 : measured_share(progress.images.back(), free_space));
+  const View& view = progress.views.back();
+  if (!view.discarded && outcome.blind()) record_.add_blind(view.world_T_optical);
 }
 
 void ExpectedSurface::collect_obstacles(const Cloud& cloud, const Labels& labels) {

@@ -26,6 +26,7 @@
 #include <agrisee/plan/parameters.hpp>
 #include <agrisee/plan/planner.hpp>
 #include <agrisee/plan/promise_record.hpp>
+#include <agrisee/plan/vain_looks.hpp>
 #include <agrisee/sensor/depth_camera.hpp>
 
 namespace agrisee::plan {
@@ -93,27 +94,10 @@ class ExpectedSurface {
     float area;             // m2
   };
 
-  /// A place where a body was looked at that is not surely one.
-  struct Doubt {
-    Eigen::Vector3d center;  // of the body (m, world)
-    int looks;               // views that were expected to show some of its unseen surface
-  };
-
   /// What the last view was expected to show, before it is used.
   std::vector<Promise> promises(const Progress& progress) const;
   /// Note which bodies that are not surely fruit the last view looked at, before the fruit are found anew.
   void count_looks(const std::vector<Promise>& promised);
-  /// The doubt about a body; null if it was not looked at.
-  Doubt* doubt_about(const Ellipsoid& body);
-  /// How much the surface of a body counts (0..1): less if it is doubtful, and after views looked at it in vain.
-  double weight_of(const FoundBody& body);
-  /// Compare what was expected of a view with the cloud and the space that are known since.
-  /// @param grid of the cloud's points
-  PromiseRecord::Outcome outcome_of(const std::vector<Promise>& promised, const Grid<float>& grid) const;
-  /// Let what the last view showed of its promises count for further expectations.
-  /// @param grid of the cloud's points
-  void record_outcome(const Progress& progress, const std::vector<Promise>& promised, const Grid<float>& grid,
-                      const fuse::FreeSpaceParameters& free_space);
   /// Mark what the sight lines of new views have reached. Where earlier ones are others than before, as the map has
   /// started again, everything but the record of promises is forgotten.
   void read_sight_lines(const std::vector<sensor::SurfaceImage>& images, const fuse::FreeSpaceParameters& free_space);
@@ -123,19 +107,28 @@ class ExpectedSurface {
   /// Replace all samples, and the areas and boxes that go with them.
   /// @param grid of the cloud's points
   void collect_samples(const Progress& progress, const Grid<float>& grid, const fuse::FreeSpaceParameters& free_space);
-  /// Keep the points of no fruit that may hide samples.
-  /// @param labels one per point of the cloud, 0 = no fruit
-  void collect_obstacles(const Cloud& cloud, const Labels& labels);
-  /// Let samples that earlier views should have shown count less.
-  void lower_missed(const std::vector<sensor::SurfaceImage>& images, const fuse::FreeSpaceParameters& free_space);
   /// Add samples of each fruit's unseen surface; counts the covered surface.
   void sample_bodies(const Progress& progress, const Grid<float>& grid, const fuse::FreeSpaceParameters& free_space);
   /// Add a sample for each unknown voxel near the fruit, or near the cloud when no fruit has been found, and for some
   /// of the others.
   void sample_unknown_space(const Aabb& cloud);
   void add_sample(const Eigen::Vector3d& point, const Eigen::Vector3d& normal, double area, int body);
+  /// How much the surface of a body counts (0..1): less if it is doubtful, and after views looked at it in vain.
+  double weight_of(const FoundBody& body) const;
   /// Whether a point (m) lies inside another fruit than `own`.
   bool inside_other(const Eigen::Vector3d& point, int own) const;
+  /// Compare what was expected of a view with the cloud and the space that are known since.
+  /// @param grid of the cloud's points
+  PromiseRecord::Outcome outcome_of(const std::vector<Promise>& promised, const Grid<float>& grid) const;
+  /// Let what the last view showed of its promises count for further expectations.
+  /// @param grid of the cloud's points
+  void record_outcome(const Progress& progress, const std::vector<Promise>& promised, const Grid<float>& grid,
+                      const fuse::FreeSpaceParameters& free_space);
+  /// Keep the points of no fruit that may hide samples.
+  /// @param labels one per point of the cloud, 0 = no fruit
+  void collect_obstacles(const Cloud& cloud, const Labels& labels);
+  /// Let samples that earlier views should have shown count less.
+  void lower_missed(const std::vector<sensor::SurfaceImage>& images, const fuse::FreeSpaceParameters& free_space);
   /// Whether a body counts as a fruit, and not only as a possible one.
   bool believed(const FoundBody& body) const { return body.confidence >= min_confidence_; }
   /// Whether a body counts as a fruit, and so much of it was seen that it will stay one.
@@ -152,7 +145,7 @@ class ExpectedSurface {
   KnownSpace known_;               // what sight lines have reached
   std::vector<char> images_read_;  // views whose sight lines are marked in `known_`: whether they have some
   std::vector<FoundBody> bodies_;
-  std::vector<Doubt> doubts_;
+  VainLooks vain_looks_;
   double min_confidence_ = 0.0;    // a body is believed from this probability on
   std::size_t segmented_at_ = 0;   // size of the cloud when it was last segmented from scratch
   std::size_t tracked_views_ = 0;  // views of the cloud in which `bodies_` were found
