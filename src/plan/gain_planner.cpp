@@ -52,7 +52,7 @@ void GainPlanner::observe(const Progress& progress) {
   left_out_.clear();
   refused_ = 0;
   if (last_) left_out_.push_back(*last_);  // taken just now: from the same place it shows the same
-  if (part_) ++looks_[*part_];
+  if (part_) ++parts_[*part_].looks;
   part_.reset();
   last_.reset();
   stopped_at_.reset();
@@ -112,12 +112,14 @@ std::optional<ReachableView> GainPlanner::view_of_part(int taken, const Joints& 
   constexpr int kFew = 4;  // views near the front that show nothing, and one of every part, end the scan
   std::vector<std::size_t> order(parts_.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
-  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return looks_[a] < looks_[b]; });
-  for (const std::size_t part : order) {
-    if (taken >= kFew && (looks_[part] > 0 || parts_.size() == 1)) break;
-    const int skip = refused_ + 12 * looks_[part];
-    if (auto view = first_view(parts_[part], robot_, current, reach, request(Eigen::Vector3d::UnitY()), skip)) {
-      part_ = part;
+  const auto fewer_looks = [&](std::size_t a, std::size_t b) { return parts_[a].looks < parts_[b].looks; };
+  std::stable_sort(order.begin(), order.end(), fewer_looks);
+  for (const std::size_t i : order) {
+    const Part& part = parts_[i];
+    if (taken >= kFew && (part.looks > 0 || parts_.size() == 1)) break;
+    const int skip = refused_ + 12 * part.looks;
+    if (auto view = first_view(part.box, robot_, current, reach, request(Eigen::Vector3d::UnitY()), skip)) {
+      part_ = i;
       return view;
     }
   }
@@ -125,8 +127,8 @@ std::optional<ReachableView> GainPlanner::view_of_part(int taken, const Joints& 
 }
 
 void GainPlanner::divide(double factor) {
-  parts_ = parts_to_look_at(volume_, factor * look_);
-  looks_.assign(parts_.size(), 0);
+  parts_.clear();
+  for (const Aabb& box : parts_to_look_at(volume_, factor * look_)) parts_.push_back({box});
 }
 
 void GainPlanner::update_candidates(const Joints& current, const Reach& reach) {

@@ -63,6 +63,10 @@ class GainPlanner : public Planner {
     bool lost = false;                 // the arm can no longer take it
     double score = 0.0;                // gain over time (m2/s)
   };
+  struct Part {
+    Aabb box;
+    int looks = 0;  // views that looked at it
+  };
 
   /// A view near the front, while nothing has been seen.
   std::optional<ReachableView> front_view(int taken, const Joints& current, const Reach& reach);
@@ -113,8 +117,7 @@ class GainPlanner : public Planner {
   ExpectedSurface model_;
   int threads_;
   double look_ = 0.0;                // width that a view shows (m)
-  std::vector<Aabb> parts_;          // of the volume, to look at while nothing has been seen
-  std::vector<int> looks_;           // how many views looked at each of them
+  std::vector<Part> parts_;          // of the volume, to look at while nothing has been seen
   std::optional<std::size_t> part_;  // at which the view last returned looks
   std::vector<Candidate> candidates_;
   Aabb extent_;                 // of the fruit when the candidates were made
