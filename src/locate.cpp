@@ -186,14 +186,18 @@ std::vector<std::optional<ClosedSurface>> closed_surfaces(const Cloud& cloud, co
 }
 
 /// Whether a body is only the end of something longer, such as a post. Then it is longer than wide, unlike a round
-/// fruit below which the underside of a shelf shows.
+/// fruit below which the underside of a shelf shows. The less it is, the more of its surface must go on.
 /// @param labels one per point
 /// @param label of the body's own points
 bool is_part(const Cloud& cloud, const Grid<float>& grid, const Labels& labels, int label, const Body& body) {
-  constexpr double kLonger = 1.15;
-  constexpr double kPart = 0.025;  // of 151 fruit that are so long one has more, of 18 parts of posts 13
-  return body.radii[0] > kLonger * body.radii[1] &&
-         surface_beyond(cloud, grid, labels, label, ellipsoid_of(body)) > kPart;
+  constexpr double kLonger = 1.15, kLong = 1.3;
+  // At these. Of 433 fruit that are so long one has more than kPart, none as much as kMost; of 18 parts of posts 13
+  // have.
+  constexpr double kMost = 0.045, kPart = 0.025;
+  const double longer = body.radii[0] / body.radii[1];
+  if (longer <= kLonger) return false;
+  const double most = kPart + (kMost - kPart) * std::max(0.0, (kLong - longer) / (kLong - kLonger));
+  return surface_beyond(cloud, grid, labels, label, ellipsoid_of(body)) > most;
 }
 
 /// Whether a body is large and several views have seen too little of it: then it is a leaf that bulges, not a fruit.
