@@ -263,6 +263,7 @@ void ExpectedSurface::record_outcome(const Progress& progress, const std::vector
   const PromiseRecord::Outcome outcome = outcome_of(promised, grid);
   if (shows_anything(progress))
     record_.weigh(outcome, progress.images.empty() ? 1.0 : measured_share(progress.images.back(), free_space));
+  // A view without returns is blind, too: something stands nearer than the camera measures.
   const View& view = progress.views.back();
   if (!view.discarded && outcome.blind()) record_.add_blind(view.world_T_optical);
 }
