@@ -76,6 +76,13 @@ TEST_CASE("normals that differ, and points nearby that do not fit, are counted")
     cloud.normals.push_back(cloud.normals[i]);
   }
   CHECK(verdict_of(cloud).clutter == Approx(0.5).margin(0.01));
+  CHECK(verdict_of(cloud).turned == 0.0);
+  for (std::size_t i = own; i < cloud.size(); ++i) {  // the same number of its own points, the normals of which are off
+    cloud.points[i] = cloud.points[i - own];
+    cloud.normals[i] = -cloud.normals[i];
+  }
+  CHECK(verdict_of(cloud).clutter == Approx(0.5).margin(0.01));
+  CHECK(verdict_of(cloud).turned == verdict_of(cloud).clutter);
 }
 
 TEST_CASE("points all around a fruit are round, those of the end of a post are not") {
@@ -142,6 +149,63 @@ TEST_CASE("of small bodies in several views roundness counts more, and spread no
   CHECK(by_spread(0.008) == Approx(0.0).margin(1e-9));  // patches explain it
   CHECK(by_roundness(0.010, 1.0) == Approx(by_roundness(0.015, 1.0)));
   CHECK(by_spread(0.010, 1.0) == Approx(by_spread(0.015, 1.0)));
+}
+
+TEST_CASE("at much noise, normals speak less against bodies in several views") {
+  const auto log_odds_of = [](double radius, double noise, std::optional<double> seen_on, auto&& change) {
+    Verdict v = verdict_of(cap(kPi / 2));
+    v.roundness = 0.7;
+    v.normal_spread = 0.3;
+    v.seen_on = seen_on;
+    change(v);
+    EllipsoidFit fit;
+    fit.body = Ellipsoid(Sphere{Eigen::Vector3d::Zero(), radius});
+    BodyParameters parameters;
+    parameters.normal_noise = noise;
+    return log_odds(fruit_probability(v, fit, parameters));
+  };
+  const auto by_spread = [&](double radius, double noise, std::optional<double> seen_on = {}) {
+    return log_odds_of(radius, noise, seen_on, [](Verdict& v) { v.normal_spread = 0.0; }) -
+           log_odds_of(radius, noise, seen_on, [](Verdict&) {});
+  };
+  CHECK(by_spread(0.012, 0.15) < by_spread(0.020, 0.15) - 0.1);  // the patches are wide against the body
+  CHECK(by_spread(0.014, 0.0) == Approx(by_spread(0.020, 0.0)));
+  CHECK(by_spread(0.012, 0.15, 1.0) == Approx(by_spread(0.020, 0.15, 1.0)));
+  const auto by_clutter = [&](double turned, double noise, std::optional<double> seen_on = {}) {
+    return log_odds_of(0.02, noise, seen_on, [&](Verdict& v) { v.clutter = 1.0, v.turned = turned; }) -
+           log_odds_of(0.02, noise, seen_on, [](Verdict& v) { v.clutter = 1.0; });
+  };
+  CHECK(by_clutter(0.5, 0.0) == Approx(0.0).margin(1e-9));
+  CHECK(by_clutter(0.5, 0.15) == Approx(2.32 * std::log(2.0 / 1.5)));
+  CHECK(by_clutter(0.5, 0.3) == Approx(by_clutter(0.5, 0.15)));
+  CHECK(by_clutter(0.5, 0.15, 1.0) == Approx(0.0).margin(1e-9));
+}
+
+TEST_CASE("in several views a body below the smallest expected radius is less likely a fruit") {
+  const auto log_odds_of = [](double radius, double least, std::optional<double> seen_on = {}) {
+    Verdict v = verdict_of(cap(kPi / 2));
+    v.seen_on = seen_on;
+    EllipsoidFit fit;
+    fit.body = Ellipsoid(Sphere{Eigen::Vector3d::Zero(), radius});
+    BodyParameters parameters;
+    parameters.radius_min = least;
+    return log_odds(fruit_probability(v, fit, parameters));
+  };
+  CHECK(log_odds_of(0.0100, 0.010) == Approx(log_odds_of(0.0100, 0.008)));
+  CHECK(log_odds_of(0.0100, 0.011) == Approx(log_odds_of(0.0100, 0.008) - 0.8));
+  CHECK(log_odds_of(0.0100, 0.011, 1.0) == Approx(log_odds_of(0.0100, 0.008, 1.0)));
+}
+
+TEST_CASE("outside of the rim of a pot more of the surface goes on than outside of any fruit") {
+  const auto log_odds_of = [](double beyond) {
+    Verdict v = verdict_of(cap(kPi / 2));
+    v.beyond = beyond;
+    return log_odds(fruit_probability(v, fit_of(0.0005), BodyParameters()));
+  };
+  CHECK(log_odds_of(0.03) == Approx(log_odds_of(0.0) - 1.0));
+  CHECK(log_odds_of(0.07) == Approx(log_odds_of(0.03)));
+  CHECK(log_odds_of(0.09) == Approx(log_odds_of(0.07) - 2.0));
+  CHECK(log_odds_of(0.2) == Approx(log_odds_of(0.07) - 3.0));
 }
 
 TEST_CASE("a small fruit is not less likely where only small ones are expected") {

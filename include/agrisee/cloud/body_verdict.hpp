@@ -63,6 +63,7 @@ struct Verdict {
   double roundness = 0.0;      ///< smallest over largest curvature of the points on the surface
   double normal_spread = 0.0;  ///< root mean square sine of the angle between the normals of points on it and its own
   double clutter = 0.0;        ///< points close to the surface that do not lie on it, for each that does
+  double turned = 0.0;         ///< those of them that lie on it but for their normals, for each that does
   double beyond = 0.0;         ///< share of the directions in which a surface goes on outside of the body, as it would
                                ///< if the body were the end of something longer
   std::size_t support = 0;     ///< points on the surface
@@ -136,6 +137,7 @@ Verdict judge_points(const PointCloud<S>& cloud, Visit&& visit, std::size_t each
   SupportSums sums;
   double sines_sq = 0.0;        // of the angles between the normals of the points and the body's
   std::size_t on = 0, off = 0;  // points on the surface; points near it, but not on it
+  std::size_t turned = 0;       // of the latter, those that are on it but for their normals
   visit([&](Index index) {
     const auto i = static_cast<std::size_t>(index);
     const Eigen::Vector3d p = cloud.points[i].template cast<double>(), q = p - body.center;
@@ -162,6 +164,7 @@ Verdict judge_points(const PointCloud<S>& cloud, Visit&& visit, std::size_t each
       sines_sq += 1.0 - cosine * cosine;
     } else if (distance < kClutter * r) {
       ++off;
+      if (distance <= near) ++turned;
     }
   });
   for (std::size_t b = 0; b < DirectionBins::kCount; ++b) {
@@ -174,6 +177,7 @@ Verdict judge_points(const PointCloud<S>& cloud, Visit&& visit, std::size_t each
   v.roundness = sums.roundness(r, single_view);
   v.normal_spread = std::sqrt(std::max(sines_sq, 0.0) / static_cast<double>(on));
   v.clutter = static_cast<double>(off) / static_cast<double>(on);
+  v.turned = static_cast<double>(turned) / static_cast<double>(on);
   return v;
 }
 
@@ -243,32 +247,41 @@ inline double fruit_probability(const Verdict& v, const EllipsoidFit& fit, const
   if (v.support == 0 || !(v.coverage > 0.0)) return 0.0;
   constexpr double kMostPoints = 1500.0, kRoundEnough = 0.8, kLarge = 0.5;  // more changes nothing
   constexpr double kSingleView = -0.4, kSeenOn = 2.8, kCornered = 1.5, kWidest = 0.3;
-  constexpr double kTooLong = 30.0, kBeyond = 100.0, kMostBeyond = 0.01, kClosed = 0.5;
+  constexpr double kTooLong = 30.0, kBeyond = 100.0, kMostBeyond = 0.01, kRim = 0.07, kMostRim = 0.03, kClosed = 0.5;
+  constexpr double kTooSmall = 8.0;
   const double radius = fit.body.mean_radius();
   // The same share of a smaller surface has fewer points. Where several views agree on a body they count as on one of
   // usual size, whatever sizes are expected; in a single view scraps of leaves are small, too.
   const double larger = v.seen_on ? 1.0 : std::max(1.0, parameters.usual_radius / radius);
   const double points = std::min(larger * larger * static_cast<double>(v.support), kMostPoints);
-  // The patches that normals are fitted to are wide against small bodies, so their normals spread more. How round such
-  // a body is counts more instead.
+  // The patches that normals are fitted to are wide against small bodies, and wider at much noise, so their normals
+  // spread more. How round such a body is counts more instead.
   constexpr double kSmall = 2.0, kSmallest = 2.5;  // usual radii over the body's; smaller ones count as these
   constexpr double kPatch = 0.11, kRounder = 5.5;  // of the usual radius; weight
-  const double smaller = std::clamp(larger, kSmall, kSmallest);
-  const double blurred = kPatch * kPatch * (smaller * smaller - kSmall * kSmall);
+  constexpr double kNoisy = 0.15, kWider = 0.6, kSooner = 0.25;  // at this noise (rad): wider by this share; less
+  const double noisy = std::min(parameters.normal_noise / kNoisy, 1.0);
+  const double small = kSmall / (1.0 + kWider * noisy);
+  const double smaller = std::clamp(larger, small, kSmallest - kSooner * noisy);
+  const double blurred = kPatch * kPatch * (smaller * smaller - small * small);
   const double spread = std::sqrt(
       std::max(0.0, v.normal_spread * v.normal_spread - parameters.normal_noise * parameters.normal_noise - blurred));
-  const double rounder = kRounder * (smaller - kSmall) * (std::min(v.roundness, kRoundEnough) - 0.5);
-  const double evidence = 3.95 - 14.4 * spread - 2.32 * std::log1p(v.clutter) -
+  // At much noise also points of the body's own have such normals.
+  const double clutter = v.seen_on ? v.clutter : v.clutter - noisy * v.turned;
+  const double rounder = kRounder * (smaller - small) * (std::min(v.roundness, kRoundEnough) - 0.5);
+  const double evidence = 3.95 - 14.4 * spread - 2.32 * std::log1p(clutter) -
                           29.4 * std::min(fit.rms / radius, kMostMisfit) + 1.05 * std::log(points / 50.0) +
                           1.55 * std::min(v.roundness, kRoundEnough) - 3.69 * v.through_share() -
                           5.65 * v.inside / v.coverage + 1.7 * std::min(radius / parameters.radius_max, kLarge);
-  // Several views see that a stump is a cylinder, and that a box has corners. One does not.
+  // Several views see that a stump is a cylinder, that a box has corners, and that a pot goes on below its rim. One
+  // does not.
   const double view = v.seen_on ? kSingleView + kSeenOn * std::log(*v.seen_on)
                                 : -parameters.ridge * ((v.closed() ? kClosed : 1.0) * v.flatness() +
                                                        kCornered * std::max(0.0, spread - kWidest)) -
-                                      kBeyond * std::clamp(v.beyond - kGoesOn, 0.0, kMostBeyond);
+                                      kBeyond * (std::clamp(v.beyond - kGoesOn, 0.0, kMostBeyond) +
+                                                 std::clamp(v.beyond - kRim, 0.0, kMostRim));
   const double too_long = std::max(0.0, fit.body.mean_semi_axis() / parameters.radius_max - 1.0);
-  return from_log_odds(evidence + rounder + view - kTooLong * too_long + prior);
+  const double too_small = v.seen_on ? 0.0 : std::max(0.0, parameters.radius_min / radius - 1.0);
+  return from_log_odds(evidence + rounder + view - kTooLong * too_long - kTooSmall * too_small + prior);
 }
 
 /// By how much the sensor's noise explains the misfit of a body to its points, as a share of the radius.
