@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <agrisee/cloud/closed_surface.hpp>
+#include <agrisee/cloud/fruit_probability.hpp>
 #include <agrisee/cloud/growth_axis.hpp>
 #include <agrisee/cloud/labels.hpp>
 #include <agrisee/cloud/poses.hpp>

@@ -10,6 +10,7 @@
 #include <agrisee/cloud/fit.hpp>
 #include <agrisee/cloud/found_body.hpp>
 #include <agrisee/cloud/free_points.hpp>
+#include <agrisee/cloud/fruit_probability.hpp>
 #include <agrisee/cloud/mask_evidence.hpp>
 #include <agrisee/cloud/parameters.hpp>
 #include <agrisee/cloud/seen_through.hpp>
