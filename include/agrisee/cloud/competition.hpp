@@ -7,6 +7,7 @@
 #include <agrisee/cloud/body_counts.hpp>
 #include <agrisee/cloud/body_size.hpp>
 #include <agrisee/cloud/body_verdict.hpp>
+#include <agrisee/cloud/compare_bodies.hpp>
 #include <agrisee/cloud/fit.hpp>
 #include <agrisee/cloud/found_body.hpp>
 #include <agrisee/cloud/free_points.hpp>
@@ -26,15 +27,6 @@
 namespace agrisee {
 
 namespace detail {
-
-/// How deep two bodies penetrate each other along the line between their centers (m); negative when apart.
-inline double overlap(const Ellipsoid& a, const Ellipsoid& b) {
-  const Eigen::Vector3d d = b.center - a.center;
-  const double length = d.norm();
-  if (!(length > 1e-9)) return a.mean_radius() + b.mean_radius();
-  const Eigen::Vector3d u = d / length;
-  return (a.surface(u) - a.center).norm() + (b.surface(-u) - b.center).norm() - length;
-}
 
 /// The competition for the points of one cloud; see find_bodies.
 template <typename S>
@@ -197,12 +189,6 @@ class Competition {
     return fit;
   }
 
-  /// Whether two bodies agree in center and size to within 5 % of the radius.
-  static bool alike(const Ellipsoid& a, const Ellipsoid& b) {
-    const double r = a.mean_radius(), gate = 0.05 * r;
-    return (a.center - b.center).norm() < gate && std::abs(b.mean_radius() - r) < gate;
-  }
-
   /// Add an entry that may win. Of nearly equal bodies only the better one is kept: most proposals for a fruit end up
   /// at the same fit.
   void keep(Entry e) {
@@ -214,13 +200,6 @@ class Competition {
       entries_.push_back(std::move(e));
     else if (area(e) > area(*other))
       *other = std::move(e);
-  }
-
-  /// Whether the centers and the semi-axes of two bodies are within 1 or 2 % of the radius.
-  static bool nearly_equal(const Ellipsoid& a, const Ellipsoid& b) {
-    constexpr double kSameCenter = 0.01, kSameShape = 0.02;
-    const double r = a.mean_radius();
-    return (a.center - b.center).norm() < kSameCenter * r && r * (a.A - b.A).norm() < kSameShape;
   }
 
   /// How much a body explains: its score times radius squared (m2) times confidence.
