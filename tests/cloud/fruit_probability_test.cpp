@@ -52,49 +52,71 @@ TEST_CASE("of small bodies in several views roundness counts more, and spread no
   CHECK(by_spread(0.010, 1.0) == Approx(by_spread(0.015, 1.0)));
 }
 
-TEST_CASE("at much noise, normals speak less against bodies in several views") {
-  const auto log_odds_of = [](double radius, double noise, std::optional<double> seen_on, auto&& change) {
-    Verdict v = verdict_of(cap(kPi / 2));
-    v.roundness = 0.7;
-    v.normal_spread = 0.3;
-    v.seen_on = seen_on;
-    change(v);
-    EllipsoidFit fit;
-    fit.body = Ellipsoid(Sphere{Eigen::Vector3d::Zero(), radius});
-    BodyParameters parameters;
-    parameters.normal_noise = noise;
-    return log_odds(fruit_probability(v, fit, parameters));
-  };
-  const auto by_spread = [&](double radius, double noise, std::optional<double> seen_on = {}) {
-    return log_odds_of(radius, noise, seen_on, [](Verdict& v) { v.normal_spread = 0.0; }) -
-           log_odds_of(radius, noise, seen_on, [](Verdict&) {});
-  };
-  CHECK(by_spread(0.012, 0.15) < by_spread(0.020, 0.15) - 0.1);  // the patches are wide against the body
-  CHECK(by_spread(0.014, 0.0) == Approx(by_spread(0.020, 0.0)));
-  CHECK(by_spread(0.012, 0.15, 1.0) == Approx(by_spread(0.020, 0.15, 1.0)));
-  const auto by_clutter = [&](double turned, double noise, std::optional<double> seen_on = {}) {
-    return log_odds_of(0.02, noise, seen_on, [&](Verdict& v) { v.clutter = 1.0, v.turned = turned; }) -
-           log_odds_of(0.02, noise, seen_on, [](Verdict& v) { v.clutter = 1.0; });
-  };
-  CHECK(by_clutter(0.5, 0.0) == Approx(0.0).margin(1e-9));
-  CHECK(by_clutter(0.5, 0.15) == Approx(2.32 * std::log(2.0 / 1.5)));
-  CHECK(by_clutter(0.5, 0.3) == Approx(by_clutter(0.5, 0.15)));
-  CHECK(by_clutter(0.5, 0.15, 1.0) == Approx(0.0).margin(1e-9));
+namespace {
+
+/// Parameters of a scan of several views with noise of its normals (rad).
+BodyParameters of_scan(double normal_noise) {
+  BodyParameters parameters;
+  parameters.alike = 0.0;
+  parameters.normal_noise = normal_noise;
+  return parameters;
 }
 
-TEST_CASE("in several views a body below the smallest expected radius is less likely a fruit") {
-  const auto log_odds_of = [](double radius, double least, std::optional<double> seen_on = {}) {
-    Verdict v = verdict_of(cap(kPi / 2));
-    v.seen_on = seen_on;
-    EllipsoidFit fit;
-    fit.body = Ellipsoid(Sphere{Eigen::Vector3d::Zero(), radius});
-    BodyParameters parameters;
-    parameters.radius_min = least;
-    return log_odds(fruit_probability(v, fit, parameters));
+/// Log-odds of a body of this radius (m) on which half a sphere was seen, with other evidence.
+template <typename Change>
+double changed_odds(double radius, const BodyParameters& parameters, Change&& change) {
+  Verdict v = verdict_of(cap(kPi / 2));
+  v.roundness = 0.7;
+  v.normal_spread = 0.3;
+  change(v);
+  EllipsoidFit fit;
+  fit.body = Ellipsoid(Sphere{Eigen::Vector3d::Zero(), radius});
+  return log_odds(fruit_probability(v, fit, parameters));
+}
+
+}  // namespace
+
+TEST_CASE("at much noise, normals speak less against small bodies in several views") {
+  const auto by_spread = [](double radius, const BodyParameters& parameters, std::optional<double> seen_on = {}) {
+    return changed_odds(radius, parameters, [&](Verdict& v) { v.seen_on = seen_on, v.normal_spread = 0.0; }) -
+           changed_odds(radius, parameters, [&](Verdict& v) { v.seen_on = seen_on; });
   };
-  CHECK(log_odds_of(0.0100, 0.010) == Approx(log_odds_of(0.0100, 0.008)));
-  CHECK(log_odds_of(0.0100, 0.011) == Approx(log_odds_of(0.0100, 0.008) - 0.8));
-  CHECK(log_odds_of(0.0100, 0.011, 1.0) == Approx(log_odds_of(0.0100, 0.008, 1.0)));
+  CHECK(by_spread(0.012, of_scan(0.15)) < by_spread(0.020, of_scan(0.15)) - 0.1);  // patches are wide against the body
+  CHECK(by_spread(0.014, of_scan(0.0)) == Approx(by_spread(0.020, of_scan(0.0))));
+  CHECK(by_spread(0.012, of_scan(0.15), 1.0) == Approx(by_spread(0.020, of_scan(0.15), 1.0)));
+  BodyParameters few_views = of_scan(0.15);
+  few_views.alike = 0.7;
+  CHECK(by_spread(0.014, few_views) == Approx(by_spread(0.020, few_views)));
+}
+
+TEST_CASE("at much noise, a body's own points whose normals are off are no clutter, up to a share of them") {
+  const auto by_clutter = [](double turned, const BodyParameters& parameters, std::optional<double> seen_on = {}) {
+    return changed_odds(0.02, parameters,
+                        [&](Verdict& v) { v.clutter = 1.0, v.turned = turned, v.seen_on = seen_on; }) -
+           changed_odds(0.02, parameters, [&](Verdict& v) { v.clutter = 1.0, v.seen_on = seen_on; });
+  };
+  CHECK(by_clutter(0.4, of_scan(0.0)) == Approx(0.0).margin(1e-9));
+  CHECK(by_clutter(0.4, of_scan(0.15)) == Approx(2.32 * std::log(2.0 / 1.6)));
+  CHECK(by_clutter(0.2, of_scan(0.15)) == Approx(2.32 * std::log(2.0 / 1.8)));
+  CHECK(by_clutter(0.9, of_scan(0.3)) == Approx(by_clutter(0.4, of_scan(0.15))));
+  CHECK(by_clutter(0.4, of_scan(0.15), 1.0) == Approx(0.0).margin(1e-9));
+  BodyParameters few_views = of_scan(0.15);
+  few_views.alike = 0.7;
+  CHECK(by_clutter(0.4, few_views) == Approx(0.0).margin(1e-9));
+}
+
+TEST_CASE("at much noise, a body below the smallest expected radius is less likely a fruit") {
+  const auto by_least = [](double least, double noise, double alike) {
+    BodyParameters narrower = of_scan(noise), usual = of_scan(noise);
+    narrower.alike = usual.alike = alike;
+    narrower.radius_min = least;
+    const auto same = [](Verdict&) {};
+    return changed_odds(0.01, narrower, same) - changed_odds(0.01, usual, same);
+  };
+  CHECK(by_least(0.0100, 0.15, 0.0) == Approx(0.0).margin(1e-9));
+  CHECK(by_least(0.0105, 0.15, 0.0) == Approx(-2.0));
+  CHECK(by_least(0.0105, 0.0, 0.0) == Approx(0.0).margin(1e-9));
+  CHECK(by_least(0.0105, 0.15, 0.7) == Approx(0.0).margin(1e-9));  // in one or two views
 }
 
 TEST_CASE("outside of the rim of a pot more of the surface goes on than outside of any fruit") {

@@ -40,7 +40,7 @@ struct SizedEvidence {
   double points;   ///< on the surface, as many as a body of usual size would have
   double spread;   ///< of the normals, without what noise and the size of the body explain
   double clutter;  ///< without the body's own points whose normals are off through noise
-  double rounder;  ///< log-odds by which roundness counts more on a small body
+  double small;    ///< log-odds for a fruit by the roundness of a small body, and against one that is too small
 };
 
 /// The evidence of a body, seen in the light of its size and of the noise.
@@ -56,16 +56,21 @@ inline SizedEvidence sized_evidence(const Verdict& v, double radius, const BodyP
   const double larger = v.seen_on ? 1.0 : std::max(1.0, parameters.usual_radius / radius);
   const double points = std::min(larger * larger * static_cast<double>(v.support), kMostPoints);
   // The patches that normals are fitted to are wide against small bodies, and wider at much noise, so their normals
-  // spread more. How round such a body is counts more instead.
-  const double noisy = std::min(parameters.normal_noise / kNoisy, 1.0);
+  // spread more. How round such a body is counts more instead. In one or two views scraps would profit from noise.
+  const bool several = !v.seen_on && parameters.several_views();
+  const double noisy = several ? std::min(parameters.normal_noise / kNoisy, 1.0) : 0.0;
   const double small = kSmall / (1.0 + kWider * noisy);
   const double smaller = std::clamp(larger, small, kSmallest - kSooner * noisy);
   const double blurred = kPatch * kPatch * (smaller * smaller - small * small);
   const double spread = std::sqrt(
       std::max(0.0, v.normal_spread * v.normal_spread - parameters.normal_noise * parameters.normal_noise - blurred));
-  // At much noise also points of the body's own have such normals.
-  const double clutter = v.seen_on ? v.clutter : v.clutter - noisy * v.turned;
-  return {points, spread, clutter, kRounder * (smaller - small) * (std::min(v.roundness, kRoundEnough) - 0.5)};
+  // At much noise also points of the body's own have such normals, but not most of them.
+  constexpr double kMostTurned = 0.4;
+  const double clutter = v.clutter - noisy * std::min(v.turned, kMostTurned);
+  const double rounder = kRounder * (smaller - small) * (std::min(v.roundness, kRoundEnough) - 0.5);
+  constexpr double kTooSmall = 40.0;  // below the smallest expected radius all this makes scraps likely
+  const double too_small = std::max(0.0, parameters.radius_min / radius - 1.0);
+  return {points, spread, clutter, rounder - kTooSmall * noisy * too_small};
 }
 
 /// Log-odds for a fruit by what a single view shows of the place: returns on the surface, or deeper ones, or none.
@@ -103,7 +108,7 @@ inline double fruit_probability(const Verdict& v, const EllipsoidFit& fit, const
                                 double prior = 0.0) {
   if (v.support == 0 || !(v.coverage > 0.0)) return 0.0;
   constexpr double kLarge = 0.5;  // of the largest radius; more changes nothing
-  constexpr double kTooLong = 30.0, kTooSmall = 8.0;
+  constexpr double kTooLong = 30.0;
   const double radius = fit.body.mean_radius();
   const SizedEvidence sized = sized_evidence(v, radius, parameters);
   const double evidence = 3.95 - 14.4 * sized.spread - 2.32 * std::log1p(sized.clutter) -
@@ -113,8 +118,7 @@ inline double fruit_probability(const Verdict& v, const EllipsoidFit& fit, const
   const double view =
       v.seen_on ? single_view_evidence(*v.seen_on) : several_views_evidence(v, sized.spread, parameters);
   const double too_long = std::max(0.0, fit.body.mean_semi_axis() / parameters.radius_max - 1.0);
-  const double too_small = v.seen_on ? 0.0 : std::max(0.0, parameters.radius_min / radius - 1.0);
-  return from_log_odds(evidence + sized.rounder + view - kTooLong * too_long - kTooSmall * too_small + prior);
+  return from_log_odds(evidence + sized.small + view - kTooLong * too_long + prior);
 }
 
 /// By how much the sensor's noise explains the misfit of a body to its points, as a share of the radius.
