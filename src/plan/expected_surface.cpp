@@ -12,7 +12,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <optional>
 
 #include "cloud/searches.hpp"
 #include "plan/body_surface.hpp"
@@ -167,9 +166,7 @@ void ExpectedSurface::collect_samples(const Progress& progress, const Grid<float
                             static_cast<float>(kSmaller * semi_axes(body).first[0]), static_cast<int>(b)});
   }
   area_ = covered_ = 0.0;
-  area_of_.clear();
-  covered_of_.clear();
-  weight_of_.clear();
+  surface_of_.clear();
   const Aabb cloud_extent = bounding_box(progress.cloud.points);
   extent_ = cloud_extent.empty() ? volume_ : cloud_extent;
   center_ = extent_.center();
@@ -204,10 +201,8 @@ void ExpectedSurface::sample_bodies(const Progress& progress, const Grid<float>&
       else if (at && !inside_other(*at, static_cast<int>(b)))
         add_sample(*at, normal, weight * share, static_cast<int>(b));
     }
-    area_of_.push_back(share * parameters_.samples);
-    covered_of_.push_back(covered);
-    weight_of_.push_back(weight);
-    area_ += weight * area_of_.back();
+    surface_of_.push_back({share * parameters_.samples, covered, weight});
+    area_ += weight * surface_of_.back().area;
     covered_ += weight * covered;
   }
 }
@@ -338,11 +333,12 @@ Completeness ExpectedSurface::completeness(const std::vector<char>& can_be_seen)
   double all = 0.0;
   for (std::size_t b = 0; b < bodies_.size(); ++b) {
     if (!believed(bodies_[b])) continue;
-    const double seen = covered_of_[b], observable = seen + open[b] / weight_of_[b];
-    out.fruits.push_back({bodies_[b].fit.body.center, seen / area_of_[b], observable / area_of_[b]});
+    const auto& [area, seen, weight] = surface_of_[b];
+    const double observable = seen + open[b] / weight;
+    out.fruits.push_back({bodies_[b].fit.body.center, seen / area, observable / area});
     out.seen += seen;
     out.observable += observable;
-    all += area_of_[b];
+    all += area;
   }
   if (all > 0.0) out.seen /= all, out.observable /= all;
   return out;

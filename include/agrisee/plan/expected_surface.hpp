@@ -87,6 +87,13 @@ class ExpectedSurface {
     int body;                       // index of its fruit; -1 for a voxel
   };
 
+  /// The surface of a body.
+  struct BodySurface {
+    double area;     // (m2)
+    double covered;  // the part that points cover (m2)
+    double weight;   // how much it counts (0..1)
+  };
+
   /// A sample that a view was expected to show.
   struct Promise {
     Eigen::Vector3f point;  // m, world
@@ -156,8 +163,7 @@ class ExpectedSurface {
   std::vector<float> obstacles_;     // points that belong to no fruit, thinned: all x, then all y, then all z (m)
   double area_ = 0.0, covered_ = 0.0;
   PromiseRecord record_;
-  std::vector<double> area_of_, covered_of_;  // one per body (m2)
-  std::vector<double> weight_of_;             // how much its surface counts
+  std::vector<BodySurface> surface_of_;  // one per body
   Eigen::Vector3d center_ = Eigen::Vector3d::Zero();
   Aabb extent_;
 };
