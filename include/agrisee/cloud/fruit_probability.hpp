@@ -40,7 +40,7 @@ struct SizedEvidence {
   double points;   ///< on the surface, as many as a body of usual size would have
   double spread;   ///< of the normals, without what noise and the size of the body explain
   double clutter;  ///< without the body's own points whose normals are off through noise
-  double small;    ///< log-odds for a fruit by the roundness of a small body, and against one that is too small
+  double by_size;  ///< log-odds for a fruit by the roundness of a small body, and against one that is too small
 };
 
 /// The evidence of a body, seen in the light of its size and of the noise.
@@ -118,7 +118,7 @@ inline double fruit_probability(const Verdict& v, const EllipsoidFit& fit, const
   const double view =
       v.seen_on ? single_view_evidence(*v.seen_on) : several_views_evidence(v, sized.spread, parameters);
   const double too_long = std::max(0.0, fit.body.mean_semi_axis() / parameters.radius_max - 1.0);
-  return from_log_odds(evidence + sized.small + view - kTooLong * too_long + prior);
+  return from_log_odds(evidence + sized.by_size + view - kTooLong * too_long + prior);
 }
 
 /// By how much the sensor's noise explains the misfit of a body to its points, as a share of the radius.
