@@ -41,9 +41,22 @@ def clearly_visible(row):
     return mask * mask >= 0.7 * diameter * float(row["caliper_height_mm"] or diameter)
 
 
-def main():
-    labelled, callipers, folder = sys.argv[1:4]
-    folder = pathlib.Path(folder)
+class Judgement:
+    """What became of the labelled fruit: a line of text for each, and the sums."""
+
+    def __init__(self):
+        self.lines, self.errors, self.visible, self.found, self.fruits, self.others = [], [], [], 0, 0, 0
+
+    def summary(self):
+        mean = sum(map(abs, self.errors)) / max(1, len(self.errors))
+        bias = sum(self.errors) / max(1, len(self.errors))
+        return (f"found {self.found} of {self.fruits}, {sum(self.visible)} of {len(self.visible)} clearly visible; "
+                f"diameter error {mean:.1f} mm in the mean (signed {bias:+.1f}); "
+                f"{self.others} bodies that are no labelled fruit")
+
+
+def judge(points, callipers, folder):
+    """Judge a result folder by labelled points (x, y, z, label) and the rows of FRUITS.csv."""
     cells = collections.defaultdict(list)
     for p in read_ply(folder / "cloud.ply"):
         cells[tuple(int(c // REACH) for c in p[:3])].append(p)
@@ -60,42 +73,46 @@ def main():
 
     votes = collections.defaultdict(collections.Counter)  # label -> instance -> points
     claims = collections.defaultdict(collections.Counter)  # instance -> label -> points
-    for p in read_ply(labelled):
+    for p in points:
         if p[3] > 0:
             i = instance_at(p)
             votes[p[3]][i] += 1
             claims[i][p[3]] += 1
     fruits = json.loads((folder / "fruits.json").read_text())
     fruits = {f["id"]: f for f in (fruits["fruits"] if isinstance(fruits, dict) else fruits)}
-    errors, found, total, visible = [], set(), 0, []
-    print("label      points  in sight share  diameter (mm): callipers  found  error")
-    for row in csv.DictReader(open(callipers)):
-        label, total = int(row["instance"]), total + 1
-        points = sum(votes[label].values())
+    out, found = Judgement(), set()
+    for row in callipers:
+        label = int(row["instance"])
+        count = sum(votes[label].values())
         named = [(n, i) for i, n in votes[label].items() if i > 0]
         n, i = max(named, default=(0, 0))
         clear = clearly_visible(row)
-        text = f"{row['label']:10} {points:6}  {'visible' if clear else 'hidden '}"
-        if i == 0 or 3 * n < points or claims[i].most_common(1)[0][0] != label:
-            print(f"{text}  missed")
-            visible += [False] * clear
+        text = f"{row['label']:10} {count:6}  {'visible' if clear else 'hidden '}"
+        if i == 0 or 3 * n < count or claims[i].most_common(1)[0][0] != label:
+            out.lines.append(f"{text}  missed")
+            out.visible += [False] * clear
             continue
         found.add(i)
-        visible += [True] * clear
+        out.visible += [True] * clear
         a, b, c = fruits[i]["radii"]
         size = 2e3 * (a * b * c) ** (1 / 3)
-        text += f"  {100 * n // points:3} %"
+        text += f"  {100 * n // count:3} %"
         if row["caliper_diameter_mm"]:
             true = (float(row["caliper_diameter_mm"]) ** 2 * float(row["caliper_height_mm"])) ** (1 / 3)
-            errors.append(size - true)
-            print(f"{text}  {true:24.1f}  {size:5.1f}  {size - true:+5.1f}")
+            out.errors.append(size - true)
+            out.lines.append(f"{text}  {true:24.1f}  {size:5.1f}  {size - true:+5.1f}")
         else:
-            print(f"{text}  {'-':>24}  {size:5.1f}")
-    mean = sum(map(abs, errors)) / max(1, len(errors))
-    bias = sum(errors) / max(1, len(errors))
-    print(f"found {len(found)} of {total}, {sum(visible)} of {len(visible)} clearly visible; "
-          f"diameter error {mean:.1f} mm in the mean (signed {bias:+.1f}); "
-          f"{len(fruits) - len(found)} bodies that are no labelled fruit")
+            out.lines.append(f"{text}  {'-':>24}  {size:5.1f}")
+    out.found, out.fruits, out.others = len(found), len(callipers), len(fruits) - len(found)
+    return out
+
+
+def main():
+    labelled, callipers, folder = sys.argv[1:4]
+    result = judge(read_ply(labelled), list(csv.DictReader(open(callipers))), pathlib.Path(folder))
+    print("label      points  in sight share  diameter (mm): callipers  found  error")
+    print("\n".join(result.lines))
+    print(result.summary())
 
 
 if __name__ == "__main__":
