@@ -239,17 +239,26 @@ TEST_CASE("a body of a single view is settled by both verdicts, noise and sight 
   Verdict v = verdict_of(cap(1.0));
   v.seen_on = 1.0;
   v.clutter = 1.5;
+  v.roundness = 0.9;  // counts as 0.8
   const EllipsoidFit fit = fit_of(0.0012);
   BodyParameters parameters;
   const double now = fruit_probability(v, fit, parameters, 0.3);
   const auto odds = [&](double won, const Verdict& last) {
     return exact_log_odds(settled_probability(won, last, fit, parameters, 0.3));
   };
-  CHECK(odds(0.2, v) == Approx(0.5 * (exact_log_odds(0.2) + exact_log_odds(now)) - 0.1));
+  const double both = 0.5 * (exact_log_odds(0.2) + exact_log_odds(now)) + 2.5 * 0.8 - 1.45;
+  CHECK(odds(0.2, v) == Approx(both));
   CHECK(odds(0.9, v) > odds(0.2, v));
+  Verdict flat = v;
+  flat.roundness = 0.6;  // counts in the verdict, too
+  CHECK(odds(0.2, flat) == Approx(both - 2.5 * 0.2 - 0.5 * 1.55 * 0.2));
+  parameters.normal_noise = 0.3;
+  const double noisy = odds(0.2, v);
+  parameters.normal_noise = 0.4;  // explains no more of the spread than all, but says that normals are random
+  CHECK(odds(0.2, v) == Approx(noisy - 30.0 * 0.1));
+  parameters.normal_noise = 0.0;
   parameters.point_noise = 0.0006;
-  CHECK(odds(0.2, v) ==
-        Approx(0.5 * (exact_log_odds(0.2) + exact_log_odds(now)) - 0.1 + 75.0 * explained_misfit(fit, parameters)));
+  CHECK(odds(0.2, v) == Approx(both + 75.0 * explained_misfit(fit, parameters)));
   const double radius = fit.body.mean_radius(), before = odds(0.2, v);
   parameters.point_noise = 0.055 * radius;  // all that explains the misfit: more of it only counts against the body
   const double most = odds(0.2, v);

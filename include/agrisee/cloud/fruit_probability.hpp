@@ -134,22 +134,27 @@ inline double explained_misfit(const EllipsoidFit& fit, const BodyParameters& pa
 ///
 /// Its log-odds are the mean of those by which it won the points, and those of the verdict on the last fit. Misfit that
 /// the sensor's noise explains does not count against it, but a body counts less the more its size is within the noise:
-/// anything small looks round then. Sight lines through it count more, as all are of one frame. The weights were fitted
-/// to 3,200 bodies: in 540 simulated views (L515 and Azure Kinect, shade and sun, 0.4 to 1.2 m) and in three real
-/// frames; that of the noise to 3,800 in 460 more views (also D405, 0.3 to 0.8 m). See docs/segmentation.md for what
-/// they bring.
+/// anything small looks round then. Nothing is believed where the noise turns normals at random. Sight lines through it
+/// count more, as all are of one frame. The weights were fitted to 3,200 bodies: in 540 simulated views (L515 and Azure
+/// Kinect, shade and sun, 0.4 to 1.2 m) and in three real frames; that of the noise to 3,800 in 460 more views (also
+/// D405, 0.3 to 0.8 m). The constant, and how roundness and random normals count, were fitted to 6,300 bodies in 1,260
+/// simulated views of 84 plants, and to 1,700 in two real frames, each mirrored, turned, scaled, thinned, or with more
+/// noise. See docs/segmentation.md for what they bring.
 /// @param won probability by which the body won its points
 /// @param v verdict on the last fit by all points, taken or not
 /// @param prior as of fruit_probability
 inline double settled_probability(double won, const Verdict& v, const EllipsoidFit& fit,
                                   const BodyParameters& parameters, double prior) {
-  constexpr double kExplained = 75.0, kThrough = 12.0, kOffset = -0.1;
-  constexpr double kBlurred = 20.0, kSharp = 0.055;  // noise up to this share of the radius does not count
+  constexpr double kExplained = 75.0, kThrough = 12.0, kRounder = 2.5, kOffset = -1.45;
+  constexpr double kRandom = 30.0, kMostNormalNoise = 0.3;  // rad; white noise of 10 mm causes 0.4
+  constexpr double kBlurred = 20.0, kSharp = 0.055;         // noise up to this share of the radius does not count
   const double now = fruit_probability(v, fit, parameters, prior);
   if (!(now > 0.0)) return 0.0;
   const double blurred = std::max(0.0, parameters.point_noise / fit.body.mean_radius() - kSharp);
-  return from_log_odds(0.5 * (log_odds(won) + log_odds(now)) + kExplained * explained_misfit(fit, parameters) -
-                       kThrough * v.through_share() - kBlurred * blurred + kOffset);
+  const double random = std::max(0.0, parameters.normal_noise - kMostNormalNoise);
+  return from_log_odds(0.5 * (log_odds(won) + log_odds(now)) + kExplained * explained_misfit(fit, parameters) +
+                       kRounder * std::min(v.roundness, kRoundEnough) - kThrough * v.through_share() -
+                       kBlurred * blurred - kRandom * random + kOffset);
 }
 
 }  // namespace agrisee::detail
