@@ -1,20 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// @file
-/// What sight lines and masks say of the bodies in a ready cloud, beside its points.
+/// Gathers what sight lines and masks say of the bodies in a ready cloud.
 #pragma once
 
-#include <agrisee/cloud/mask_evidence.hpp>
-#include <agrisee/cloud/seen_through.hpp>
+#include <agrisee/cloud/body_evidence.hpp>
 #include <agrisee/process.hpp>
 
 namespace agrisee {
-
-/// Evidence for bodies and against them, as split() takes it. Each part is empty where nothing is known.
-struct BodyEvidence {
-  SeenThrough seen_through;  ///< of free space
-  SeenOn seen_on;            ///< of the sensor of a single view
-  MaskEvidence masks;        ///< of masks and, with `color_prior.enabled`, of colors
-};
 
 /// Gather the evidence for the bodies in a cloud.
 /// @param result only its clouds (m): `cloud`, cleaned and with normals, and `raw`, with the outliers, which occlude

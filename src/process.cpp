@@ -143,7 +143,7 @@ ScanResult process(Cloud&& cloud, const Parameters& parameters, const CloudOrigi
   const Parameters fitted = with_noise(parameters, noise, result.cloud, origin, sides_guessed);
   Split found = timed(t.segment, [&] {
     const BodyEvidence evidence = evidence_for(result, fitted, origin, seen_through, noise.points);
-    return split(result.cloud, fitted.split, evidence.seen_through, threads, evidence.masks, evidence.seen_on);
+    return split(result.cloud, fitted.split, evidence, threads);
   });
   if (origin.volume && parameters.split.fit_bodies)
     timed(t.segment, [&] { forget_cut_bodies(result.cloud, *origin.volume, found); });

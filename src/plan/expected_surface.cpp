@@ -139,15 +139,16 @@ Labels ExpectedSurface::find_fruit(const Progress& progress, const SplitParamete
   with_bodies.bodies.normal_noise = std::max(with_bodies.bodies.normal_noise, sensor::normal_noise(progress.images));
   min_confidence_ = split_parameters.bodies.min_confidence;
   with_bodies.bodies.min_confidence = std::min(min_confidence_, parameters_.least_confidence);
-  const auto through = [&](const Ellipsoid& body) { return fuse::seen_through(progress.images, body, free_space); };
+  BodyEvidence evidence;
+  evidence.seen_through = [&](const Ellipsoid& b) { return fuse::seen_through(progress.images, b, free_space); };
+  if (progress.masks) evidence.masks = *progress.masks;
   const bool fused = progress.cloud.normals.size() == progress.cloud.size();
   const Cloud estimated = fused ? Cloud() : with_normals(progress);
   const Cloud& cloud = fused ? progress.cloud : estimated;
   // Segment from scratch while the cloud grows fast; later only bring the known fruit up to date.
   const bool anew = bodies_.empty() || static_cast<double>(cloud.size()) > kGrowth * static_cast<double>(segmented_at_);
-  const MaskEvidence masks = progress.masks ? *progress.masks : MaskEvidence{};
-  Split found = anew ? split(cloud, with_bodies, through, threads_, masks)
-                     : track(cloud, bodies_, with_bodies, through, points_since(cloud, tracked_views_), masks);
+  Split found = anew ? split(cloud, with_bodies, evidence, threads_)
+                     : track(cloud, bodies_, with_bodies, evidence, points_since(cloud, tracked_views_));
   tracked_views_ = progress.views.size();
   if (anew) segmented_at_ = cloud.size();
   bodies_ = std::move(found.found);

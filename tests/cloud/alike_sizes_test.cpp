@@ -79,7 +79,7 @@ TEST_CASE("a doubtful body beside fruit of another size is not believed, beside 
     BodyParameters parameters;
     parameters.alike = alike;
     parameters.min_confidence = 0.95;
-    for (const FoundBody& f : find_bodies(cloud, candidates, parameters, {}, nullptr, {}, single_view))
+    for (const FoundBody& f : find_bodies(cloud, candidates, parameters, {{}, single_view}))
       if ((f.fit.body.center - doubtful).norm() < 0.005) return f.confidence;
     return 0.0;
   };

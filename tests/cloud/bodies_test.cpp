@@ -161,7 +161,7 @@ TEST_CASE("a body that sight lines went through is none") {
   test::add_sphere(cloud, {{0, 0.5, 0.2}, 0.035}, 0.0025,
                    [](const Eigen::Vector3d& d) { return d.dot(front()) > 0.5; });
   CHECK(split(cloud).found.size() == 1);
-  CHECK(split(cloud, {}, [](const Ellipsoid&) { return 0.5; }).found.empty());
+  CHECK(split(cloud, {}, {[](const Ellipsoid&) { return 0.5; }}).found.empty());
 }
 
 TEST_CASE("smaller and larger fruit need another radius range and nothing else") {
@@ -305,7 +305,7 @@ TEST_CASE("masks propose bodies for what points leave, unless sight lines or poi
     body.log_odds = 2.0;
     return std::vector<MaskBody>{body};
   };
-  const Split with = split(cloud, {}, {}, 1, masks);
+  const Split with = split(cloud, {}, {{}, {}, masks});
   CHECK(explained == 1);
   REQUIRE(with.found.size() == 2);
   CHECK(with.found[0].found_by != "mask");
@@ -313,7 +313,7 @@ TEST_CASE("masks propose bodies for what points leave, unless sight lines or poi
   CHECK(with.found[1].by_mask);
   CHECK(with.found[1].confidence == Approx(1.0 / (1.0 + std::exp(-2.0))));
   const SeenThrough through = [&](const Ellipsoid& body) { return (body.center - hidden).norm() < 0.02 ? 0.3 : 0.0; };
-  CHECK(split(cloud, {}, through, 1, masks).found.size() == 1);
+  CHECK(split(cloud, {}, {through, {}, masks}).found.size() == 1);
 
   for (int i = -6; i <= 6; ++i)  // a leaf where the fruit's front would be
     for (int k = -6; k <= 6; ++k) {
@@ -322,7 +322,7 @@ TEST_CASE("masks propose bodies for what points leave, unless sight lines or poi
       cloud.points.push_back(p.cast<float>());
       cloud.normals.push_back(front().cast<float>());
     }
-  CHECK(split(cloud, {}, {}, 1, masks).found.size() == 1);
+  CHECK(split(cloud, {}, {{}, {}, masks}).found.size() == 1);
 }
 
 TEST_CASE("masks change how far a body of points is believed") {
@@ -335,7 +335,7 @@ TEST_CASE("masks change how far a body of points is believed") {
     masks.most = 4.0;
     SplitParameters parameters;
     parameters.bodies.min_confidence = 0.0;
-    const Split found = split(cloud, parameters, {}, 1, masks);
+    const Split found = split(cloud, parameters, {{}, {}, masks});
     return found.found.empty() ? 0.0 : found.found.front().confidence;
   };
   const double alone = confidence(0.0);

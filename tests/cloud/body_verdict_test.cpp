@@ -199,7 +199,7 @@ TEST_CASE("a body with fewer than eight points is not looked at closely") {
     for (std::size_t b = 0; b < points; ++b) put(cloud, DirectionBins::directions()[b * 5], 1.0, deg(20));
     put(cloud, DirectionBins::directions()[100], 1.2);
     return judge(cloud, Grid<float>(cloud, 0.006f), std::vector<char>(cloud.size(), 0), fit_of(0.0).body,
-                 BodyParameters(), through, on);
+                 BodyParameters(), {through, on});
   };
   const Verdict few = of(7);
   CHECK(asked == 0);

@@ -66,7 +66,7 @@ Outcome compete(const Cloud& cloud, const std::vector<BodyCandidate>& candidates
                 const SeenThrough& through = {}, const SeenOn& on = {}) {
   parameters.alike = 0.0;
   Outcome out;
-  out.found = find_bodies(cloud, candidates, parameters, through, &out.counts, {}, on);
+  out.found = find_bodies(cloud, candidates, parameters, {through, on}, &out.counts);
   return out;
 }
 

@@ -46,7 +46,7 @@ inline EllipsoidFit fit_of(double rms) {
 /// The verdict on the sphere by a cloud.
 inline detail::Verdict verdict_of(const Cloud& cloud, const SeenThrough& through = {}) {
   const Grid<float> grid(cloud, 0.006f);
-  return detail::judge(cloud, grid, std::vector<char>(cloud.size(), 0), fit_of(0.0).body, BodyParameters(), through);
+  return detail::judge(cloud, grid, std::vector<char>(cloud.size(), 0), fit_of(0.0).body, BodyParameters(), {through});
 }
 
 }  // namespace agrisee::test

@@ -151,8 +151,8 @@ TEST_CASE("in a single view the last verdict decides: a doubtful body that it be
     out.found[0].confidence = won;
     out.found[0].by_mask = by_mask;
     out.bodies.taken = 1;
-    detail::settle(
-        cloud, grid_of(cloud), BodyParameters(), BodyParameters(), {}, [&](const Ellipsoid&) { return seen_on; }, out);
+    detail::settle(cloud, grid_of(cloud), BodyParameters(), BodyParameters(),
+                   {{}, [&](const Ellipsoid&) { return seen_on; }}, out);
     CHECK(out.bodies.taken == out.found.size());
     CHECK(out.bodies.doubtful == 1 - out.found.size());
     const auto labeled = std::count(out.labels.begin(), out.labels.end(), 1);
@@ -175,7 +175,7 @@ TEST_CASE("in a single view smaller bodies are sought than expected, but not kep
   const auto found = [&](double radius_min) {
     SplitParameters parameters;
     parameters.bodies.radius_min = radius_min;
-    return split(cloud, parameters, {}, 1, {}, [](const Ellipsoid&) { return 1.0; });
+    return split(cloud, parameters, {{}, [](const Ellipsoid&) { return 1.0; }});
   };
   const Split both = found(0.008), one = found(0.025);
   CHECK(both.found.size() == 2);

@@ -23,15 +23,14 @@ namespace detail {
 template <typename S>
 std::vector<FoundBody> find_bodies_near(const PointCloud<S>& cloud, const Grid<S>& grid,
                                         const std::vector<BodyCandidate>& candidates, const BodyParameters& parameters,
-                                        const SeenThrough& seen_through, BodyCounts* counts, const MaskEvidence& masks,
-                                        const SeenOn& seen_on) {
-  Competition<S> competition(cloud, grid, parameters, seen_through, masks, seen_on);
+                                        const BodyEvidence& evidence, BodyCounts* counts) {
+  Competition<S> competition(cloud, grid, parameters, evidence);
   competition.enter(candidates);
   std::vector<FoundBody> found;
   if (parameters.alike > 0.0) competition.remember();
   competition.decide(found);
   if (parameters.alike > 0.0) competition.decide_by_size(found);
-  if (masks.remaining) competition.fill_gaps(found);
+  if (evidence.masks.remaining) competition.fill_gaps(found);
   competition.close();
   if (counts) *counts = competition.counts();
   return found;
@@ -69,21 +68,18 @@ Labels assign_to_bodies_near(const PointCloud<S>& cloud, const Grid<S>& grid, co
 /// @param cloud points (m) with normals
 /// @param candidates of equally good ones the first wins
 /// @param parameters see their struct
-/// @param seen_through evidence of free space, or empty
+/// @param evidence of sight lines and masks
 /// @param counts if not null, receives the numbers of candidates by outcome
-/// @param masks evidence of a detector, or empty
-/// @param seen_on evidence of the sensor of a single view, or empty
 /// @return the bodies that won, best first; assign_to_bodies gives them their points
 /// @throws ParameterError; InputError if the cloud has no normals
 template <typename S>
 std::vector<FoundBody> find_bodies(const PointCloud<S>& cloud, const std::vector<BodyCandidate>& candidates,
-                                   const BodyParameters& parameters = {}, const SeenThrough& seen_through = {},
-                                   BodyCounts* counts = nullptr, const MaskEvidence& masks = {},
-                                   const SeenOn& seen_on = {}) {
+                                   const BodyParameters& parameters = {}, const BodyEvidence& evidence = {},
+                                   BodyCounts* counts = nullptr) {
   parameters.check();
   check_input(cloud.normals.size() == cloud.points.size(), "find_bodies: the cloud has no normals");
   const Grid<S> grid(cloud, static_cast<S>(parameters.cell()));
-  return detail::find_bodies_near(cloud, grid, candidates, parameters, seen_through, counts, masks, seen_on);
+  return detail::find_bodies_near(cloud, grid, candidates, parameters, evidence, counts);
 }
 
 /// Label each point with the body (counted from 1) on whose surface it lies, 0 for none. That is the nearest body whose

@@ -3,10 +3,10 @@
 /// Evidence for and against a body from the points and sight lines near it. Metres. Cost: linear in the points near it.
 #pragma once
 
+#include <agrisee/cloud/body_evidence.hpp>
 #include <agrisee/cloud/fit.hpp>
 #include <agrisee/cloud/outside_surface.hpp>
 #include <agrisee/cloud/parameters.hpp>
-#include <agrisee/cloud/seen_through.hpp>
 #include <agrisee/geometry/direction_bins.hpp>
 #include <agrisee/geometry/pca.hpp>
 #include <agrisee/neighbors/grid.hpp>
@@ -184,11 +184,12 @@ Verdict judge_points(const PointCloud<S>& cloud, Visit&& visit, std::size_t each
 /// @param taken whether a point belongs to a body that has won already
 template <typename S>
 Verdict judge(const PointCloud<S>& cloud, const Grid<S>& grid, const std::vector<char>& taken, const Ellipsoid& body,
-              const BodyParameters& parameters, const SeenThrough& seen_through, const SeenOn& seen_on = {}) {
+              const BodyParameters& parameters, const BodyEvidence& evidence) {
   const auto visit = [&](auto&& f) { visit_near(grid, body, f); };
-  Verdict v = judge_points(cloud, visit, 1, taken, body, parameters, static_cast<bool>(seen_on), true);
-  if (seen_through && v.support >= kLeastSupport) v.seen_through = seen_through(body);
-  if (seen_on && v.support >= kLeastSupport) v.seen_on = seen_on(body);
+  Verdict v = judge_points(cloud, visit, 1, taken, body, parameters, evidence.single_view(), true);
+  if (v.support < kLeastSupport) return v;
+  if (evidence.seen_through) v.seen_through = evidence.seen_through(body);
+  if (evidence.seen_on) v.seen_on = evidence.seen_on(body);
   return v;
 }
 

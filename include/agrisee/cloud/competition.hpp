@@ -5,6 +5,7 @@
 
 #include <agrisee/cloud/alike_sizes.hpp>
 #include <agrisee/cloud/body_counts.hpp>
+#include <agrisee/cloud/body_evidence.hpp>
 #include <agrisee/cloud/body_size.hpp>
 #include <agrisee/cloud/body_verdict.hpp>
 #include <agrisee/cloud/compare_bodies.hpp>
@@ -12,9 +13,7 @@
 #include <agrisee/cloud/found_body.hpp>
 #include <agrisee/cloud/free_points.hpp>
 #include <agrisee/cloud/fruit_probability.hpp>
-#include <agrisee/cloud/mask_evidence.hpp>
 #include <agrisee/cloud/parameters.hpp>
-#include <agrisee/cloud/seen_through.hpp>
 #include <agrisee/core/log_odds.hpp>
 
 #include <algorithm>
@@ -33,12 +32,8 @@ template <typename S>
 class Competition {
  public:
   Competition(const PointCloud<S>& cloud, const Grid<S>& grid, const BodyParameters& parameters,
-              const SeenThrough& seen_through, const MaskEvidence& masks, const SeenOn& seen_on)
-      : parameters_(parameters),
-        seen_through_(seen_through),
-        masks_(masks),
-        seen_on_(seen_on),
-        free_(cloud, grid, parameters) {}
+              const BodyEvidence& evidence)
+      : parameters_(parameters), evidence_(evidence), free_(cloud, grid, parameters) {}
 
   /// Fit and judge the candidates. Those that score enough enter the competition.
   void enter(const std::vector<BodyCandidate>& candidates) {
@@ -108,7 +103,7 @@ class Competition {
     std::vector<Ellipsoid> known;
     for (const FoundBody& f : found) known.push_back(f.fit.body);
     std::vector<BodyCandidate> candidates;
-    for (const MaskBody& m : masks_.remaining(known))
+    for (const MaskBody& m : evidence_.masks.remaining(known))
       candidates.push_back({m.fit.body, "mask", nullptr, m.fit, m.log_odds});
     if (candidates.empty()) return;
     enter(candidates);
@@ -158,8 +153,9 @@ class Competition {
   /// points on it that are not round. Those of a single view were weighed when the body was proposed.
   double against_masks(const Ellipsoid& body, const Verdict& v) const {
     constexpr double kThrough = 25.0, kUnsure = 0.02, kInside = 10.0, kFlat = 20.0, kFewPoints = 10.0;
-    if (!masks_.remaining) return 0.0;
-    const double through = seen_through_ ? seen_through_(body) : 0.0, n = static_cast<double>(v.support);
+    if (!evidence_.masks.remaining) return 0.0;
+    const double through = evidence_.seen_through ? evidence_.seen_through(body) : 0.0;
+    const double n = static_cast<double>(v.support);
     return kThrough * std::max(0.0, through - kUnsure) + kInside * v.inside +
            kFlat * v.flatness() * n / (n + kFewPoints);
   }
@@ -168,7 +164,7 @@ class Competition {
   double prior_of(const Ellipsoid& body) const {
     const double by_size =
         sizes_.empty() ? 0.0 : alike_log_odds(sizes_, body, parameters_.radius_min, parameters_.radius_max);
-    return (masks_.log_odds ? masks_.log_odds(body) : 0.0) + parameters_.alike * by_size;
+    return (evidence_.masks.log_odds ? evidence_.masks.log_odds(body) : 0.0) + parameters_.alike * by_size;
   }
 
   /// Fit a body that a mask proposed to its points if these cover half of it, as they then describe it better than its
@@ -267,22 +263,22 @@ class Competition {
   bool hopeless(const EllipsoidFit& fit) const {
     constexpr double kTooLarge = 1.3, kShareOfLeast = 0.25;  // margins: a better fit may be smaller, or rounder
     constexpr std::size_t kFlatSurely = 60;                  // points that show whether a surface is round
-    const bool strict = !seen_on_ && !masks_.log_odds;
+    const bool strict = !evidence_.single_view() && !evidence_.masks.log_odds;
     if (strict && fit.body.mean_semi_axis() > kTooLarge * parameters_.radius_max) return true;
-    const Verdict v = free_.judge_quickly(fit.body, static_cast<bool>(seen_on_));
+    const Verdict v = free_.judge_quickly(fit.body, evidence_.single_view());
     if (strict && v.score() < kShareOfLeast * parameters_.min_coverage) return true;
     if (strict && v.support >= kFlatSurely && v.roundness < kShareOfLeast * parameters_.min_roundness) return true;
     const double least = 0.1 * kHopeless * parameters_.min_confidence;
     const auto below = [&](double prior) { return fruit_probability(v, fit, parameters_, prior) < least; };
-    if (!masks_.log_odds) return below(0.0);
-    if (below(masks_.most)) return true;  // whatever the masks say
-    return below(-masks_.most) && below(prior_of(fit.body));
+    if (!evidence_.masks.log_odds) return below(0.0);
+    if (below(evidence_.masks.most)) return true;  // whatever the masks say
+    return below(-evidence_.masks.most) && below(prior_of(fit.body));
   }
 
   /// Judge an entry by the free points; it is alive while it may win.
   /// @return the count of the first test that it fails; null when it is alive
   std::size_t BodyCounts::*assess(Entry& e) const {
-    e.verdict = free_.judge(e.fit.body, seen_through_, seen_on_);
+    e.verdict = free_.judge(e.fit.body, evidence_);
     return rate(e);
   }
 
@@ -348,9 +344,7 @@ class Competition {
   }
 
   const BodyParameters& parameters_;
-  const SeenThrough& seen_through_;
-  const MaskEvidence& masks_;
-  const SeenOn& seen_on_;
+  const BodyEvidence& evidence_;
   FreePoints<S> free_;
   std::vector<Entry> entries_;
   std::vector<Entry> entered_;    // as they were before the first body won

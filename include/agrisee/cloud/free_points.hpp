@@ -3,10 +3,10 @@
 /// The points of a cloud that no body has taken yet: bodies are fitted to them and judged by them. Metres.
 #pragma once
 
+#include <agrisee/cloud/body_evidence.hpp>
 #include <agrisee/cloud/body_verdict.hpp>
 #include <agrisee/cloud/fit.hpp>
 #include <agrisee/cloud/parameters.hpp>
-#include <agrisee/cloud/seen_through.hpp>
 #include <agrisee/neighbors/grid.hpp>
 
 #include <algorithm>
@@ -34,8 +34,8 @@ class FreePoints {
   }
 
   /// Judge a body by all points near it and by sight lines.
-  Verdict judge(const Ellipsoid& body, const SeenThrough& seen_through, const SeenOn& seen_on = {}) const {
-    return detail::judge(cloud_, grid_, taken_, body, parameters_, seen_through, seen_on);
+  Verdict judge(const Ellipsoid& body, const BodyEvidence& evidence) const {
+    return detail::judge(cloud_, grid_, taken_, body, parameters_, evidence);
   }
 
   /// Judge a body quickly, by some of the points of the last fit().

@@ -230,8 +230,8 @@ struct BodyParameters {
     return std::max({tolerance * r, min_tolerance, std::min(kNoise * fit.sensor_noise, kWidest * r)});
   }
 
-  /// Whether the cloud is that of a scan of several views, the fruit of which need not be alike
-  /// (Parameters::scan_split).
+  /// Whether a cloud that is not of a single view (BodyEvidence) is that of a scan of several views, the fruit of which
+  /// need not be alike (Parameters::scan_split).
   bool several_views() const { return alike == 0.0; }
 
   /// Cell size (m) of a grid in which the points about bodies of all expected radii are looked up.

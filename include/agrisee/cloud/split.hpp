@@ -137,7 +137,7 @@ void refit(const PointCloud<S>& cloud, const Grid<S>& grid, const BodyParameters
 constexpr double kShareToWin = 0.06;
 
 /// Whether bodies are judged again after their last fit: in single views, unless masks know better.
-inline bool settled(const SeenOn& seen_on, const MaskEvidence& masks) { return seen_on && !masks.log_odds; }
+inline bool settled(const BodyEvidence& evidence) { return evidence.single_view() && !evidence.masks.log_odds; }
 
 /// The radii among which the bodies of a single view are sought: at least the usual range below the largest, but not
 /// below the usual smallest. Patches of fruit often look smaller than the fruit, and what is smaller than fruit has to
@@ -155,7 +155,7 @@ inline BodyParameters sought_in_single_view(BodyParameters bodies) {
 /// @param sought parameters with which the bodies were found  @param expected those with the radii of fruit
 template <typename S>
 void settle(const PointCloud<S>& cloud, const Grid<S>& grid, const BodyParameters& sought,
-            const BodyParameters& expected, const SeenThrough& seen_through, const SeenOn& seen_on, Split& out) {
+            const BodyParameters& expected, const BodyEvidence& evidence, Split& out) {
   const FreePoints<S> points(cloud, grid, sought);
   const auto falls = [&](FoundBody& f) {
     if (f.by_mask) return false;
@@ -163,7 +163,7 @@ void settle(const PointCloud<S>& cloud, const Grid<S>& grid, const BodyParameter
       ++(out.bodies.*wrong_size(f.fit.body.mean_radius(), expected));
       return true;
     }
-    const Verdict v = points.judge(f.fit.body, seen_through, seen_on);
+    const Verdict v = points.judge(f.fit.body, evidence);
     f.confidence = settled_probability(f.confidence, v, f.fit, sought, f.prior);
     const bool doubtful = f.confidence < sought.min_confidence;
     out.bodies.doubtful += doubtful;
@@ -223,8 +223,8 @@ void extend_labels(Labels& labels, const PointCloud<S>& cloud, const std::vector
 /// @param parameters with the radii that are sought  @param expected those with the radii of fruit
 template <typename S>
 void split_by_bodies(const PointCloud<S>& cloud, const Segments& segments, const StageParameters& stages,
-                     const SplitParameters& parameters, const BodyParameters& expected, const SeenThrough& seen_through,
-                     const MaskEvidence& masks, const SeenOn& seen_on, int threads, Split& out) {
+                     const SplitParameters& parameters, const BodyParameters& expected, const BodyEvidence& evidence,
+                     int threads, Split& out) {
   const BodyParameters& bodies = parameters.bodies;
   std::vector<BodyCandidate> candidates;
   BodyCounts not_proposed;
@@ -233,18 +233,19 @@ void split_by_bodies(const PointCloud<S>& cloud, const Segments& segments, const
       if (std::size_t BodyCounts::*const fault = propose(*sphere, segments.found_by(s + 1), bodies, candidates))
         ++(not_proposed.*fault);
   const Grid<S> grid(cloud, static_cast<S>(bodies.cell()), threads);
-  propose_voted(cloud, cloud, {}, grid, stages, parameters, candidates, static_cast<bool>(seen_on));
-  for (const MaskBody& m : masks.bodies) candidates.push_back({m.fit.body, "mask", nullptr, m.fit, m.log_odds});
-  const bool settles = settled(seen_on, masks);
+  propose_voted(cloud, cloud, {}, grid, stages, parameters, candidates, evidence.single_view());
+  for (const MaskBody& m : evidence.masks.bodies)
+    candidates.push_back({m.fit.body, "mask", nullptr, m.fit, m.log_odds});
+  const bool settles = settled(evidence);
   BodyParameters winners = bodies;
   if (settles) winners.min_confidence *= kShareToWin;
-  out.found = find_bodies_near(cloud, grid, candidates, winners, seen_through, &out.bodies, masks, seen_on);
+  out.found = find_bodies_near(cloud, grid, candidates, winners, evidence, &out.bodies);
   out.bodies.too_small += not_proposed.too_small;
   out.bodies.too_large += not_proposed.too_large;
   out.bodies.inside_out += not_proposed.inside_out;
   out.labels = assign_to_bodies_near(cloud, grid, out.found, bodies);
   refit(cloud, grid, bodies, out);
-  if (settles) settle(cloud, grid, bodies, expected, seen_through, seen_on, out);
+  if (settles) settle(cloud, grid, bodies, expected, evidence, out);
   extend_labels(out.labels, cloud, out.found, out.regions, out.regions_found, bodies);
 
   std::vector<std::size_t> sizes(segments.members.size() + 1, 0);
@@ -260,14 +261,12 @@ void split_by_bodies(const PointCloud<S>& cloud, const Segments& segments, const
 /// Segment a cloud with outward normals into fruit.
 /// @param cloud points (m) with normals
 /// @param parameters see their struct
-/// @param seen_through evidence of free space for the competition, or empty
+/// @param evidence of sight lines and masks; only bodies use it
 /// @param threads the result does not depend on it
-/// @param masks evidence of a detector, or empty; only bodies use it
-/// @param seen_on evidence of the sensor of a single view, or empty; only bodies use it
 /// @throws ParameterError; InputError if the cloud has no normals; Cancelled
 template <typename S>
-Split split(const PointCloud<S>& cloud, const SplitParameters& parameters = {}, const SeenThrough& seen_through = {},
-            int threads = 1, const MaskEvidence& masks = {}, const SeenOn& seen_on = {}) {
+Split split(const PointCloud<S>& cloud, const SplitParameters& parameters = {}, const BodyEvidence& evidence = {},
+            int threads = 1) {
   parameters.check();
   check_lengths(cloud);
   check_input(cloud.normals.size() == cloud.points.size(), "split: the cloud has no normals");
@@ -276,14 +275,13 @@ Split split(const PointCloud<S>& cloud, const SplitParameters& parameters = {}, 
   out.regions.assign(cloud.size(), 0);
   if (cloud.empty()) return out;
   SplitParameters sought = parameters;
-  if (detail::settled(seen_on, masks)) sought.bodies = detail::sought_in_single_view(parameters.bodies);
+  if (detail::settled(evidence)) sought.bodies = detail::sought_in_single_view(parameters.bodies);
   const auto stages = stages_for(parameters.adaptive ? estimate_spacing(cloud) : 0.0, sought);
   if (!stages) return out;
 
   const detail::Segments segments = detail::find_segments(cloud, *stages, threads, out);
   if (parameters.fit_bodies) {
-    detail::split_by_bodies(cloud, segments, *stages, sought, parameters.bodies, seen_through, masks, seen_on, threads,
-                            out);
+    detail::split_by_bodies(cloud, segments, *stages, sought, parameters.bodies, evidence, threads, out);
     return out;
   }
   out.labels = segments.labels;
@@ -301,13 +299,12 @@ Split split(const PointCloud<S>& cloud, const SplitParameters& parameters = {}, 
 /// @param cloud points (m) with normals
 /// @param known bodies found before
 /// @param parameters see their struct
-/// @param seen_through evidence of free space for the competition, or empty
+/// @param evidence of sight lines and masks, of several views
 /// @param fresh one per point, nonzero for new ones; empty: all are new
-/// @param masks evidence of a detector, or empty
 /// @throws ParameterError; InputError if the cloud has no normals; Cancelled
 template <typename S>
 Split track(const PointCloud<S>& cloud, const std::vector<FoundBody>& known, const SplitParameters& parameters = {},
-            const SeenThrough& seen_through = {}, const std::vector<char>& fresh = {}, const MaskEvidence& masks = {}) {
+            const BodyEvidence& evidence = {}, const std::vector<char>& fresh = {}) {
   parameters.check();
   check_lengths(cloud);
   check_input(cloud.normals.size() == cloud.points.size(), "track: the cloud has no normals");
@@ -330,8 +327,9 @@ Split track(const PointCloud<S>& cloud, const std::vector<FoundBody>& known, con
   if (!fresh.empty())
     for (const Index i : off_them) fresh_off_them.push_back(fresh[static_cast<std::size_t>(i)]);
   detail::propose_voted(cloud, select(cloud, off_them), fresh_off_them, grid, *stages, parameters, candidates);
-  for (const MaskBody& m : masks.bodies) candidates.push_back({m.fit.body, "mask", nullptr, m.fit, m.log_odds});
-  out.found = detail::find_bodies_near(cloud, grid, candidates, bodies, seen_through, nullptr, masks, {});
+  for (const MaskBody& m : evidence.masks.bodies)
+    candidates.push_back({m.fit.body, "mask", nullptr, m.fit, m.log_odds});
+  out.found = detail::find_bodies_near(cloud, grid, candidates, bodies, evidence, nullptr);
   out.labels = detail::assign_to_bodies_near(cloud, grid, out.found, bodies);
   return out;
 }
