@@ -26,7 +26,8 @@ Workcell truss_workcell(const Aabb& truss, const Eigen::Vector3d& center) {
   double reach = 0.0;  // distance of the fruit from the axis of the cylinder, on the robot's side
   for (const double x : {truss.min.x(), truss.max.x()}) reach = std::max(reach, std::abs(x - center.x()));
   reach = std::max(reach, center.y() - truss.min.y());
-  const double radius = std::max(0.35, 0.25 + reach);
+  constexpr double kArm = 0.18;  // from the robot's axis to the arm's outside where it starts
+  const double radius = std::max(0.35, std::min(0.25 + reach, center.head<2>().norm() - kArm));
   const double height = std::max(0.9, truss.size().z() + 0.5);
   cell.keep_out.push_back({"platform", Box{{0.0, -0.1, -0.06}, {0.7, 0.7, 0.1}}});
   cell.keep_out.push_back(

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Plants are what they are said to be: fruit that shrink and do not meet, leaves that hide as much as asked, nothing
 // that floats or passes through a fruit, and a scene that can be written and read.
+#include <agrisee/arm/collision.hpp>
 #include <agrisee/geometry/bvh.hpp>
 #include <agrisee/io/ground_truth.hpp>
 #include <agrisee/io/scene.hpp>
+#include <agrisee/plan/arm_reach.hpp>
 #include <agrisee/study/mesh_moments.hpp>
 #include <agrisee/study/plant.hpp>
 #include <agrisee/study/traced_scene.hpp>
@@ -285,6 +287,19 @@ TEST_CASE("two trusses, and objects that are no fruit") {
          joined({{plant.scene.objects.begin() + 3, plant.scene.objects.begin() + 6}}, ObjectClass::fruit).vertices)
       left = std::min(left, double(v.x()));
     CHECK(right < left);
+  }
+}
+
+TEST_CASE("the arm starts outside of what keeps it away from wide plants") {
+  for (const std::uint64_t seed : {1u, 2u, 3u}) {
+    PlantParameters parameters = PlantParameters::of("tomato");
+    parameters.trusses = 2;
+    parameters.foliage = 0.0;
+    parameters.seed = seed;
+    const Workcell cell = make_plant(parameters).workcell;
+    const KeepOut& cluster = cell.keep_out.back();
+    CHECK(std::get<Cylinder>(cluster.shape).radius > 0.35);  // wider than usual
+    CHECK_FALSE(arm::find_collision(cell.start, plan::mount_of(cell)));
   }
 }
 
