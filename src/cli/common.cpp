@@ -52,7 +52,7 @@ CLI::Option* add_common_options(CLI::App& command, CommonOptions& options) {
   command
       .add_option("--radius", options.radius,
                   "smallest,largest expected radius of a fruit (m, the largest at most 20 times the smallest; default "
-                  "0.008,0.06); also sets the parameters that depend on it")
+                  "0.008,0.06); also sets the parameters that depend on the radii")
       ->delimiter(',')
       ->expected(2);
   command.add_option("--seed", options.seed, "seed of all random draws")->check(not_negative())->capture_default_str();
@@ -60,7 +60,7 @@ CLI::Option* add_common_options(CLI::App& command, CommonOptions& options) {
       ->check(CLI::Range(0, 1024))
       ->capture_default_str();
   command.add_flag("--force", options.force, "overwrite an existing result");
-  command.add_flag("--json", options.json, "print the summary and the fruit as JSON; of a list a line each");
+  command.add_flag("--json", options.json, "print the summary and the fruit as JSON; of several inputs, one line each");
   command.add_flag("--quiet", options.quiet, "print neither progress nor the table of fruit");
   command.add_flag("--no-picture", options.no_picture,
                    "do not write truss.png, which takes about half of the time of `process`");

@@ -253,8 +253,7 @@ void add_doctor(CLI::App& app, Run& run) {
   auto scene = std::make_shared<std::string>();
   command->add_option("scene", *scene, "scene file (YAML) of the workcell to check, or a folder with scene.yaml");
   command->footer(
-      "WRONG marks a mistake, with which a scan fails or finds little; the exit code is then 2. NOTE marks what is "
-      "unusual.\n"
+      "WRONG marks a mistake that makes a scan fail or find little (exit code 2). NOTE marks what is unusual.\n"
       "Example:\n  agrisee doctor truss/scene.yaml");
   command->callback([scene, &run] { run = [scene] { return run_doctor(*scene); }; });
 }

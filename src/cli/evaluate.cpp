@@ -220,10 +220,10 @@ void add_evaluate(CLI::App& app, Run& run) {
       ->check(CLI::Range(0, 1024));
   command->add_flag("--json", options->json, "print the metrics as JSON");
   command->footer(
-      "In the table, as is the number of the fruit in the result (0: missed), IoU the overlap of their surfaces, seen\n"
-      "the true share of a fruit's surface near any point (in JSON: scanned), which scan can only estimate, and\n"
-      "recall the share near points of a fruit: of the whole surface, or of the part that the arm can see\n"
-      "(recall_obs).\n"
+      "Columns of the table: id, the true fruit; as, its number in the result (0: missed); IoU, the overlap of the\n"
+      "two surfaces; seen, the share of the true surface near any point (in JSON: scanned), which scan can only\n"
+      "estimate; recall, the share of the true surface near points of a fruit; recall_obs, the same share of the\n"
+      "surface that the arm can see.\n"
       "docs/formats.md explains all metrics.\n"
       "Example:\n  agrisee evaluate truss/scene.yaml result --json");
   command->callback([options, &run] { run = [options] { return run_evaluate(*options); }; });

@@ -76,11 +76,11 @@ std::vector<std::string> run_cells(std::vector<CellJob>& cells, std::vector<Scen
         finished<study::CellRecord>(cells[i].path, cells[i].fingerprint, report::read_cell_record, &replaced);
     if (!cells[i].record) open.push_back(i);
   }
-  const StopMessage message("agrisee: stopped; the same command goes on: cells with a record are not run again");
-  std::cerr << cells.size() << " cells, " << open.size() << " of them to run\n";
+  const StopMessage message("agrisee: stopped; the same command goes on: scans with a record are not run again");
+  std::cerr << cells.size() << " scans, " << open.size() << " of them to run\n";
   if (replaced > 0)
-    std::cerr << "agrisee: " << replaced << " cells have a record of other parameters (--params, --max-views, "
-              << "--scanned-only), of another scene or version; it is replaced\n";
+    std::cerr << "agrisee: " << replaced << " scans have a record of other parameters (--params, --max-views, "
+              << "--scanned-only), of another scene or version; the record is replaced\n";
   const auto start = std::chrono::steady_clock::now();
   std::mutex mutex;
   std::size_t done = 0;
@@ -178,7 +178,7 @@ void add_experiment(CLI::App& app, Run& run) {
   auto options = std::make_shared<ExperimentOptions>();
   command
       ->add_option("-o,--output", options->output,
-                   "folder for the records; cells that have a record there are not run again")
+                   "folder for the records; scans that have a record there are not run again")
       ->required();
   command->add_option("--presets", options->presets, "presets to compare")
       ->delimiter(',')
@@ -192,9 +192,9 @@ void add_experiment(CLI::App& app, Run& run) {
       ->capture_default_str();
   auto* groups = command->add_option(
       "--groups", options->groups,
-      "groups to run instead of all combinations of --presets, --planner and --noise; the report then compares "
-      "groups, without a row per truss: "
-      "PRESET/PLANNER/NOISE, or PRESET/PLANNER/NOISE/free for a free-flying camera instead of the arm");
+      "groups to run instead of all combinations of --presets, --planner and --noise: PRESET/PLANNER/NOISE, or "
+      "PRESET/PLANNER/NOISE/free for a free-flying camera instead of the arm; the report then compares groups, "
+      "without a row per truss");
   groups->delimiter(',');
   for (const char* replaced : {"--presets", "--planner", "--noise"}) groups->excludes(replaced);
   command->add_flag("--scanned-only", options->scanned_only,
@@ -213,7 +213,7 @@ void add_experiment(CLI::App& app, Run& run) {
   command->add_option("--params", options->parameter_file, "YAML file with parameters to change in every preset");
   command->add_option("--max-views", options->max_views, "largest number of views (default: that of the preset)")
       ->check(CLI::Range(1, 10000));
-  command->add_option("--threads", options->threads, "number of cells at a time (0: one per core)")
+  command->add_option("--threads", options->threads, "number of scans at a time (0: one per core)")
       ->check(CLI::Range(0, 1024))
       ->capture_default_str();
   command->add_option("--report", options->report, "Markdown file to write (default: report.md in the folder)");
@@ -222,7 +222,7 @@ void add_experiment(CLI::App& app, Run& run) {
       "  agrisee experiment -o build/experiment\n"
       "  agrisee experiment -o small --scenes 7_1,8_4 --presets default --noise none,rough --trials 1\n"
       "  agrisee experiment -o planners --presets default --planner gain,see,fixed,random,greedy\n"
-      "Cells run in parallel, each on one thread. `agrisee scan DIR/scenes/NAME/scene.yaml --seed TRIAL` repeats one.");
+      "Scans run in parallel, each on one thread. `agrisee scan DIR/scenes/NAME/scene.yaml --seed TRIAL` repeats one.");
   command->callback([options, &run] { run = [options] { return run_experiment(*options); }; });
 }
 

@@ -178,8 +178,7 @@ int run_export(const ExportOptions& options) {
 
 void add_export_views(CLI::App& app, Run& run) {
   auto* command = app.add_subcommand(
-      "export-views",
-      "write the frames of a simulated scan as recorded views, with the colors and masks that it simulated");
+      "export-views", "write the frames of a simulated scan as recorded views, with the simulated colors and masks");
   auto options = std::make_shared<ExportOptions>();
   command->add_option("result", options->result, "result folder of a scan")->required();
   command->add_option("-o,--output", options->output, "folder for views.yaml and the images")->required();

@@ -296,7 +296,7 @@ int run_limit(const LimitOptions& options) {
 
 void add_limit(CLI::App& app, Run& run) {
   auto* command = app.add_subcommand(
-      "limit", "compute how much of the fruit in a scene the arm can see at all, and in how few views");
+      "limit", "compute how much of the fruit in a scene the arm can see at best, and in how few views");
   auto options = std::make_shared<LimitOptions>();
   command->add_option("scene", options->scene, "scene file (YAML), or a folder with scene.yaml")->required();
   command->add_option("-o,--output", options->output, "folder for the result")->required();
@@ -319,10 +319,9 @@ void add_limit(CLI::App& app, Run& run) {
   command->footer(
       "Example:\n"
       "  agrisee limit truss/scene.yaml -o limit --base-search\n"
-      "The folder then holds limit.json; observable.ply, the fruit's surface, colored by how many of the poses "
-      "within\n"
-      "reach see it (gray-red: none); and views.csv, the views of a greedy planner that knows the truth (points_in:\n"
-      "samples of the surface that a view sees, points_new: samples that it newly covers).");
+      "The folder then holds limit.json; observable.ply, the surface of the fruit, colored by the number of poses in\n"
+      "reach that see it (gray-red: none); and views.csv, the views of a greedy planner that knows the truth\n"
+      "(points_in: samples of the surface that a view sees; points_new: samples that no earlier view saw).");
   command->callback([options, &run] { run = [options] { return run_limit(*options); }; });
 }
 

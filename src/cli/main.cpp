@@ -25,9 +25,8 @@ int main(int argc, char** argv) {
       "  agrisee limit truss/scene.yaml -o limit --base-search\n"
       "  agrisee process cloud_raw.ply -o result --views views.csv\n"
       "  agrisee process recorded/views.yaml -o result\n"
-      "Exit codes: 0 success; 1 bad usage: the command line is wrong, whatever its inputs contain; 2 bad input: an\n"
-      "input is missing or damaged, or contradicts the command line (such as --viewpoint); 3 a scan failed midway, or\n"
-      "could not take any view.");
+      "Exit codes: 0 success; 1 bad command line, whatever the inputs contain; 2 bad input: it is missing or damaged,\n"
+      "or contradicts --viewpoint or itself; 3 a scan failed midway, or could not take any view.");
   cli::Run run;
   cli::add_scan(app, run);
   cli::add_process(app, run);

@@ -86,8 +86,8 @@ void add_make_plant(CLI::App& app, Run& run) {
       ->capture_default_str();
   command
       ->add_option("--radius", options->radius,
-                   "half width of the smallest,largest fruit, the last and the first of a truss (m, from 0.008 to "
-                   "0.06; default: usual for the kind)")
+                   "half width of the smallest,largest fruit, which are the last and the first of a truss (m, from "
+                   "0.008 to 0.06; default: usual for the kind)")
       ->delimiter(',')
       ->expected(2);
   command->add_option("--foliage", plant.foliage, "share of the fruit surface, seen from the front, that leaves hide")

@@ -83,7 +83,7 @@ void add_merge(CLI::App& app, Run& run) {
   auto options = std::make_shared<MergeOptions>();
   command
       ->add_option("folder", options->folders,
-                   "output folders of lists of inputs; those of shards hold summary-I-of-N.csv")
+                   "output folders of scan or process with several inputs; those of shards hold summary-I-of-N.csv")
       ->required();
   add_season_options(*command, options->season);
   command
@@ -91,7 +91,7 @@ void add_merge(CLI::App& app, Run& run) {
                  "only print the numbers of the shards to run again, separated by commas")
       ->excludes("--db");
   command->footer(
-      "Without --db it only joins the summaries of shards; a list without --shard has written its summary itself.\n"
+      "Without --db, merge only joins the summaries of shards. A list that ran without --shard has its summary.\n"
       "Examples:\n"
       "  agrisee merge results\n"
       "  left=$(agrisee merge results --unfinished); [ -z \"$left\" ] || sbatch --array=$left season.sh\n"

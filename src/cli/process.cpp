@@ -206,17 +206,17 @@ void add_process(CLI::App& app, Run& run) {
   command->add_option(
       "input", options->clouds,
       "cloud (PLY, PCD, NPY, XYZ, CSV; metres; - for standard input); or views.yaml (or its folder), which lists "
-      "depth images and camera poses; or a recording of ROS 2 (MCAP); with several, or a pattern, each "
-      "gets its own folder in "
-      "the output folder");
+      "depth images and camera poses; or a recording of ROS 2 (MCAP); of several inputs, or a pattern, each gets its "
+      "own folder in the output folder");
   add_common_options(*command, *options)->required();
   command
       ->add_option("--viewpoint", options->viewpoint,
                    "position x,y,z of the sensor (m) from which all points were seen; for a cloud of a single view")
       ->delimiter(',')
       ->expected(3);
-  command->add_flag("--turn-normals", options->turn_normals,
-                    "accept --viewpoint even where normals disagree, and turn those round");
+  command->add_flag(
+      "--turn-normals", options->turn_normals,
+      "accept --viewpoint even if points or normals contradict it, and turn normals that face away from it");
   command
       ->add_option("--views", options->views,
                    "views.csv with the sensor pose of each view, for points with a property 'view'")
@@ -235,8 +235,8 @@ void add_process(CLI::App& app, Run& run) {
   add_shard_option(*command, options->shard);
   command->footer(
       "Normals in the file are kept; those that face away from their sensor are turned. Missing normals are\n"
-      "estimated; without viewpoint or views they are turned so that neighbors agree. --viewpoint is refused if the\n"
-      "points come from several views, if more than 1 % of the normals face away from it, if more than 3 % of the\n"
+      "estimated; without --viewpoint or --views they are turned so that neighbors agree. --viewpoint is refused if\n"
+      "the points come from several views, if more than 1 % of the normals face away from it, if more than 3 % of the\n"
       "points are hidden behind others, or if it lies on the hollow side of curved surfaces.\n"
       "Examples:\n"
       "  agrisee process cloud.ply -o result\n"

@@ -257,10 +257,9 @@ int run_scans(const ScanOptions& options) {
 void add_scan(CLI::App& app, Run& run) {
   auto* command = app.add_subcommand("scan", "scan a scene with a simulated sensor and arm, and locate its fruit");
   auto options = std::make_shared<ScanOptions>();
-  auto* scene = command->add_option(
-      "scene", options->scenes,
-      "scene file (YAML), or a folder with scene.yaml; with several, or a pattern, each gets its own folder in the "
-      "output folder");
+  auto* scene = command->add_option("scene", options->scenes,
+                                    "scene file (YAML), or a folder with scene.yaml; of several scenes, or a pattern, "
+                                    "each gets its own folder in the output folder");
   auto* output = add_common_options(*command, *options);
   command
       ->add_option(
@@ -279,7 +278,7 @@ void add_scan(CLI::App& app, Run& run) {
   command->add_option("--max-views", options->max_views, "largest number of views (default: that of the preset)")
       ->check(CLI::Range(1, 10000));
   command->add_flag("--live", options->live,
-                    "write report.html after every view; a browser that shows it then follows the scan");
+                    "write report.html after every view; a browser that shows the page follows the scan");
   command->add_option("--mcap", options->mcap,
                       "also write the scan to this MCAP file, for Foxglove and ROS 2; for a single scene");
   add_shard_option(*command, options->shard);

@@ -298,17 +298,17 @@ PY
     "$agrisee" make-truss --total 4 --hidden 1 --seed 3 -o t4 >/dev/null || fail make-truss
     small_sensor t3/scene.yaml && small_sensor t4/scene.yaml
     run() { expect 0 "$1" experiment -o e --presets default,paper --scenes t3/scene.yaml,t4/scene.yaml --noise l515 --trials 1 --max-views 3 "${@:2}"; }
-    run '4 cells, 4 of them to run' --threads 1
+    run '4 scans, 4 of them to run' --threads 1
     [ "$(tail -n +2 e/report/scanning.csv | wc -l)" = 4 ] || fail "not a row a cell"
-    cp -r e first && run '4 cells, 0 of them to run'
+    cp -r e first && run '4 scans, 0 of them to run'
     grep -q 'replaced' err.txt && fail "nothing is replaced"
-    cp -r e few && expect 0 '^agrisee: 2 cells have a record of other parameters \(--params, --max-views, .*replaced' experiment -o few \
+    cp -r e few && expect 0 '^agrisee: 2 scans have a record of other parameters \(--params, --max-views, .*replaced' experiment -o few \
       --presets default --scenes t3/scene.yaml,t4/scene.yaml --noise l515 --trials 1 --max-views 2
     for f in report.md report/scanning.csv report/segmentation.csv report/scanning.svg; do
       cmp "e/$f" "first/$f" || fail "$f did not come back as it was"
     done
-    echo broken >"$(ls -d e/cells/*default*l515*1.json | head -1)" && run '4 cells, 1 of them to run'
-    expect 0 '4 cells, 2 of them to run' experiment -o e --presets default --planner gain,see --scenes t3/scene.yaml,t4/scene.yaml \
+    echo broken >"$(ls -d e/cells/*default*l515*1.json | head -1)" && run '4 scans, 1 of them to run'
+    expect 0 '4 scans, 2 of them to run' experiment -o e --presets default --planner gain,see --scenes t3/scene.yaml,t4/scene.yaml \
       --noise l515 --trials 1 --max-views 3
     expect 1 'noise' experiment -o x --noise loud && expect 1 '' experiment -o x --presets mine
     expect 2 'missing.yaml' experiment -o x --scenes missing.yaml && expect 1 '7_9' experiment -o x --scenes 7_9
