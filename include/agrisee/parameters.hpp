@@ -30,7 +30,7 @@ struct Parameters {
   std::string planner = "gain";    ///< one of kPlannerNames: gain, see (SEE++), fixed (even directions) or random
   int max_views = 30;              ///< largest number of views, for every planner
   bool fuse_surfaces = true;  ///< smooth frames and fuse them as surfels; off: merge raw points, keeping the first ones
-  bool register_views = true;      ///< register each view to the map (ICP) before it is fused
+  bool register_views = true;      ///< register each view to the map (ICP), discard views that contradict the others
   bool filter_each_view = false;   ///< remove outliers after every view, not only at the end; for raw points only
   bool adaptive_normals = true;    ///< derive the radius of the normals from the cloud's spacing
   double normal_reach = 3.0;       ///< adaptive: that radius, in spacings of the cloud

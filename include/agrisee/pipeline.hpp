@@ -73,8 +73,9 @@ class Pipeline {
   /// A frame with colors, or that a detector has looked at, is kept for the result: move it in, or share it, to avoid
   /// a copy. The planner uses the detections too. A frame without returns inside the scan volume counts as a view that
   /// showed nothing. A view is marked as discarded if its frame repeats the last one bit for bit (the camera is stuck),
-  /// or if it contradicts the other views (fuse/fused_views.hpp), because its pose must then be wrong. If the built-in
-  /// arm model puts the sensor more than 20 mm or 5 degrees away from the pose, `warnings` say so.
+  /// or, with `fuse_surfaces` and `register_views`, if it contradicts the other views (fuse/fused_views.hpp), because
+  /// its pose must then be wrong. If the built-in arm model puts the sensor more than 20 mm or 5 degrees away from the
+  /// pose, `warnings` say so.
   /// @return the view as recorded; the reference is valid until the next observe()
   /// @throws InputError for a frame whose size disagrees with its intrinsics, whose depths cannot be in metres
   ///   (sensor::check_depth_unit) or whose instances cannot be masks (sensor::check_masks), a pose that is not rigid

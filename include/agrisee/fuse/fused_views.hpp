@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// @file
-/// Fuses the surfaces of a scan's views into one, and discards views that contradict the rest.
+/// Fuses the surfaces of a scan's views into one and, if they are registered (`register_views`), discards views that
+/// contradict the rest.
 ///
 /// A view whose frame does not belong to its pose puts surface where other views looked through, and looks through
 /// surface that other views saw (fuse/contradiction.hpp). When more of the discarded views agree with a new one, itself

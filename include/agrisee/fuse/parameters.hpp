@@ -109,7 +109,7 @@ struct FusionParameters {
   SurfelParameters surfels;                       ///< how the surfaces are fused
   IcpParameters icp = IcpParameters::of_views();  ///< how each view is registered
   FreeSpaceParameters free_space;                 ///< when a sight line is evidence of free space
-  bool register_views = true;                     ///< register each view to the map (ICP) before it is fused
+  bool register_views = true;  ///< register each view to the map (ICP), discard views that contradict the others
 };
 
 }  // namespace agrisee::fuse
