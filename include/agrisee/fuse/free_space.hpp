@@ -31,8 +31,8 @@ inline Sight sight(const sensor::SurfaceImage& view, const Eigen::Vector3d& p, c
 
 /// True if all sight lines of `view` around a surface point pass through the surface: those of the 3 x 3 cells about
 /// it. At a surface's border, where cells see both sides, nothing is refuted. Slanted surface returns little light, so
-/// a sight line without return counts only if the view would see the surface at less than `max_incidence`. Defined in
-/// `agrisee::agrisee`.
+/// a sight line without return counts only if the view would see the surface at less than 70 degrees of incidence, from
+/// either side. Defined in `agrisee::agrisee`.
 /// @param p the point (m, world)
 /// @param normal of the surface there (unit, world)
 bool refutes(const sensor::SurfaceImage& view, const Eigen::Vector3d& p, const Eigen::Vector3d& normal,
