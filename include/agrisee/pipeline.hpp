@@ -109,7 +109,7 @@ class Pipeline {
   /// Why next_view() last returned nothing.
   StopReason stop_reason() const { return stop_reason_; }
   /// The planner's estimate, at the last next_view(), of how much of the fruit's surface has been seen and how much the
-  /// arm can see at all; empty for planners that do not estimate surfaces.
+  /// arm can see at all; empty for planners that do not estimate surfaces, and until points are seen.
   std::optional<Completeness> completeness() const { return planner_->completeness(); }
   /// The views that the last next_view() chose from, best first; empty for planners that do not compare views.
   std::vector<plan::ReachableView> candidates() const { return planner_->candidates(); }

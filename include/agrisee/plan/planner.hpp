@@ -76,7 +76,7 @@ class Planner {
   virtual StopReason stop_reason() const = 0;
 
   /// How complete the scan is, as of the last call of `next`. Nothing when the planner has no model of the fruit's
-  /// surface, or has not found any fruit yet.
+  /// surface, or has not rated any view by it yet, as before points are seen. Without fruit, the shares are 0.
   virtual std::optional<Completeness> completeness() const { return std::nullopt; }
 
   /// The views that the last call of `next` compared and found worth taking, best first. Empty when the planner does
