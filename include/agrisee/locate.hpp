@@ -35,7 +35,8 @@ Ellipsoid ellipsoid_of(const Body& body);
 /// @param cluster_origin the origin of the cluster frame {R} in world (m)
 /// @param parameters of all stages
 /// @param labels receives one label per point: the fruit's id, or 0
-/// @param is_free evidence of free space, or empty; it bounds closed surfaces where nothing was seen of them
+/// @param is_free evidence of free space, or empty; it bounds closed surfaces where nothing was seen of them, and
+///   only if it is given, bodies that are parts of something larger are left out
 /// @param least_seen a body above half of the largest expected radius is no fruit if a smaller share (0..1) of its
 ///   surface was seen
 /// @param counts if not null, a body that is no fruit moves from `taken` to the reason: `little_seen`, or `too_flat` if

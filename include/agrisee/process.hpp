@@ -33,7 +33,8 @@ struct CloudOrigin {
   std::optional<Eigen::Vector3d> cluster_origin;
   /// The box that the cloud was cut to (m); what goes on beyond it is no fruit (cloud/cut_bodies.hpp). Empty: unknown.
   std::optional<Aabb> volume;
-  /// Whether sight lines of the views passed through a place; empty: unknown. It bounds closed surfaces (locate.hpp).
+  /// Whether sight lines of the views passed through a place; empty: unknown. It bounds closed surfaces, and only with
+  /// it bodies that are parts of something larger are left out (locate.hpp).
   IsFree is_free = {};
 };
 
@@ -113,7 +114,7 @@ ScanResult process(const C& cloud, const Parameters& parameters = {}, const Clou
 /// unchanged. Points that are not finite are dropped.
 /// @param cloud points (m); normals and views where it has them
 /// @param parameters only `surfels.separation` is used
-/// @throws Cancelled
+/// @throws InputError for arrays of different lengths (check_lengths); Cancelled
 Cloud thinned(const Cloud& cloud, const Parameters& parameters);
 
 }  // namespace agrisee
