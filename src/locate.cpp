@@ -108,7 +108,7 @@ Fruit fruit_of(const Cloud& cloud, const Labels& labels, const Indices& points, 
         by_surface ? std::vector<BodyAxis>{{surface->axis, surface->axis_variance, 0.0}} : body_axes(found.fit);
     const Eigen::Vector3d stem = stem_direction(cloud, labels, ellipsoid_of(*fruit.body), parameters.axis);
     const GrowthAxis axis = growth_axis(stem, axes, parameters.axis);
-    const double near = 0.2 * (fruit.body ? fruit.body->radii.mean() : parameters.split.bodies.radius_min);
+    const double near = 0.2 * fruit.body->radii.mean();
     fruit.growth_axis_error = std::sqrt(axis.variance);
     fruit.orientation = frame_from_z_and_x(axis.direction, densest_point(cloud, points, near) - c.mean);
   } else {
