@@ -87,7 +87,7 @@ void join(std::vector<Proposal>& known, std::size_t before, std::vector<Proposal
 }
 
 /// The radius of the bodies whose outlines are seen, and how far they differ; empty where they are few.
-std::optional<ExpectedRadius> usual_radius(const std::vector<Proposal>& proposals) {
+std::optional<SizePrior> usual_radius(const std::vector<Proposal>& proposals) {
   constexpr double kSeen = 0.6, kLeastSpread = 0.08;
   constexpr std::size_t kFew = 5;
   std::vector<double> radii;
@@ -96,7 +96,7 @@ std::optional<ExpectedRadius> usual_radius(const std::vector<Proposal>& proposal
   if (radii.size() < kFew) return std::nullopt;
   const double middle = median(radii);
   for (double& r : radii) r = std::abs(std::log(r / middle));
-  return ExpectedRadius{middle, std::max(kLeastSpread, 1.4826 * median(radii))};
+  return SizePrior{middle, std::max(kLeastSpread, 1.4826 * median(radii))};
 }
 
 /// How far an instance speaks for a fruit: +-trust ln(p / (1 - p)) of its score, limited by `max_score`.

@@ -83,7 +83,7 @@ void add_front(const Silhouette& s, const Ellipsoid& body, double size, Sums& su
 }
 
 /// Add that the harmonic mean of the semi-axes is expected to be a certain radius.
-void add_expected(const ExpectedRadius& expected, const Ellipsoid& body, double size, Sums& sums) {
+void add_expected(const SizePrior& expected, const Ellipsoid& body, double size, Sums& sums) {
   const double inverse = size / expected.radius, sigma = expected.spread * inverse;
   Vector9 derivatives = Vector9::Zero();
   derivatives.segment<3>(3).setConstant(1.0 / 3.0);
@@ -103,7 +103,7 @@ void add_shape(const Ellipsoid& body, double size, double shape_prior, Sums& sum
 }  // namespace
 
 std::optional<EllipsoidFit> fit_silhouettes(const std::vector<Silhouette>& outlines, const Ellipsoid& start,
-                                            const std::optional<ExpectedRadius>& expected, double shape_prior) {
+                                            const std::optional<SizePrior>& expected, double shape_prior) {
   check_input(!outlines.empty(), "fit_silhouettes: there is no outline");
   constexpr int kIterations = 12;
   EllipsoidFit fit;

@@ -85,7 +85,7 @@ TEST_CASE("an ellipsoid is fitted to its outline") {
   CHECK(axes[0] == Approx(0.040).margin(0.001));
   CHECK(axes[2] == Approx(0.032).margin(0.001));
   const auto drawn =
-      fuse::fit_silhouettes({outline}, Ellipsoid(Sphere{body.center, 0.036}), fuse::ExpectedRadius{0.04, 1e-4}, 0.3);
+      fuse::fit_silhouettes({outline}, Ellipsoid(Sphere{body.center, 0.036}), SizePrior{0.04, 1e-4}, 0.3);
   REQUIRE(drawn);
   CHECK(drawn->body.mean_radius() > fit->body.mean_radius() + 0.002);
 }
@@ -157,8 +157,8 @@ TEST_CASE("rays farther off than three standard deviations do not count") {
 
 TEST_CASE("an outline without rays changes nothing") {
   const fuse::Silhouette outline = outline_of_ball(kBall, kSensor, 0.0005);
-  const auto fit = fuse::fit_silhouettes({outline}, Ellipsoid(kBall), fuse::ExpectedRadius{0.04, 0.1});
-  const auto both = fuse::fit_silhouettes({outline, {}}, Ellipsoid(kBall), fuse::ExpectedRadius{0.04, 0.1});
+  const auto fit = fuse::fit_silhouettes({outline}, Ellipsoid(kBall), SizePrior{0.04, 0.1});
+  const auto both = fuse::fit_silhouettes({outline, {}}, Ellipsoid(kBall), SizePrior{0.04, 0.1});
   REQUIRE(fit);
   REQUIRE(both);
   CHECK(same(*both, *fit));
@@ -249,7 +249,7 @@ TEST_CASE("without a front the expected radius says how far away a body is") {
   outline.angle_error = 0.02;
   for (const double start : {0.03, 0.04, 0.05}) {
     const Sphere first{sensor + Eigen::Vector3d(0.0, 0.0, start / 0.4), start};
-    const auto fit = fuse::fit_silhouettes({outline}, Ellipsoid(first), fuse::ExpectedRadius{0.04, 0.05}, kRigid);
+    const auto fit = fuse::fit_silhouettes({outline}, Ellipsoid(first), SizePrior{0.04, 0.05}, kRigid);
     REQUIRE(fit);
     CHECK((fit->body.center - ball.center).norm() < 1e-4);
     CHECK(fit->body.mean_radius() == Approx(0.04).epsilon(0.001));
@@ -261,8 +261,7 @@ TEST_CASE("without a front the expected radius says how far away a body is") {
   // A front that says 0.04 m, and an expected radius of 0.042 m that is as sure.
   outline.front = {sensor + Eigen::Vector3d(0.0, 0.0, 0.06)};
   const double by_front = std::sqrt(0.0005 * 0.0005 + 0.4 * 0.4 * 0.0004 * 0.0004) / (1.0 - 0.4);
-  const auto fit =
-      fuse::fit_silhouettes({outline}, Ellipsoid(ball), fuse::ExpectedRadius{0.042, by_front / 0.042}, kRigid);
+  const auto fit = fuse::fit_silhouettes({outline}, Ellipsoid(ball), SizePrior{0.042, by_front / 0.042}, kRigid);
   REQUIRE(fit);
   CHECK(fit->body.mean_radius() == Approx(0.041).margin(0.00015));
 }

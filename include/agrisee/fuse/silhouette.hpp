@@ -21,12 +21,6 @@ struct Silhouette {
   std::vector<Eigen::Vector3d> front;                ///< points (m), most of which lie on the front
 };
 
-/// The radius that is expected before the fit.
-struct ExpectedRadius {
-  double radius = 0.0;  ///< m
-  double spread = 0.0;  ///< standard deviation, relative
-};
-
 /// Fit an ellipsoid by Gauss-Newton with Tukey's biweight, like fit_ellipsoid. A sight line along the outline touches
 /// the body, so its point that is nearest in the body's metric lies on the surface. The rays of one outline count as 16
 /// independent ones, fewer if part of it is hidden. Of the front only the mean distance from the surface is used, with
@@ -38,6 +32,6 @@ struct ExpectedRadius {
 /// @param shape_prior standard deviation of the semi-axes from those of a sphere, relative
 /// @return empty if the fit degenerates; `rms` is of the rays' distances from the surface
 std::optional<EllipsoidFit> fit_silhouettes(const std::vector<Silhouette>& outlines, const Ellipsoid& start,
-                                            const std::optional<ExpectedRadius>& expected, double shape_prior = 0.06);
+                                            const std::optional<SizePrior>& expected, double shape_prior = 0.06);
 
 }  // namespace agrisee::fuse
