@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // By what bodies compete, and who gets a point.
 #include <agrisee/cloud/split.hpp>
+#include <agrisee/core/random.hpp>
 
 #include "catch.hpp"
 #include "spheres.hpp"
@@ -210,6 +211,32 @@ TEST_CASE("each candidate that is no fruit is counted by what speaks against it"
   CHECK(counts({ball(kCenter, 0.031), "test"}, p).too_small == 1);
   p.radius_min = 0.01, p.radius_max = 0.0255;
   CHECK(counts({ball(kCenter, 0.029), "test"}, p).too_large == 1);
+}
+
+TEST_CASE("a scrap that the sizes of the fruit speak against is counted") {
+  Cloud fruit;
+  std::vector<BodyCandidate> candidates;
+  const auto front = [](double least) { return [least](const Eigen::Vector3d& d) { return d.z() > least; }; };
+  for (int i = 0; i < 6; ++i) {
+    const Sphere sphere{{0.12 * i, 0.0, 0.0}, 0.045};
+    test::add_sphere(fruit, sphere, 0.002, front(0.0));
+    candidates.push_back({Ellipsoid(sphere), "fruit"});
+  }
+  const Sphere scrap{{0.0, 0.3, 0.0}, 0.010};
+  candidates.push_back({Ellipsoid(scrap), "scrap"});
+  for (std::uint64_t seed = 0; seed < 40; ++seed) {  // some are doubtful fruit until the sizes are known
+    Cloud cloud = fruit;
+    test::add_sphere(cloud, scrap, 0.002, front(0.5));
+    Rng rng(seed);
+    for (std::size_t i = fruit.size(); i < cloud.size(); ++i) {
+      const Eigen::Vector3d tilt(rng.normal(), rng.normal(), rng.normal());
+      cloud.points[i] += 0.0012f * float(rng.normal()) * cloud.normals[i];
+      cloud.normals[i] = (cloud.normals[i] + 0.3f * tilt.cast<float>()).normalized();
+    }
+    BodyCounts counts;
+    find_bodies(cloud, candidates, {}, {}, &counts);
+    CHECK(counts.taken + counts.rejected() == 7);
+  }
 }
 
 TEST_CASE("the body with the largest surface seen wins first") {

@@ -90,7 +90,8 @@ class Competition {
     for (Entry& e : entries_) {
       throw_if_cancelled();
       e.prior = prior_of(e.fit.body);
-      rate(e);  // the verdict of when nothing was taken still holds
+      // The verdict of when nothing was taken still holds.
+      if (std::size_t BodyCounts::*const fault = rate(e)) ++(counts_.*fault);
     }
     decide(found);
     constexpr double kLikely = 0.5;                                 // a fruit, rather than not
