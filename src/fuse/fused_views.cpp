@@ -269,7 +269,8 @@ void FusedViews::start_again(const std::vector<std::size_t>& views, Change& chan
   refuting_.clear();
   measured_.clear();
   for (std::size_t v = 0; v < views_.size(); ++v) {
-    views_[v].discarded |= views_[v].points_in > 0;
+    if (!views_[v].discarded && views_[v].points_in == 0) continue;  // of empty space, which contradicts no map
+    views_[v].discarded = true;
     if (!images_[v].depth.empty()) seen_.at(v).depth = std::move(images_[v].depth);
     images_[v] = {};
     images_[v].world_T_optical = views_[v].reported;

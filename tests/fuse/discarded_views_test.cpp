@@ -164,6 +164,8 @@ TEST_CASE("views that saw nothing and views that were skipped have no say") {
   CHECK(discarded(map) == std::vector<bool>{false, true, false, true});
   see(map, 3);  // two against one
   CHECK(discarded(map) == std::vector<bool>{false, true, true, false, false});
+  CHECK_FALSE(map.images()[0].depth.empty());  // it still shows what is empty
+  CHECK(map.images()[2].depth.empty());
 }
 
 TEST_CASE("views that share no surface do not agree") {
