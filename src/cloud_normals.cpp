@@ -105,11 +105,11 @@ Indices keep_given_normals(Cloud& cloud, const CloudOrigin& origin) {
 
 /// Estimate the normals that a cloud lacks. Where a point's sensor is not known, its normal takes the side of the
 /// nearest normal that came with the cloud.
-/// @param noise as of estimated_normals; zeros if half of the normals, or more, came with the cloud
+/// @param noise as of estimated_normals; zeros if more than half of the normals came with the cloud
 void complete_normals(Cloud& cloud, const Parameters& parameters, const CloudOrigin& origin, CloudNoise& noise,
                       int threads) {
   noise = {};
-  const Indices known = keep_given_normals(cloud, origin);
+  const Indices known = keep_given_normals(cloud, origin.check_normals ? origin : CloudOrigin{});
   if (known.size() == cloud.size()) return;
   const Normals estimated = estimated_normals(cloud, parameters, origin, noise, threads);
   if (2 * known.size() > cloud.size()) noise = {};  // a few estimates say little about the rest
@@ -144,8 +144,14 @@ CloudNoise provide_normals(Cloud& cloud, const Parameters& parameters, const Clo
   if (cloud.normals.empty())
     cloud.normals = estimated_normals(cloud, parameters, origin, noise, threads);
   else
-    complete_normals(cloud, parameters, origin.check_normals ? origin : CloudOrigin{}, noise, threads);
+    complete_normals(cloud, parameters, origin, noise, threads);
   return noise;
+}
+
+bool has_normals(const Cloud& cloud) {
+  for (std::size_t i = 0; i < cloud.size(); ++i)
+    if (has_normal(cloud, i)) return true;
+  return false;
 }
 
 std::size_t normals_facing_away(const Cloud& cloud, const CloudOrigin& origin) {

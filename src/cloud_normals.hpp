@@ -20,10 +20,13 @@ double noise_within(const Cloud& cloud, double radius, const BodyParameters& bod
 /// 0 if `adaptive_normals` is off.
 double point_noise(const Cloud& cloud, const Parameters& parameters);
 
+/// Whether any point came with a normal. Normals that are zero or not finite are none.
+bool has_normals(const Cloud& cloud);
+
 /// Give every point of a cloud a normal: turned to where the point was seen from; where that is not known, so that
 /// neighbors agree.
 /// @param origin where the points were seen from, as check_origin allows
-/// @return the cloud's noise; zeros if half of the normals, or more, came with the cloud, or if `adaptive_normals` is
+/// @return the cloud's noise; zeros if more than half of the normals came with the cloud, or if `adaptive_normals` is
 ///   off
 CloudNoise provide_normals(Cloud& cloud, const Parameters& parameters, const CloudOrigin& origin, int threads);
 

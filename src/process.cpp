@@ -134,7 +134,7 @@ ScanResult process(Cloud&& cloud, const Parameters& parameters, const CloudOrigi
         [&] { result.cloud = select(result.raw, remove_statistical_outliers(result.raw, parameters.sor, threads)); });
 
   // Split: region growing, DBSCAN on the residual, bodies that compete for the points.
-  const bool sides_guessed = result.cloud.normals.empty() && is_unknown(origin);
+  const bool sides_guessed = is_unknown(origin) && !has_normals(result.cloud);
   const CloudNoise noise = timed(t.normals, [&] { return provide_normals(result.cloud, parameters, origin, threads); });
   timed(t.filter, [&] {
     check_side(result.cloud, parameters, origin, result.warnings);
@@ -154,7 +154,7 @@ ScanResult process(Cloud&& cloud, const Parameters& parameters, const CloudOrigi
 
   // Locate: centroids, pose frames, fitted bodies.
   constexpr double kLeastSeen = 0.25;  // of 7,000 large fruit in scans of several views the least was 0.36
-  const double least_seen = is_several_views(origin) ? kLeastSeen : 0.0;
+  const double least_seen = is_several_views(result.raw, origin) ? kLeastSeen : 0.0;
   timed(t.locate, [&] {
     result.fruits = locate(result.cloud, found, result.cluster_origin, fitted, result.labels, origin.is_free,
                            least_seen, parameters.split.fit_bodies ? &result.bodies : nullptr);

@@ -350,6 +350,30 @@ TEST_CASE("normals that are missing are estimated on their neighbors' side") {
     }
 }
 
+TEST_CASE("normals that are missing are turned to the sensor, whether others are checked or not") {
+  const Eigen::Vector3d eye(0.0, 0.0, 0.5), middle(0.0, 0.0, 0.06);
+  Cloud bowl;  // hollow towards the eye, so that neighbors would turn its normals outwards
+  test::add_sphere(bowl, {middle, 0.06}, 0.0025, [](const Eigen::Vector3d& d) { return d.z() < -0.3; });
+  bowl.normals.assign(bowl.size(), Eigen::Vector3f::Zero());
+  Cloud beside = bowl;  // with normals of its own
+  for (int i = 0; i < 1600; ++i) {
+    beside.points.emplace_back(0.4f + 0.0025f * float(i % 40), 0.0025f * float(i / 40), 0.0f);
+    beside.normals.push_back(Eigen::Vector3f::UnitZ());
+  }
+  CloudOrigin origin;
+  origin.viewpoint = eye;
+  origin.trust_viewpoint = true;
+  for (const bool check : {false, true}) {
+    origin.check_normals = check;
+    for (const Cloud* c : {&bowl, &beside}) {
+      const Cloud completed = process(*c, all_points(), origin).cloud;
+      REQUIRE(completed.size() == c->size());
+      for (std::size_t i = 0; i < completed.size(); ++i)
+        CHECK(completed.normals[i].dot(eye.cast<float>() - completed.points[i]) > 0.0f);
+    }
+  }
+}
+
 TEST_CASE("fruit of different sizes in a cloud of merged views are measured each for itself") {
   Rng rng(11);
   Cloud cloud;
@@ -385,6 +409,8 @@ TEST_CASE("where the side of the normals is a guess, only sure bodies are fruit"
     bare.points = cloud.points;
     const ScanResult known = process(cloud), guessed = process(bare);
     for (const Fruit& f : guessed.fruits) CHECK(f.body->confidence >= 0.8);
+    bare.normals.assign(bare.size(), Eigen::Vector3f::Zero());  // none either
+    for (const Fruit& f : process(bare).fruits) CHECK(f.body->confidence >= 0.8);
     for (const Fruit& f : known.fruits) unsure += f.body->confidence < 0.8;
   }
   CHECK(unsure > 0);  // so 0.8 matters
@@ -404,6 +430,14 @@ TEST_CASE("of a large fruit several views see more than a little") {
   const ScanResult seen = process(cloud, {}, origin);
   CHECK(seen.fruits.size() == 1);
   CHECK(seen.bodies.taken == 1);
+  // Discarded views show nothing.
+  const Eigen::Vector3d eye = *origin.viewpoint;
+  origin.viewpoint.reset();
+  origin.sensors.assign(3, eye);
+  cloud.views.assign(cloud.size(), 0);
+  CHECK(process(cloud, {}, origin).fruits.size() == 1);
+  for (std::size_t i = 0; i < cloud.size(); ++i) cloud.views[i] = int(i % 3);
+  CHECK(process(cloud, {}, origin).fruits.empty());
 }
 
 TEST_CASE("a cloud's own noise widens its neighborhoods") {
