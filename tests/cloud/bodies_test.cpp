@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <agrisee/cloud/split.hpp>
+#include <agrisee/geometry/spiral.hpp>
+
+#include <algorithm>
 
 #include "catch.hpp"
 #include "cloud/cloud_cases.hpp"
@@ -343,4 +346,29 @@ TEST_CASE("masks change how far a body of points is believed") {
   const double odds = std::log(alone / (1.0 - alone));
   CHECK(confidence(-3.0) == Approx(1.0 / (1.0 + std::exp(3.0 - odds))).epsilon(1e-6));
   CHECK(confidence(2.0) > alone);
+}
+
+TEST_CASE("points at the tips of a long body get its label") {
+  for (const double ratio : {1.0, 1.5, 2.0, 3.0}) {
+    INFO("ratio " << ratio);
+    const Eigen::Vector3d radii(0.02, 0.02, ratio * 0.02);
+    const Eigen::Matrix3d axes = pose_from_xyz_rpy({0, 0, 0}, {0.4, -0.7, 1.1}).linear();
+    FoundBody body;
+    body.fit.body.center = {0.1, 0.5, 0.3};
+    body.fit.body.A = axes * radii.cwiseInverse().asDiagonal() * axes.transpose();
+    Cloud cloud;
+    for (int i = 0; i < 6000; ++i) {
+      const Eigen::Vector3d u = spiral_direction(i, 6000);
+      cloud.points.push_back((body.fit.body.center + body.fit.body.A.inverse() * u).cast<float>());
+      cloud.normals.push_back((body.fit.body.A * u).normalized().cast<float>());
+    }
+    const auto own = [](const Labels& labels) { return std::count(labels.begin(), labels.end(), 1); };
+    CHECK(own(assign_to_bodies(cloud, {body})) == 6000);
+    SplitParameters alone;  // its size is not known from others
+    alone.bodies.alike = 0.0;
+    const Split found = split(cloud, alone);
+    REQUIRE(found.found.size() == 1);
+    CHECK(own(found.labels) == 6000);
+    CHECK((semi_axes(found.found[0].fit.body).first - Eigen::Vector3d(ratio * 0.02, 0.02, 0.02)).norm() < 0.001);
+  }
 }

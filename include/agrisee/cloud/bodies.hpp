@@ -47,7 +47,7 @@ Labels assign_to_bodies_near(const PointCloud<S>& cloud, const Grid<S>& grid, co
     throw_if_cancelled();
     const Ellipsoid& body = bodies[b].fit.body;
     const double r = body.mean_radius();
-    grid.visit(body.center.cast<S>(), static_cast<S>(1.4 * r), [&](Index index, S) {
+    grid.visit(body.center.cast<S>(), static_cast<S>(std::max(1.4 * r, near_radius(body))), [&](Index index, S) {
       const auto i = static_cast<std::size_t>(index);
       const Eigen::Vector3d p = cloud.points[i].template cast<double>();
       const auto foot = body.foot(p);
