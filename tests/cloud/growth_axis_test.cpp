@@ -187,3 +187,16 @@ TEST_CASE("the growth axis of a ball with one stem point, by hand") {
   CHECK(near(growth_axis(stem_direction(Cloud(), {}, ball, level), {round}).direction,
              Eigen::Vector3d(-0.8, 0, 0.6)));  // upwards
 }
+
+TEST_CASE("the stem that meets the tip of a long fruit tells where its calyx is") {
+  for (const double ratio : {1.0, 2.0, 2.5, 3.0}) {
+    INFO("ratio " << ratio);
+    const Eigen::Vector3d radii(0.018, 0.018, ratio * 0.018);
+    Ellipsoid body;
+    body.A = radii.cwiseInverse().asDiagonal();
+    Cloud cloud;
+    for (int i = 0; i < 200; ++i) cloud.points.emplace_back(0.0f, 0.0f, static_cast<float>(-radii.z() - 2e-5 * i));
+    const Eigen::Vector3d stem = stem_direction(cloud, Labels(cloud.size(), 0), body);
+    CHECK(stem.z() < -0.5);  // below, against gravity
+  }
+}

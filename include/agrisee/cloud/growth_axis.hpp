@@ -69,12 +69,13 @@ template <typename S>
 Eigen::Vector3d stem_direction(const PointCloud<S>& cloud, const Labels& labels, const Ellipsoid& body,
                                const GrowthAxisParameters& parameters = {}) {
   const double r = body.mean_radius();
+  const double reach = semi_axes(body).first[0] + r;  // beyond the tips of a long fruit, too
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
   double weights = 0.0;
   for (std::size_t i = 0; i < cloud.size(); ++i) {
     if (labels[i] != 0) continue;
     const Eigen::Vector3d p = cloud.points[i].template cast<double>();
-    if ((p - body.center).squaredNorm() > 4.0 * r * r) continue;
+    if ((p - body.center).squaredNorm() > reach * reach) continue;
     const double d = body.distance(p);
     if (d < -0.3 * r || d > parameters.shell * r) continue;
     const double near = 1.0 - std::max(d, 0.0) / (parameters.shell * r);
