@@ -372,3 +372,30 @@ TEST_CASE("points at the tips of a long body get its label") {
     CHECK((semi_axes(found.found[0].fit.body).first - Eigen::Vector3d(ratio * 0.02, 0.02, 0.02)).norm() < 0.001);
   }
 }
+
+TEST_CASE("a long body of which one side is seen is as deep as it is wide") {
+  const Eigen::Matrix3d axes = pose_from_xyz_rpy({0, 0, 0}, {0.0, 1.2, 0.2}).linear();
+  for (const double ratio : {2.0, 3.0}) {
+    INFO("ratio " << ratio);
+    const Eigen::Vector3d radii(0.018, 0.018, ratio * 0.018), center(0.1, 0.5, 0.3);
+    Ellipsoid body;
+    body.center = center;
+    body.A = axes * radii.cwiseInverse().asDiagonal() * axes.transpose();
+    Cloud cloud;
+    for (int i = 0; i < 2000; ++i) {
+      const Eigen::Vector3d u = spiral_direction(i, 2000), n = (body.A * u).normalized();
+      if (n.dot(front()) < 0.2) continue;
+      cloud.points.push_back((center + body.A.inverse() * u).cast<float>());
+      cloud.normals.push_back(n.cast<float>());
+    }
+    Split found;  // a body that is deeper
+    found.found.resize(1);
+    found.found[0].fit.body.center = center - 0.1 * 0.018 * front();
+    found.found[0].fit.body.A = body.A - 0.15 / 0.018 * front() * front().transpose();
+    found.labels.assign(cloud.size(), 1);
+    const BodyParameters bodies;
+    detail::refit(cloud, Grid<float>(cloud, static_cast<float>(bodies.cell())), bodies, found);
+    CHECK((found.found[0].fit.body.center - center).norm() < 0.001);
+    CHECK((semi_axes(found.found[0].fit.body).first - Eigen::Vector3d(ratio * 0.018, 0.018, 0.018)).norm() < 0.001);
+  }
+}

@@ -70,11 +70,20 @@ std::optional<Sphere> sphere_from_normals(const PointCloud<S>& cloud, const Indi
 namespace detail {
 
 /// Information matrix of the prior that size * A is close to a multiple of the identity (its deviatoric part is small).
-inline Matrix9 shape_information(const Ellipsoid& body, double size, double shape_prior) {
+/// @param axis of a long body (unit), along which it may be of any length; usually none
+inline Matrix9 shape_information(const Ellipsoid& body, double size, double shape_prior,
+                                 const std::optional<Eigen::Vector3d>& axis = {}) {
   const double relative = body.A.trace() * size / 3.0;  // mean of the inverse semi-axes, in units of 1 / size
   Matrix9 prior = Matrix9::Zero();
   prior.block<3, 3>(3, 3) = Eigen::Matrix3d::Identity() - Eigen::Matrix3d::Constant(1.0 / 3.0);
   prior.diagonal().tail<3>().setConstant(2.0);
+  if (axis) {
+    const Eigen::Vector3d& u = *axis;
+    Vector9 length;
+    length << 0, 0, 0, u.x() * u.x(), u.y() * u.y(), u.z() * u.z(), u.x() * u.y(), u.x() * u.z(), u.y() * u.z();
+    const Vector9 known = prior * length;
+    prior -= known * known.transpose() / length.dot(known);
+  }
   prior /= shape_prior * shape_prior * relative * relative;
   return prior;
 }
@@ -162,11 +171,12 @@ FitSums fit_sums(const std::vector<FitSample>& samples, const Ellipsoid& body, d
 /// the size.
 /// @param certainty information of one sample of full weight (1/m2)
 inline void add_prior(FitSums& sums, const Ellipsoid& body, double size, double certainty, double shape_prior,
-                      const std::optional<SizePrior>& size_prior = {}) {
+                      const std::optional<SizePrior>& size_prior = {},
+                      const std::optional<Eigen::Vector3d>& axis = {}) {
   sums.normal_matrix *= certainty;
   sums.rhs *= certainty;
   const Eigen::Matrix3d B = body.A * size - Eigen::Matrix3d::Identity();
-  const Matrix9 prior = shape_information(body, size, shape_prior);
+  const Matrix9 prior = shape_information(body, size, shape_prior, axis);
   Vector9 b = Vector9::Zero();
   b.tail<6>() << B(0, 0), B(1, 1), B(2, 2), B(0, 1), B(0, 2), B(1, 2);
   sums.rhs -= prior * b;
@@ -201,12 +211,14 @@ inline std::optional<double> apply_step(Ellipsoid& body, const Vector9& step, do
 /// Fit an ellipsoid to the points `indices` of a cloud with normals, starting from `start`.
 ///
 /// @param size_prior what is known of its size, which decides as far as the points leave it open; usually nothing
+/// @param axis of a long body (unit): it is as round about it as others are in all directions, and of any length
 /// @return empty if fewer than `parameters.independent / 10 + 4` points support the body or the fit degenerates
 /// @throws InputError if the cloud has no normals; ParameterError
 template <typename S>
 std::optional<EllipsoidFit> fit_ellipsoid(const PointCloud<S>& cloud, const Indices& indices, const Ellipsoid& start,
                                           const FitParameters& parameters = {},
-                                          const std::optional<SizePrior>& size_prior = {}) {
+                                          const std::optional<SizePrior>& size_prior = {},
+                                          const std::optional<Eigen::Vector3d>& axis = {}) {
   parameters.check();
   check_input(cloud.normals.size() == cloud.points.size(), "fit_ellipsoid: the cloud has no normals");
   const std::size_t least = static_cast<std::size_t>(parameters.independent / 10 + 4);
@@ -229,7 +241,7 @@ std::optional<EllipsoidFit> fit_ellipsoid(const PointCloud<S>& cloud, const Indi
     detail::FitSums sums = detail::fit_sums<S>(samples, fit.body, size, gate, cos_max, inlier);
     if (share * sums.weights < 0.3 * static_cast<double>(least)) return std::nullopt;
     const double certainty = std::min(share, parameters.independent / sums.weights) / (noise * noise);
-    detail::add_prior(sums, fit.body, size, certainty, parameters.shape_prior, size_prior);
+    detail::add_prior(sums, fit.body, size, certainty, parameters.shape_prior, size_prior, axis);
     const detail::Vector9 step = Eigen::LDLT<detail::Matrix9>(sums.normal_matrix).solve(sums.rhs);
     const auto longest = detail::apply_step(fit.body, step, size);
     if (!longest) return std::nullopt;
@@ -243,7 +255,7 @@ std::optional<EllipsoidFit> fit_ellipsoid(const PointCloud<S>& cloud, const Indi
   const detail::Matrix9 covariance = Eigen::LDLT<detail::Matrix9>(information).solve(detail::Matrix9::Identity());
   fit.center_covariance = covariance.topLeftCorner<3, 3>() * size * size;
   const Eigen::Matrix<double, 3, 9> center = covariance.topRows<3>();
-  detail::Matrix9 prior = detail::shape_information(fit.body, size, parameters.shape_prior);
+  detail::Matrix9 prior = detail::shape_information(fit.body, size, parameters.shape_prior, axis);
   if (size_prior)
     prior +=
         detail::size_information(*size_prior, size) * detail::size_row().lazyProduct(detail::size_row().transpose());

@@ -107,7 +107,16 @@ bool has_changed(const Grid<S>& grid, const Ellipsoid& body, const std::vector<c
   return news * kFewest >= near;
 }
 
+/// The direction (unit) of the longest semi-axis of a body if it is at least 1.5 times the next; else none.
+inline std::optional<Eigen::Vector3d> long_axis(const Ellipsoid& body) {
+  constexpr double kLong = 1.5;
+  const auto [radii, axes] = semi_axes(body);
+  if (radii[0] < kLong * radii[1]) return std::nullopt;
+  return axes.col(0).eval();
+}
+
 /// Fit each body once more to all points of its own label, and assign the points anew; twice. Bodies by masks stay.
+/// Long bodies are expected to be round about their long axis: of one side seen, they are as deep as they are wide.
 /// A body of a single cloud that has a size prior is seen from one side: the errors of its points are alike over larger
 /// parts of it than where several views were fused, so they count as fewer, and the priors decide more.
 /// @param grid of the cloud's points, with cells of `bodies.cell()`
@@ -125,7 +134,7 @@ void refit(const PointCloud<S>& cloud, const Grid<S>& grid, const BodyParameters
       if (out.found[b].by_mask) continue;
       EllipsoidFit& last = out.found[b].fit;
       const FitParameters& how = last.size_prior ? one_sided : last_fit;
-      if (const auto fit = fit_ellipsoid(cloud, own[b], last.body, how, last.size_prior))
+      if (const auto fit = fit_ellipsoid(cloud, own[b], last.body, how, last.size_prior, long_axis(last.body)))
         if (plausible(fit->body, bodies)) last = *fit;
     }
     out.labels = assign_to_bodies_near(cloud, grid, out.found, bodies);
