@@ -67,8 +67,8 @@ Eigen::Vector3d frontal_eye(const Eigen::Vector3d& truss_center);
 
 /// The workcell in which a truss is scanned. The robot stands at the origin. The scan volume encloses the fruit, and at
 /// least a box of 0.34 x 0.32 x 0.44 m around the middle of the truss. The keep-out consists of the platform, the
-/// plant, and a cylinder that keeps the sensor 0.25 m away from the truss; from a wide one up to 0.03 m less, as the arm
-/// would start inside of a larger cylinder.
+/// plant, and a cylinder that keeps the sensor 0.25 m away from the truss; from a wide one up to 0.03 m less, as the
+/// arm would start inside of a larger cylinder.
 /// @param truss box around the fruit (m, world)
 /// @param center middle of the truss (m, world)
 Workcell truss_workcell(const Aabb& truss, const Eigen::Vector3d& center);
