@@ -107,9 +107,9 @@ bool has_changed(const Grid<S>& grid, const Ellipsoid& body, const std::vector<c
   return news * kFewest >= near;
 }
 
-/// The direction (unit) of the longest semi-axis of a body if it is at least 1.5 times the next; else none.
+/// The direction (unit) of the longest semi-axis of a body if it is at least 1.65 times the next; else none.
 inline std::optional<Eigen::Vector3d> long_axis(const Ellipsoid& body) {
-  constexpr double kLong = 1.5;
+  constexpr double kLong = 1.65;  // lobed fruit of which little was seen looks up to 1.5 times as long as wide
   const auto [radii, axes] = semi_axes(body);
   if (radii[0] < kLong * radii[1]) return std::nullopt;
   return axes.col(0).eval();
