@@ -348,20 +348,37 @@ TEST_CASE("masks change how far a body of points is believed") {
   CHECK(confidence(2.0) > alone);
 }
 
+namespace {
+
+/// An ellipsoid of revolution, `ratio` times as long as wide (m).
+Ellipsoid long_body(const Eigen::Vector3d& rpy, double radius, double ratio) {
+  const Eigen::Matrix3d axes = pose_from_xyz_rpy({0, 0, 0}, rpy).linear();
+  Ellipsoid body;
+  body.center = {0.1, 0.5, 0.3};
+  body.A = axes * Eigen::Vector3d(radius, radius, ratio * radius).cwiseInverse().asDiagonal() * axes.transpose();
+  return body;
+}
+
+/// Points with normals of a body's surface, where the normals point to the front by at least a cosine.
+Cloud surface_of(const Ellipsoid& body, int count, double least) {
+  Cloud cloud;
+  for (int i = 0; i < count; ++i) {
+    const Eigen::Vector3d u = spiral_direction(i, count), n = (body.A * u).normalized();
+    if (n.dot(front()) < least) continue;
+    cloud.points.push_back((body.center + body.A.inverse() * u).cast<float>());
+    cloud.normals.push_back(n.cast<float>());
+  }
+  return cloud;
+}
+
+}  // namespace
+
 TEST_CASE("points at the tips of a long body get its label") {
   for (const double ratio : {1.0, 1.5, 2.0, 3.0}) {
     INFO("ratio " << ratio);
-    const Eigen::Vector3d radii(0.02, 0.02, ratio * 0.02);
-    const Eigen::Matrix3d axes = pose_from_xyz_rpy({0, 0, 0}, {0.4, -0.7, 1.1}).linear();
     FoundBody body;
-    body.fit.body.center = {0.1, 0.5, 0.3};
-    body.fit.body.A = axes * radii.cwiseInverse().asDiagonal() * axes.transpose();
-    Cloud cloud;
-    for (int i = 0; i < 6000; ++i) {
-      const Eigen::Vector3d u = spiral_direction(i, 6000);
-      cloud.points.push_back((body.fit.body.center + body.fit.body.A.inverse() * u).cast<float>());
-      cloud.normals.push_back((body.fit.body.A * u).normalized().cast<float>());
-    }
+    body.fit.body = long_body({0.4, -0.7, 1.1}, 0.02, ratio);
+    const Cloud cloud = surface_of(body.fit.body, 6000, -1.1);
     const auto own = [](const Labels& labels) { return std::count(labels.begin(), labels.end(), 1); };
     CHECK(own(assign_to_bodies(cloud, {body})) == 6000);
     SplitParameters alone;  // its size is not known from others
@@ -374,28 +391,18 @@ TEST_CASE("points at the tips of a long body get its label") {
 }
 
 TEST_CASE("a long body of which one side is seen is as deep as it is wide") {
-  const Eigen::Matrix3d axes = pose_from_xyz_rpy({0, 0, 0}, {0.0, 1.2, 0.2}).linear();
   for (const double ratio : {2.0, 3.0}) {
     INFO("ratio " << ratio);
-    const Eigen::Vector3d radii(0.018, 0.018, ratio * 0.018), center(0.1, 0.5, 0.3);
-    Ellipsoid body;
-    body.center = center;
-    body.A = axes * radii.cwiseInverse().asDiagonal() * axes.transpose();
-    Cloud cloud;
-    for (int i = 0; i < 2000; ++i) {
-      const Eigen::Vector3d u = spiral_direction(i, 2000), n = (body.A * u).normalized();
-      if (n.dot(front()) < 0.2) continue;
-      cloud.points.push_back((center + body.A.inverse() * u).cast<float>());
-      cloud.normals.push_back(n.cast<float>());
-    }
+    const Ellipsoid body = long_body({0.0, 1.2, 0.2}, 0.018, ratio);
+    const Cloud cloud = surface_of(body, 2000, 0.2);
     Split found;  // a body that is deeper
     found.found.resize(1);
-    found.found[0].fit.body.center = center - 0.1 * 0.018 * front();
+    found.found[0].fit.body.center = body.center - 0.1 * 0.018 * front();
     found.found[0].fit.body.A = body.A - 0.15 / 0.018 * front() * front().transpose();
     found.labels.assign(cloud.size(), 1);
     const BodyParameters bodies;
     detail::refit(cloud, Grid<float>(cloud, static_cast<float>(bodies.cell())), bodies, found);
-    CHECK((found.found[0].fit.body.center - center).norm() < 0.001);
+    CHECK((found.found[0].fit.body.center - body.center).norm() < 0.001);
     CHECK((semi_axes(found.found[0].fit.body).first - Eigen::Vector3d(ratio * 0.018, 0.018, 0.018)).norm() < 0.001);
   }
 }
