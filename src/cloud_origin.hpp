@@ -20,9 +20,12 @@ inline bool has_one_viewpoint(const CloudOrigin& origin) { return origin.viewpoi
 /// Whether all points are known to be seen from one place.
 inline bool is_one_view(const CloudOrigin& origin) { return has_one_viewpoint(origin) || origin.sensors.size() == 1; }
 
+/// From this number of views on, several show each fruit.
+constexpr std::size_t kSeveralViews = 3;
+
 /// The number of views that show a point of the cloud, or of all sensors if no point names its view. Discarded views
 /// have a sensor, but no points.
-inline std::size_t views_of(const Cloud& cloud, const CloudOrigin& origin) {
+inline std::size_t views_with_points(const Cloud& cloud, const CloudOrigin& origin) {
   std::vector<char> shows(origin.sensors.size(), 0);
   for (const int v : cloud.views)
     if (v >= 0 && static_cast<std::size_t>(v) < shows.size()) shows[static_cast<std::size_t>(v)] = 1;
@@ -32,8 +35,7 @@ inline std::size_t views_of(const Cloud& cloud, const CloudOrigin& origin) {
 
 /// Whether views from several sides show each fruit. A cloud of which nothing is known counts as merged from many.
 inline bool is_several_views(const Cloud& cloud, const CloudOrigin& origin) {
-  constexpr std::size_t kSeveral = 3;
-  return is_unknown(origin) || views_of(cloud, origin) >= kSeveral;
+  return is_unknown(origin) || views_with_points(cloud, origin) >= kSeveralViews;
 }
 
 }  // namespace agrisee

@@ -19,6 +19,7 @@
 #include <string>
 #include <utility>
 
+#include "cloud_origin.hpp"
 #include "input_checks.hpp"
 #include "lone_views.hpp"
 #include "scan_doubts.hpp"
@@ -151,9 +152,9 @@ ScanResult Pipeline::result() const {
       return fuse::is_free(map_->images(), p, parameters_.free_space);
     };
   }
-  constexpr std::ptrdiff_t kSeveral = 3;
+  const auto kept = std::count_if(views_.begin(), views_.end(), [](const View& v) { return !v.discarded; });
   Parameters parameters = parameters_;
-  if (std::count_if(views_.begin(), views_.end(), [](const View& v) { return !v.discarded; }) >= kSeveral)
+  if (static_cast<std::size_t>(kept) >= kSeveralViews)
     parameters.split = parameters_.scan_split(), origin.mask_order = fuse::MaskOrder::points_first;
   double& normal_noise = parameters.split.bodies.normal_noise;
   normal_noise = std::max(normal_noise, sensor::normal_noise(map_->images()));
