@@ -183,6 +183,43 @@ TEST_CASE("several views show that a stump is no fruit, a single view hardly doe
   CHECK(odds(0.5, {}) - odds(0.4, {}) > 3.0 * (odds(0.5, 1.0) - odds(0.4, 1.0)));
 }
 
+namespace {
+
+/// A tube about the x axis of 16 mm radius and 60 mm length, with or without round ends.
+Cloud tube(bool round_ends) {
+  constexpr double kTube = 0.016, kHalf = 0.03, kStep = 0.0015;
+  const auto around = static_cast<int>(2 * kPi * kTube / kStep);
+  Cloud cloud;
+  const auto add_ring = [&](double x, double radius, double nx) {
+    for (int i = 0; i < around; ++i) {
+      const double a = 2 * kPi * i / around, across = std::sqrt(1.0 - nx * nx);
+      cloud.points.push_back(Eigen::Vector3d(x, radius * std::cos(a), radius * std::sin(a)).cast<float>());
+      cloud.normals.push_back(Eigen::Vector3d(nx, across * std::cos(a), across * std::sin(a)).cast<float>());
+    }
+  };
+  for (double x = -kHalf; x <= kHalf; x += kStep) add_ring(x, kTube, 0.0);
+  for (double x = kStep; round_ends && x < kTube; x += kStep)
+    for (const double side : {-1.0, 1.0})
+      add_ring(side * (kHalf + x), std::sqrt(kTube * kTube - x * x), side * x / kTube);
+  return cloud;
+}
+
+}  // namespace
+
+TEST_CASE("a capsule that several views show from end to end is round enough, a piece of pipe is not") {
+  for (const bool round_ends : {true, false}) {
+    const Cloud cloud = tube(round_ends);
+    const Grid<float> grid(cloud, 0.006f);
+    Ellipsoid body(Sphere{Eigen::Vector3d::Zero(), 1.0});
+    body.A = Eigen::Vector3d(1.0 / 0.048, 1.0 / 0.0165, 1.0 / 0.0165).asDiagonal();
+    const Verdict v = judge(cloud, grid, std::vector<char>(cloud.size(), 0), body, BodyParameters(), {});
+    INFO("roundness " << v.roundness << ", coverage " << v.coverage);
+    CHECK(v.closed());
+    CHECK(v.roundness < BodyParameters().min_roundness);
+    CHECK(round_enough(v, body, BodyParameters()) == round_ends);
+  }
+}
+
 TEST_CASE("several views show that a box is no fruit: normals spread more than those of any fruit") {
   const auto odds = [](double spread, std::optional<double> seen_on) {
     return odds_with(&Verdict::normal_spread, spread, seen_on);

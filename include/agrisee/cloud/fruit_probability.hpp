@@ -23,10 +23,15 @@ inline bool too_long(const Eigen::Vector3d& radii, const BodyParameters& paramet
          radii[0] > kLargest * parameters.radius_max;
 }
 
-/// Whether a body is round enough for a fruit. One that several views show from end to end may be long.
+/// Whether a body is round enough for a fruit. One that several views show from end to end may be long, but its ends
+/// have to be round: an ellipsoid's roundness is (shortest / longest semi-axis)^2, a capsule's is as large, and that of
+/// a piece of pipe is 0.
 inline bool round_enough(const Verdict& v, const Ellipsoid& body, const BodyParameters& parameters) {
+  constexpr double kRoundEnds = 0.3;  // of the ellipsoid's; long fruit in simulated scans has at least 0.9
   if (v.roundness >= parameters.min_roundness) return true;
-  return !v.seen_on && v.closed() && !too_long(semi_axes(body).first, parameters);
+  const Eigen::Vector3d radii = semi_axes(body).first;
+  return !v.seen_on && v.closed() && !too_long(radii, parameters) &&
+         v.roundness * radii[0] * radii[0] >= kRoundEnds * radii[2] * radii[2];
 }
 
 /// A larger misfit of a body to its points, as a share of its radius, changes nothing.
