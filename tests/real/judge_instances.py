@@ -7,7 +7,8 @@ usage: judge_instances.py LABELLED.ply FRUITS.csv RESULT_FOLDER
 A labelled point goes to the result's point nearest to it, at most 6 mm away, and takes its instance. A fruit counts as found
 when the instance with most of its points holds at least a third of them (labels are image masks, with flying pixels far
 behind the fruit) and is not mostly another labelled fruit. The diameter of the found body is that of the sphere of its
-volume; the true one cbrt(diameter^2 height) from the callipers. Needs Python alone.
+volume; the true one cbrt(diameter^2 height) from the callipers. Plastic spheres (labels BALL...), which hang in the trees
+to check the camera, count as fruit to be found, but their diameters are summed up apart. Needs Python alone.
 """
 import collections
 import csv
@@ -45,14 +46,14 @@ class Judgement:
     """What became of the labelled fruit: a line of text for each, and the sums."""
 
     def __init__(self):
-        self.lines, self.errors, self.visible, self.found, self.fruits, self.others = [], [], [], 0, 0, 0
+        self.lines, self.visible, self.found, self.fruits, self.others = [], [], 0, 0, 0
+        self.errors = {"fruit": [], "spheres": []}  # of diameters, mm
 
     def summary(self):
-        mean = sum(map(abs, self.errors)) / max(1, len(self.errors))
-        bias = sum(self.errors) / max(1, len(self.errors))
+        sizes = ", ".join(f"of {name} {sum(map(abs, e)) / len(e):.1f} mm in the mean (signed {sum(e) / len(e):+.1f}, {len(e)})"
+                          for name, e in self.errors.items() if e)
         return (f"found {self.found} of {self.fruits}, {sum(self.visible)} of {len(self.visible)} clearly visible; "
-                f"diameter error {mean:.1f} mm in the mean (signed {bias:+.1f}); "
-                f"{self.others} bodies that are no labelled fruit")
+                f"diameter error {sizes or 'unknown'}; {self.others} bodies that are no labelled fruit")
 
 
 def judge(points, callipers, folder):
@@ -99,7 +100,7 @@ def judge(points, callipers, folder):
         text += f"  {100 * n // count:3} %"
         if row["caliper_diameter_mm"]:
             true = (float(row["caliper_diameter_mm"]) ** 2 * float(row["caliper_height_mm"])) ** (1 / 3)
-            out.errors.append(size - true)
+            out.errors["spheres" if row["label"].startswith("BALL") else "fruit"].append(size - true)
             out.lines.append(f"{text}  {true:24.1f}  {size:5.1f}  {size - true:+5.1f}")
         else:
             out.lines.append(f"{text}  {'-':>24}  {size:5.1f}")

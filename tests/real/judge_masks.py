@@ -14,7 +14,8 @@ DATA holds depth.png, color.png, labels.png and fruits.csv. SPOIL is one of
   invented:S   masks are added where there is no label, S times as many as there are; each has the shape of a label
 and may be given several times. A body is a label's if its center lies behind the label's middle, at most a radius to the
 side; each body has at most one label. The diameter is twice the largest semi-axis, the true one the larger calliper
-reading. "behind": bodies whose center is not 0 to 1.3 radii behind the middle depth of their label. Needs Python alone.
+reading. "behind": bodies whose center is not 0 to 1.3 radii behind the middle depth of their label. With --radius "" the
+program's default radii hold. Needs Python alone.
 """
 import argparse
 import collections
@@ -165,8 +166,9 @@ def middle(pixels):
 def run(arguments, data, folder, masks, boxes):
     """Fruits and seconds of one call."""
     call = [arguments.agrisee, "process", "--depth", str(data / "depth.png"), "--intrinsics",
-            ",".join(map(str, INTRINSICS)), "--depth-scale", "0.001", "--radius", arguments.radius, "-o", str(folder),
-            "--force", "--no-report", "--no-picture", "--quiet", "--threads", "1"]
+            ",".join(map(str, INTRINSICS)), "--depth-scale", "0.001", "-o", str(folder), "--force",
+            "--no-report", "--no-picture", "--quiet", "--threads", "1"]
+    call += ["--radius", arguments.radius] if arguments.radius else []
     call += ["--masks", str(masks)] if masks else []
     call += ["--boxes", str(boxes)] if boxes else []
     call += ["--color", str(data / "color.png")] if arguments.use == "color" else []

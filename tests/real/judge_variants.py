@@ -95,7 +95,8 @@ def main():
             everything.fruits += one.fruits
             everything.others += one.others
             everything.visible += one.visible
-            everything.errors += one.errors if true_size else []
+            for kind, errors in one.errors.items():
+                everything.errors[kind] += errors if true_size else []
     print(f"{'all':32} {everything.summary()}")
 
 
