@@ -147,6 +147,8 @@ ScanResult process(Cloud&& cloud, const Parameters& parameters, const CloudOrigi
   });
   if (origin.volume && parameters.split.fit_bodies)
     timed(t.segment, [&] { forget_cut_bodies(result.cloud, *origin.volume, found); });
+  if (views_with_points(result.raw, origin) >= kSeveralViews && parameters.split.fit_bodies)
+    timed(t.segment, [&] { fit_closely(result.cloud, found.labels, fitted.split.bodies, found.found); });
   result.bodies = found.bodies;
   const auto has_color = [](const fuse::DetectedView& v) { return !v.frame->color.empty(); };
   if (parameters.color_prior.enabled && std::none_of(origin.detected.begin(), origin.detected.end(), has_color))

@@ -94,8 +94,8 @@ Aside aside_of(const Share& share, double size) {
 std::optional<Share> share_of(const Ellipsoid& body, const RegisteredView& view, const FitParameters& parameters) {
   const sensor::SurfaceImage& image = *view.image;
   const Pose reported_T_registered = view.reported * image.world_T_optical.inverse(Eigen::Isometry);
-  const double size = body.mean_radius(), noise = parameters.noise_of(size);
-  const double gate = std::max(4.0 * noise, 0.05 * size), cos_max = std::cos(parameters.max_angle);
+  const double size = body.mean_radius();
+  const double gate = parameters.gate_of(size), cos_max = std::cos(parameters.max_angle);
   const double reach = body.mean_semi_axis() * 3.0 + gate;  // no semi-axis is longer than three times their mean
   Share out;
   std::size_t points = 0;

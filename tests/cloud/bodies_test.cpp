@@ -401,7 +401,7 @@ TEST_CASE("a long body of which one side is seen is as deep as it is wide") {
     found.found[0].fit.body.A = body.A - 0.15 / 0.018 * front() * front().transpose();
     found.labels.assign(cloud.size(), 1);
     const BodyParameters bodies;
-    detail::refit(cloud, Grid<float>(cloud, static_cast<float>(bodies.cell())), bodies, found);
+    detail::refit(cloud, Grid<float>(cloud, static_cast<float>(bodies.cell())), bodies, found.found, found.labels);
     CHECK((found.found[0].fit.body.center - body.center).norm() < 0.001);
     CHECK((semi_axes(found.found[0].fit.body).first - Eigen::Vector3d(ratio * 0.018, 0.018, 0.018)).norm() < 0.001);
   }

@@ -248,7 +248,7 @@ std::optional<EllipsoidFit> fit_ellipsoid(const PointCloud<S>& cloud, const Indi
     fit.inliers = static_cast<std::size_t>(share * static_cast<double>(sums.inliers));
     fit.rms = sums.inliers ? std::sqrt(sums.squares / static_cast<double>(sums.inliers)) : 0.0;
     information = sums.normal_matrix;
-    gate = std::max(0.7 * gate, std::max(4.0 * noise, 0.05 * size));
+    gate = std::max(0.7 * gate, parameters.gate_of(size));
     if (iteration > 3 && *longest < 1e-4) break;
   }
   if (fit.inliers < least / 2) return std::nullopt;

@@ -174,6 +174,7 @@ struct FitParameters {
   double noise = 0.001;        ///< standard deviation of points from a fruit's ellipsoid, including its lobes (m)
   double max_noise = 0.05;     ///< `noise` is at most this share of the radius, as small bodies have smaller lobes
   double sensor_noise = 0.0;   ///< `noise` is at least this: standard deviation due to the sensor alone (m)
+  double gate = 4.0;           ///< points farther from the ellipsoid than this many times the noise are ignored
   double shape_prior = 0.04;   ///< standard deviation of the semi-axes from those of a sphere, relative to its radius
   double max_angle = deg(50);  ///< points whose normals differ from the ellipsoid's by more are ignored (rad)
   int independent = 150;       ///< points beyond this number add no certainty, since errors of neighbors correlate
@@ -182,6 +183,9 @@ struct FitParameters {
 
   /// Standard deviation (m) of points about a body of this mean radius (m).
   double noise_of(double radius) const { return std::max(sensor_noise, std::min(noise, max_noise * radius)); }
+
+  /// Points farther (m) than this from a body of this mean radius (m) are ignored.
+  double gate_of(double radius) const { return std::max(gate * noise_of(radius), 0.05 * radius); }
 
   /// @throws FieldError for the first field that is out of its range
   void check() const { check_fields(*this); }
@@ -192,6 +196,7 @@ struct FitParameters {
     f("noise", p.noise, Range::positive());
     f("max_noise", p.max_noise, Range::positive());
     f("sensor_noise", p.sensor_noise, Range::not_negative().in_metres());
+    f("gate", p.gate, Range::positive());
     f("shape_prior", p.shape_prior, Range::positive());
     f("max_angle", p.max_angle, Range::above(0.0).up_to({kPi, "pi"}).in_radians());
     f("independent", p.independent, Range::at_least(1));

@@ -14,6 +14,7 @@
 #include <agrisee/cloud/dbscan.hpp>
 #include <agrisee/cloud/free_points.hpp>
 #include <agrisee/cloud/labels.hpp>
+#include <agrisee/cloud/last_fits.hpp>
 #include <agrisee/cloud/normals.hpp>
 #include <agrisee/cloud/parameters.hpp>
 #include <agrisee/cloud/proposals.hpp>
@@ -105,40 +106,6 @@ bool has_changed(const Grid<S>& grid, const Ellipsoid& body, const std::vector<c
   std::size_t near = 0, news = 0;
   visit_near(grid, body, [&](Index i) { ++near, news += fresh[static_cast<std::size_t>(i)] != 0; });
   return news * kFewest >= near;
-}
-
-/// The direction (unit) of the longest semi-axis of a body if it is at least 1.65 times the next; else none.
-inline std::optional<Eigen::Vector3d> long_axis(const Ellipsoid& body) {
-  constexpr double kLong = 1.65;  // lobed fruit of which little was seen looks up to 1.5 times as long as wide
-  const auto [radii, axes] = semi_axes(body);
-  if (radii[0] < kLong * radii[1]) return std::nullopt;
-  return axes.col(0).eval();
-}
-
-/// Fit each body once more to all points of its own label, and assign the points anew; twice. Bodies by masks stay.
-/// Long bodies are expected to be round about their long axis: of one side seen, they are as deep as they are wide.
-/// A body of a single cloud that has a size prior is seen from one side: the errors of its points are alike over larger
-/// parts of it than where several views were fused, so they count as fewer, and the priors decide more.
-/// @param grid of the cloud's points, with cells of `bodies.cell()`
-template <typename S>
-void refit(const PointCloud<S>& cloud, const Grid<S>& grid, const BodyParameters& bodies, Split& out) {
-  FitParameters last_fit = bodies.fit;
-  last_fit.max_points = std::max(last_fit.max_points, static_cast<int>(cloud.size()));
-  constexpr int kIndependentOnOneSide = 60;
-  FitParameters one_sided = last_fit;
-  one_sided.independent = std::min(last_fit.independent, kIndependentOnOneSide);
-  for (int round = 0; round < 2; ++round) {
-    auto own = indices_by_label(out.labels);
-    own.resize(out.found.size());
-    for (std::size_t b = 0; b < out.found.size(); ++b) {
-      if (out.found[b].by_mask) continue;
-      EllipsoidFit& last = out.found[b].fit;
-      const FitParameters& how = last.size_prior ? one_sided : last_fit;
-      if (const auto fit = fit_ellipsoid(cloud, own[b], last.body, how, last.size_prior, long_axis(last.body)))
-        if (plausible(fit->body, bodies)) last = *fit;
-    }
-    out.labels = assign_to_bodies_near(cloud, grid, out.found, bodies);
-  }
 }
 
 /// In a single view, bodies with this share of the required confidence may win points; what they are is settled after
@@ -253,7 +220,7 @@ void split_by_bodies(const PointCloud<S>& cloud, const Segments& segments, const
   out.bodies.too_large += not_proposed.too_large;
   out.bodies.inside_out += not_proposed.inside_out;
   out.labels = assign_to_bodies_near(cloud, grid, out.found, bodies);
-  refit(cloud, grid, bodies, out);
+  refit(cloud, grid, bodies, out.found, out.labels);
   if (settles) settle(cloud, grid, bodies, expected, evidence, out);
   extend_labels(out.labels, cloud, out.found, out.regions, out.regions_found, bodies);
 

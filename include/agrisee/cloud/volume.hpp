@@ -57,7 +57,7 @@ VolumeError relative_volume_error(const PointCloud<S>& cloud, const Indices& ind
   const double share = static_cast<double>(indices.size()) / static_cast<double>(used);
   const double size = body.mean_radius(), cos_max = std::cos(parameters.max_angle);
   const double noise = std::max(parameters.noise, parameters.sensor_noise);
-  const double gate = std::max(4.0 * noise, 0.05 * size);
+  const double gate = std::max(parameters.gate * noise, 0.05 * size);
   Matrix9 information = Matrix9::Zero();
   double weights = 0.0;
   for (std::size_t k = 0; k < used; ++k) {

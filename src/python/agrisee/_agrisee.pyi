@@ -408,6 +408,7 @@ def fit_ellipsoid(
     noise: float = ...,
     max_noise: float = ...,
     sensor_noise: float = ...,
+    gate: float = ...,
     shape_prior: float = ...,
     max_angle: float = ...,
     independent: int = ...,
@@ -529,6 +530,7 @@ class SplitBodiesFitParameters:
     noise: float
     max_noise: float
     sensor_noise: float
+    gate: float
     shape_prior: float
     max_angle: float
     independent: int
