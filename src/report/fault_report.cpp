@@ -44,7 +44,7 @@ std::string spaced(std::string name) {
 }
 
 std::string table(const Sums& sums) {
-  Table out({"faults", "rate", "scans", "fruit", "found", "worst truss", "invented", "views", "struck", "discarded",
+  Table out({"faults", "rate", "scans", "fruit", "found", "worst truss", "invented", "views", "faulty", "discarded",
              "wrong poses", "of them believed"});
   for (const auto& [key, s] : sums)
     out.row({spaced(key.first), fixed(100.0 * key.second, 0) + " %", std::to_string(s.scans), std::to_string(s.fruit),
@@ -95,14 +95,14 @@ void write_fault_report(const std::filesystem::path& path, std::vector<FaultReco
   for (const FaultRecord& r : records) sums[{r.kind, r.rate}].add(r);
   const std::string stem = path.stem().string();
   const std::string text =
-      "# Scans under faults\n\nScans in which the sensor and the arm fail: each requested view is struck with the "
-      "given rate by a fault, either of one kind or,\nfor `any`, of all kinds with equal probability "
+      "# Scans under faults\n\nScans in which the sensor and the arm fail: each requested view has a fault at the "
+      "given rate, either of one kind or,\nfor `any`, of all kinds with equal probability "
       "(include/agrisee/study/faults.hpp describes them). Made by AgriSEE " +
       info.version + " with\n\n```\n" + info.command + "\n```\n\n![Fruit found](" + stem + "/found.svg)\n\n" +
       table(sums) +
       "\nfound: share of all fruit. worst truss: the smallest share in a scan. invented: located fruit that do not "
-      "exist. struck: views with a\nfault. discarded: views whose pose the pipeline found to be wrong. wrong poses: "
-      "reported 50 mm off. of them believed: those that\nshowed something and were not discarded. As a file, with a "
+      "exist. faulty: views with a\nfault. discarded: views whose pose the pipeline found to be wrong. wrong poses: "
+      "reported 50 mm off. of them believed: those that\nshowed something and were kept. As a file, with a "
       "row per scan: [faults.csv](" +
       stem + "/faults.csv).\n";
   const std::filesystem::path folder = path.parent_path() / stem;
