@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <agrisee/cloud/bodies_alone.hpp>
 #include <agrisee/cloud/cut_bodies.hpp>
 #include <agrisee/cloud/labels.hpp>
+#include <agrisee/cloud/last_fits.hpp>
 #include <agrisee/cloud/sor.hpp>
 #include <agrisee/cloud/spacing.hpp>
 #include <agrisee/cloud/split.hpp>
@@ -64,16 +66,27 @@ Eigen::Vector3d corner_of(const Cloud& cloud) {
   return box.empty() ? robot : cluster_origin(box, robot);
 }
 
-/// Take the points from bodies that go on beyond the volume, so that they become no fruit; those that a mask shows
-/// stay.
-void forget_cut_bodies(const Cloud& cloud, const Aabb& volume, Split& split) {
+/// Take the points from some bodies, so that they become no fruit; those that a mask shows stay.
+/// @param reason the count to raise for each; locate() takes it off `taken`, as all bodies without points
+/// @param falls falls(body, its points): whether the body is one of them
+template <typename Falls>
+void forget_bodies(Split& split, std::size_t BodyCounts::*reason, Falls&& falls) {
   std::vector<Indices> members = indices_by_label(split.labels);
   members.resize(split.found.size());
   for (std::size_t b = 0; b < members.size(); ++b) {
-    if (split.found[b].by_mask || !goes_on_beyond(cloud, members[b], split.found[b].fit.body, volume)) continue;
+    if (members[b].empty() || split.found[b].by_mask || !falls(split.found[b], members[b])) continue;
     for (const Index i : members[b]) split.labels[static_cast<std::size_t>(i)] = 0;
-    ++split.bodies.too_flat;  // locate() takes it off `taken`, as all bodies without points
+    ++(split.bodies.*reason);
   }
+}
+
+/// What only a scan of several views, from all sides, tells of its bodies: small ones that hang alone are doubtful at
+/// much noise, and small ones can be fitted closely.
+void look_closely(const Cloud& cloud, const BodyParameters& bodies, Split& split) {
+  doubt_bodies_alone(bodies, split.found);
+  forget_bodies(split, &BodyCounts::doubtful,
+                [&](const FoundBody& f, const Indices&) { return f.confidence < bodies.min_confidence; });
+  fit_closely(cloud, split.labels, bodies, split.found);
 }
 
 /// Without the points of surfaces that are seen at a larger angle of incidence than `max_incidence` (rad), or from
@@ -145,10 +158,15 @@ ScanResult process(Cloud&& cloud, const Parameters& parameters, const CloudOrigi
     const BodyEvidence evidence = evidence_for(result, fitted, origin, seen_through, noise.points);
     return split(result.cloud, fitted.split, evidence, threads);
   });
-  if (origin.volume && parameters.split.fit_bodies)
-    timed(t.segment, [&] { forget_cut_bodies(result.cloud, *origin.volume, found); });
-  if (views_with_points(result.raw, origin) >= kSeveralViews && parameters.split.fit_bodies)
-    timed(t.segment, [&] { fit_closely(result.cloud, found.labels, fitted.split.bodies, found.found); });
+  if (parameters.split.fit_bodies)
+    timed(t.segment, [&] {
+      if (origin.volume)
+        forget_bodies(found, &BodyCounts::too_flat, [&](const FoundBody& f, const Indices& own) {
+          return goes_on_beyond(result.cloud, own, f.fit.body, *origin.volume);
+        });
+      if (views_with_points(result.raw, origin) >= kSeveralViews)  // not of unknown clouds, which may be of one view
+        look_closely(result.cloud, fitted.split.bodies, found);
+    });
   result.bodies = found.bodies;
   const auto has_color = [](const fuse::DetectedView& v) { return !v.frame->color.empty(); };
   if (parameters.color_prior.enabled && std::none_of(origin.detected.begin(), origin.detected.end(), has_color))

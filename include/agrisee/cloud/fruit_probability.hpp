@@ -52,7 +52,6 @@ struct SizedEvidence {
 /// @param radius of the body (m)
 inline SizedEvidence sized_evidence(const Verdict& v, double radius, const BodyParameters& parameters) {
   constexpr double kMostPoints = 1500.0;           // more change nothing
-  constexpr double kNoisy = 0.15;                  // rad; more noise changes nothing
   constexpr double kSmall = 2.0, kSmallest = 2.5;  // usual radii over the body's; smaller ones count as these
   constexpr double kWider = 0.6, kSooner = 0.25;   // how these change at much noise: as a share, and by
   constexpr double kPatch = 0.11, kRounder = 5.5;  // of the usual radius; weight
@@ -63,7 +62,7 @@ inline SizedEvidence sized_evidence(const Verdict& v, double radius, const BodyP
   // The patches that normals are fitted to are wide against small bodies, and wider at much noise, so their normals
   // spread more. How round such a body is counts more instead. In one or two views scraps would profit from noise.
   const bool several = !v.seen_on && parameters.several_views();
-  const double noisy = several ? std::min(parameters.normal_noise / kNoisy, 1.0) : 0.0;
+  const double noisy = several ? parameters.share_of_much_noise() : 0.0;
   const double small = kSmall / (1.0 + kWider * noisy);
   const double smaller = std::clamp(larger, small, kSmallest - kSooner * noisy);
   const double blurred = kPatch * kPatch * (smaller * smaller - small * small);

@@ -171,10 +171,11 @@ struct IcpParameters {
 
 /// Parameters of fit_ellipsoid.
 struct FitParameters {
-  double noise = 0.001;        ///< standard deviation of points from a fruit's ellipsoid, including its lobes (m)
-  double max_noise = 0.05;     ///< `noise` is at most this share of the radius, as small bodies have smaller lobes
-  double sensor_noise = 0.0;   ///< `noise` is at least this: standard deviation due to the sensor alone (m)
-  double gate = 4.0;           ///< points farther from the ellipsoid than this many times the noise are ignored
+  double noise = 0.001;       ///< standard deviation of points from a fruit's ellipsoid, including its lobes (m)
+  double max_noise = 0.05;    ///< `noise` is at most this share of the radius, as small bodies have smaller lobes
+  double sensor_noise = 0.0;  ///< `noise` is at least this: standard deviation due to the sensor alone (m)
+  /// Points farther from the ellipsoid than this many times the noise, and than a twentieth of its radius, are ignored.
+  double gate = 4.0;
   double shape_prior = 0.04;   ///< standard deviation of the semi-axes from those of a sphere, relative to its radius
   double max_angle = deg(50);  ///< points whose normals differ from the ellipsoid's by more are ignored (rad)
   int independent = 150;       ///< points beyond this number add no certainty, since errors of neighbors correlate
@@ -207,10 +208,12 @@ struct FitParameters {
 
 /// Parameters of find_bodies: which ellipsoids may be fruit, and how they compete for points.
 struct BodyParameters {
-  double radius_min = 0.008;     ///< smallest expected radius of a fruit (m)
-  double radius_max = 0.060;     ///< largest expected radius of a fruit (m)
-  double usual_radius = 0.0252;  ///< several views: points of a smaller body count as many as on one of this radius (m)
-  double tolerance = 0.08;       ///< points within this share of the radius from the surface may belong to the body
+  double radius_min = 0.008;  ///< smallest expected radius of a fruit (m)
+  double radius_max = 0.060;  ///< largest expected radius of a fruit (m)
+  /// Radius (m) below which bodies are small. Where several views show them, their points count as many as on one of
+  /// this radius, their last fit is closer (fit_closely), and hanging alone counts (doubt_bodies_alone).
+  double usual_radius = 0.0252;
+  double tolerance = 0.08;        ///< points within this share of the radius from the surface may belong to the body
   double min_tolerance = 0.0014;  ///< on small bodies, points within this distance from the surface (m)
   double max_angle = deg(35);     ///< if their normals are also within this angle of the body's (rad)
   double min_coverage = 0.08;     ///< least share of the surface that is covered by points, minus contradictions
@@ -238,6 +241,12 @@ struct BodyParameters {
   /// Whether a cloud that is not of a single view (BodyEvidence) is that of a scan of several views, the fruit of which
   /// need not be alike (Parameters::scan_split).
   bool several_views() const { return alike == 0.0; }
+
+  /// How near the noise of the normals is to that at which small fruit looks least like fruit (0 to 1).
+  double share_of_much_noise() const {
+    constexpr double kMuch = 0.15;  // rad; more changes nothing
+    return std::min(normal_noise / kMuch, 1.0);
+  }
 
   /// Cell size (m) of a grid in which the points about bodies of all expected radii are looked up.
   double cell() const { return 0.3 * std::sqrt(radius_min * radius_max); }
