@@ -70,6 +70,22 @@ TEST_CASE("points that scatter as widely as expected all count in the last fit")
   CHECK((found[0].fit.body.A - before.A).norm() < 0.01 * before.A.norm());
 }
 
+TEST_CASE("from the usual radius on the last fit is not closer, and between small and usual in part") {
+  Cloud cloud = cherry(0.0001);
+  touch_from_behind(cloud);
+  const FoundBody before = found_in(cloud);
+  const auto error = [&](double usual_radius) {
+    BodyParameters parameters;
+    parameters.usual_radius = usual_radius;
+    std::vector<FoundBody> found = {before};
+    fit_closely(cloud, Labels(cloud.size(), 1), parameters, found);
+    return (found[0].fit.body.center - kCenter).norm();
+  };
+  CHECK(error(0.9 * kRadius) == (before.fit.body.center - kCenter).norm());
+  CHECK(error(1.25 * kRadius) < error(0.9 * kRadius));
+  CHECK(error(2.0 * kRadius) < error(1.25 * kRadius));
+}
+
 TEST_CASE("bodies by masks, with a size prior, or without points keep their fit") {
   Cloud cloud = cherry(0.0001);
   touch_from_behind(cloud);

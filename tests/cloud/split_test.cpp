@@ -84,18 +84,18 @@ TEST_CASE("the last fit moves a body to its points, those of masks stay") {
   out.found = {ball(kCenter + Eigen::Vector3d(0.002, 0, 0.001), 0.0305)};
   Split mask = out;
   mask.found[0].by_mask = true;
-  detail::refit(cloud, grid_of(cloud, BodyParameters()), BodyParameters(), out);
+  detail::refit(cloud, grid_of(cloud, BodyParameters()), BodyParameters(), out.found, out.labels);
   CHECK((out.found[0].fit.body.center - kCenter).norm() < 1e-5);
   CHECK(out.labels == Labels(cloud.size(), 1));
   const Eigen::Vector3d before = mask.found[0].fit.body.center;
-  detail::refit(cloud, grid_of(cloud, BodyParameters()), BodyParameters(), mask);
+  detail::refit(cloud, grid_of(cloud, BodyParameters()), BodyParameters(), mask.found, mask.labels);
   CHECK(mask.found[0].fit.body.center == before);
   // One that becomes too large stays as it was.
   Split large = out;
   BodyParameters small;
   small.radius_min = 0.01, small.radius_max = 0.025;
   large.found = {ball(kCenter, 0.0287)};
-  detail::refit(cloud, grid_of(cloud, small), small, large);
+  detail::refit(cloud, grid_of(cloud, small), small, large.found, large.labels);
   CHECK(large.found[0].fit.body.mean_radius() == Approx(0.0287));
 }
 
@@ -105,7 +105,7 @@ TEST_CASE("after the last fit the points are given out anew") {
   Split out;
   out.labels.assign(cloud.size(), 1);
   out.found = {ball()};
-  detail::refit(cloud, grid_of(cloud, BodyParameters()), BodyParameters(), out);
+  detail::refit(cloud, grid_of(cloud, BodyParameters()), BodyParameters(), out.found, out.labels);
   CHECK(out.labels.back() == 0);
   CHECK(std::accumulate(out.labels.begin(), out.labels.end(), 0) + 1 == static_cast<int>(cloud.size()));
 }
@@ -136,7 +136,7 @@ TEST_CASE("in a single view points count as fewer, and the size of the other fru
     BodyParameters parameters;
     parameters.fit.independent = independent;
     parameters.fit.shape_prior = 10.0;  // nor does this
-    detail::refit(cloud, grid_of(cloud, parameters), parameters, out);
+    detail::refit(cloud, grid_of(cloud, parameters), parameters, out.found, out.labels);
     return out.found[0].fit.center_covariance(0, 0);
   };
   CHECK(variance(true, 150) / variance(false, 150) == Approx(150.0 / 60.0).epsilon(0.01));

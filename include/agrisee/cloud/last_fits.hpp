@@ -9,7 +9,7 @@
 #include <agrisee/cloud/found_body.hpp>
 #include <agrisee/cloud/labels.hpp>
 #include <agrisee/cloud/parameters.hpp>
-#include <agrisee/core/median.hpp>
+#include <agrisee/cloud/robust.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -69,12 +69,11 @@ void refit(const PointCloud<S>& cloud, const Grid<S>& grid, const BodyParameters
 /// it is.
 template <typename S>
 double scatter_about(const PointCloud<S>& cloud, const Indices& points, const Ellipsoid& body) {
-  constexpr double kNormal = 1.4826;  // standard deviation over median absolute deviation
   std::vector<double> distances;
   distances.reserve(points.size());
   for (const Index i : points)
     distances.push_back(std::abs(body.distance(cloud.points[static_cast<std::size_t>(i)].template cast<double>())));
-  return kNormal * median(distances);
+  return robust_scale(distances);
 }
 
 }  // namespace detail
@@ -84,22 +83,25 @@ double scatter_about(const PointCloud<S>& cloud, const Indices& points, const El
 /// While bodies compete, lobes and noise may carry a body's points off its surface. But where fruit touch leaves or
 /// each other, surfaces in a fused cloud run into one another: points a millimetre or two outside, with normals between
 /// those of the two. They make a small fruit too large, and pull it to its hidden side. Most points lie on the surface
-/// that was seen well; their scatter, by the median, says which do not (Beaton & Tukey, 1974). Up to half the usual
-/// radius that alone decides, from the usual radius on the parameters of the fit, and between them a mean of both.
+/// that was seen well; their scatter, by the median, says which do not. Up to 0.63 usual
+/// radii that alone decides, from the usual radius on the parameters of the fit, and between them a mean of both.
 /// Bodies by masks, and those with a size prior, stay.
 /// @param cloud with normals
 /// @param labels one per point: the number of its body in `found` from 1, or 0
 template <typename S>
 void fit_closely(const PointCloud<S>& cloud, const Labels& labels, const BodyParameters& bodies,
                  std::vector<FoundBody>& found) {
-  constexpr double kTurned = deg(25), kNoise = 1.2;  // largest angle between normals; as much more, per noise of these
+  constexpr double kSmall = 0.63;      // usual radii: 16 mm
+  constexpr double kTurned = deg(25);  // largest angle between the normals of a point and the body, without noise
+  constexpr double kNoise = 1.2;       // by how much it grows with the noise of the normals
   FitParameters closely = detail::with_all_points(bodies.fit, cloud);
   const double angle = std::min(closely.max_angle, kTurned + kNoise * bodies.normal_noise);
   auto own = indices_by_label(labels);
   own.resize(found.size());
   for (std::size_t b = 0; b < found.size(); ++b) {
     EllipsoidFit& last = found[b].fit;
-    const double large = std::clamp(2.0 * last.body.mean_radius() / bodies.usual_radius - 1.0, 0.0, 1.0);
+    const double size = last.body.mean_radius() / bodies.usual_radius;
+    const double large = std::clamp((size - kSmall) / (1.0 - kSmall), 0.0, 1.0);
     if (found[b].by_mask || last.size_prior || own[b].empty() || large == 1.0) continue;
     closely.max_angle = angle + large * (bodies.fit.max_angle - angle);
     for (int round = 0; round < 2; ++round) {

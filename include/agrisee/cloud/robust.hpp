@@ -62,6 +62,13 @@ inline double nth_size(std::vector<double>& sizes, std::size_t rank) {
 
 }  // namespace detail
 
+/// Robust standard deviation of residuals: 1.4826 times the median of |r|; 0 if there are none.
+/// @param sizes |r| of each (m); their order changes
+inline double robust_scale(std::vector<double>& sizes) {
+  if (sizes.empty()) return 0.0;
+  return 1.4826 * detail::nth_size(sizes, sizes.size() / 2);
+}
+
 /// Robust standard deviation of residuals: 1.4826 times the median of |r|.
 /// @param matches residuals whose match is negative do not count
 /// @param residuals r (m), as many as `matches`
@@ -71,8 +78,7 @@ inline double robust_scale(const std::vector<Index>& matches, const std::vector<
   sizes.reserve(residuals.size());
   for (std::size_t i = 0; i < residuals.size(); ++i)
     if (matches[i] >= 0) sizes.push_back(std::abs(residuals[i]));
-  if (sizes.empty()) return least;
-  return std::max(least, 1.4826 * detail::nth_size(sizes, sizes.size() / 2));
+  return std::max(least, robust_scale(sizes));
 }
 
 /// Weight of a residual with Tukey's kernel: (1 - t^2)^2 within the gate, 0 beyond.

@@ -40,7 +40,8 @@ inline Vector9 log_volume_gradient(const Ellipsoid& body, double size) {
 /// derivative by A is -A^-1, under the joint covariance of center and A. Points, derivatives, weights and prior are
 /// those of fit_ellipsoid: the prior gives the uncertainty of the shape where there are no points. There is no prior
 /// on the size, so too few points give a large error (at most 1). The noise is the larger of `noise` and
-/// `sensor_noise`, also for small bodies, which the fit lets follow their points more closely.
+/// `sensor_noise`, also for small bodies, which the fit lets follow their points more closely. Points that fit_closely
+/// leaves out count here, so the error is that of the wider fit.
 /// @param cloud points (m) with normals
 /// @param indices the points to which the body was fitted
 /// @param body the fitted body
