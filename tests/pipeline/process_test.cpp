@@ -440,6 +440,41 @@ TEST_CASE("of a large fruit several views see more than a little") {
   CHECK(process(cloud, {}, origin).fruits.empty());
 }
 
+TEST_CASE("from three views on small bodies that hang alone are doubtful at much noise, and fitted closely") {
+  Parameters parameters;
+  parameters.split = parameters.scan_split();
+  parameters.split.bodies.normal_noise = 0.15;
+  std::size_t lost = 0, moved = 0;
+  for (std::uint64_t seed = 0; seed < 20; ++seed) {
+    Rng rng(seed);
+    Cloud cloud;
+    for (int i = 0; i < 90; ++i) {
+      const Eigen::Vector3d n = rng.direction(), noise(rng.normal(), rng.normal(), rng.normal());
+      const Eigen::Vector3d tilt(rng.normal(), rng.normal(), rng.normal());
+      if (n.y() > 0.0) continue;
+      cloud.points.push_back((Eigen::Vector3d(0.0, 0.5, 0.2) + 0.009 * n + 0.0006 * noise).cast<float>());
+      cloud.normals.push_back((n + (0.4 + 0.02 * static_cast<double>(seed)) * tilt).normalized().cast<float>());
+      cloud.views.push_back(i % 3);
+    }
+    CloudOrigin origin;
+    origin.sensors.assign(3, kEye);
+    const ScanResult three = process(cloud, parameters, origin);
+    for (int& v : cloud.views) v = std::min(v, 1);
+    const ScanResult two = process(cloud, parameters, origin);
+    CHECK(three.fruits.size() <= two.fruits.size());
+    const std::size_t gone = two.fruits.size() - three.fruits.size();
+    CHECK(three.bodies.doubtful == two.bodies.doubtful + gone);
+    CHECK(three.bodies.taken + gone == two.bodies.taken);
+    lost += gone;
+    if (gone > 0 || two.fruits.empty()) continue;
+    CHECK(three.fruits[0].body->confidence < two.fruits[0].body->confidence);
+    moved += three.fruits[0].body->center != two.fruits[0].body->center;
+  }
+  INFO(lost << " lost, " << moved << " moved");
+  CHECK(lost > 0);
+  CHECK(moved > 0);
+}
+
 TEST_CASE("a cloud's own noise widens its neighborhoods") {
   for (const double sigma : {0.0, 0.001, 0.002}) {
     const Cloud cloud = seen(sigma);
