@@ -208,11 +208,10 @@ struct FitParameters {
 
 /// Parameters of find_bodies: which ellipsoids may be fruit, and how they compete for points.
 struct BodyParameters {
-  double radius_min = 0.008;  ///< smallest expected radius of a fruit (m)
-  double radius_max = 0.060;  ///< largest expected radius of a fruit (m)
-  /// Radius (m) below which bodies are small. Where several views show them, their points count as many as on one of
-  /// this radius, their last fit is closer (fit_closely), and hanging alone counts (doubt_bodies_alone).
-  double usual_radius = 0.0252;
+  double radius_min = 0.008;      ///< smallest expected radius of a fruit (m)
+  double radius_max = 0.060;      ///< largest expected radius of a fruit (m)
+  double usual_radius = 0.0252;   ///< bodies below this radius (m) are small: in several views their points count as
+                                  ///< many as on one of this radius; see also fit_closely and doubt_bodies_alone
   double tolerance = 0.08;        ///< points within this share of the radius from the surface may belong to the body
   double min_tolerance = 0.0014;  ///< on small bodies, points within this distance from the surface (m)
   double max_angle = deg(35);     ///< if their normals are also within this angle of the body's (rad)
