@@ -394,18 +394,30 @@ TEST_CASE("fruit of different sizes in a cloud of merged views are measured each
   }
 }
 
+namespace {
+
+/// A scrap of some 9 mm: the front of a small ball, with noise.
+/// @param tilt how far the normals are off
+Cloud scrap(std::uint64_t seed, double tilt) {
+  Rng rng(seed);
+  Cloud cloud;
+  for (int i = 0; i < 90; ++i) {
+    const Eigen::Vector3d n = rng.direction(), noise(rng.normal(), rng.normal(), rng.normal());
+    const Eigen::Vector3d off(rng.normal(), rng.normal(), rng.normal());
+    if (n.y() > 0.0) continue;
+    cloud.points.push_back((Eigen::Vector3d(0.0, 0.5, 0.2) + 0.009 * n + 0.0006 * noise).cast<float>());
+    cloud.normals.push_back((n + tilt * off).normalized().cast<float>());
+  }
+  return cloud;
+}
+
+}  // namespace
+
 TEST_CASE("where the side of the normals is a guess, only sure bodies are fruit") {
   std::size_t unsure = 0;
-  for (std::uint64_t seed = 0; seed < 20; ++seed) {  // scraps of some 9 mm
-    Rng rng(seed);
-    Cloud cloud, bare;
-    for (int i = 0; i < 90; ++i) {
-      const Eigen::Vector3d n = rng.direction(), noise(rng.normal(), rng.normal(), rng.normal());
-      const Eigen::Vector3d tilt(rng.normal(), rng.normal(), rng.normal());
-      if (n.y() > 0.0) continue;
-      cloud.points.push_back((Eigen::Vector3d(0.0, 0.5, 0.2) + 0.009 * n + 0.0006 * noise).cast<float>());
-      cloud.normals.push_back((n + 0.4 * tilt).normalized().cast<float>());
-    }
+  for (std::uint64_t seed = 0; seed < 20; ++seed) {
+    const Cloud cloud = scrap(seed, 0.4);
+    Cloud bare;
     bare.points = cloud.points;
     const ScanResult known = process(cloud), guessed = process(bare);
     for (const Fruit& f : guessed.fruits) CHECK(f.body->confidence >= 0.8);
@@ -446,16 +458,8 @@ TEST_CASE("from three views on small bodies that hang alone are doubtful at much
   parameters.split.bodies.normal_noise = 0.15;
   std::size_t lost = 0, moved = 0;
   for (std::uint64_t seed = 0; seed < 20; ++seed) {
-    Rng rng(seed);
-    Cloud cloud;
-    for (int i = 0; i < 90; ++i) {
-      const Eigen::Vector3d n = rng.direction(), noise(rng.normal(), rng.normal(), rng.normal());
-      const Eigen::Vector3d tilt(rng.normal(), rng.normal(), rng.normal());
-      if (n.y() > 0.0) continue;
-      cloud.points.push_back((Eigen::Vector3d(0.0, 0.5, 0.2) + 0.009 * n + 0.0006 * noise).cast<float>());
-      cloud.normals.push_back((n + (0.4 + 0.02 * static_cast<double>(seed)) * tilt).normalized().cast<float>());
-      cloud.views.push_back(i % 3);
-    }
+    Cloud cloud = scrap(seed, 0.4 + 0.02 * static_cast<double>(seed));
+    for (std::size_t i = 0; i < cloud.size(); ++i) cloud.views.push_back(static_cast<int>(i % 3));
     CloudOrigin origin;
     origin.sensors.assign(3, kEye);
     const ScanResult three = process(cloud, parameters, origin);

@@ -29,9 +29,9 @@ inline bool too_long(const Eigen::Vector3d& radii, const BodyParameters& paramet
 inline bool round_enough(const Verdict& v, const Ellipsoid& body, const BodyParameters& parameters) {
   constexpr double kRoundEnds = 0.3;  // of the ellipsoid's; long fruit in simulated scans has at least 0.9
   if (v.roundness >= parameters.min_roundness) return true;
+  if (v.seen_on || !v.closed()) return false;
   const Eigen::Vector3d radii = semi_axes(body).first;
-  return !v.seen_on && v.closed() && !too_long(radii, parameters) &&
-         v.roundness * radii[0] * radii[0] >= kRoundEnds * radii[2] * radii[2];
+  return !too_long(radii, parameters) && v.roundness * radii[0] * radii[0] >= kRoundEnds * radii[2] * radii[2];
 }
 
 /// A larger misfit of a body to its points, as a share of its radius, changes nothing.

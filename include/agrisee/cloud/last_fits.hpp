@@ -83,9 +83,9 @@ double scatter_about(const PointCloud<S>& cloud, const Indices& points, const El
 /// While bodies compete, lobes and noise may carry a body's points off its surface. But where fruit touch leaves or
 /// each other, surfaces in a fused cloud run into one another: points a millimetre or two outside, with normals between
 /// those of the two. They make a small fruit too large, and pull it to its hidden side. Most points lie on the surface
-/// that was seen well; their scatter, by the median, says which do not. Up to 0.63 usual
-/// radii that alone decides, from the usual radius on the parameters of the fit, and between them a mean of both.
-/// Bodies by masks, and those with a size prior, stay.
+/// that was seen well; their scatter, by the median, says which do not. Up to 0.63 usual radii that alone decides, from
+/// the usual radius on the parameters of the fit, and between them a mean of both. Bodies by masks, and those with a
+/// size prior, stay.
 /// @param cloud with normals
 /// @param labels one per point: the number of its body in `found` from 1, or 0
 template <typename S>
